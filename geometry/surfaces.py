@@ -1,0 +1,108 @@
+"""Analytic surfaces of a part: what a CAD face lies on, and how a nearby point is put back onto it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+from typing import Protocol
+
+import numpy as np
+
+from geometry.cad import bolt_angles
+from geometry.design import Design
+from geometry.meridian import Meridian, Segment
+
+SYMMETRY_START = "symmetry_start"
+SYMMETRY_END = "symmetry_end"
+
+
+class Surface(Protocol):
+    """A surface with a name; `patch` is the contract's name, or a plane of symmetry, or empty."""
+
+    @property
+    def patch(self) -> str: ...
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        """Nearest points on the surface [mm], shape (n, 3) in and out."""
+        ...
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A meridian segment revolved about z; its ends bound it."""
+
+    segment: Segment
+
+    @property
+    def patch(self) -> str:
+        return self.segment.patch or ""
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        r = np.hypot(points[:, 0], points[:, 1])
+        rz = self.segment.nearest(np.column_stack([r, points[:, 2]]))
+        safe = np.maximum(r, 1e-300)
+        return np.column_stack([points[:, :2] * (rz[:, 0] / safe)[:, None], rz[:, 1]])
+
+
+@dataclass(frozen=True)
+class HoleWall:
+    """A cylinder parallel to z: the wall of a bolt hole."""
+
+    axis: tuple[float, float]
+    radius: float
+    patch: str = ""
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        off = points[:, :2] - np.array(self.axis)
+        unit = off / np.maximum(np.linalg.norm(off, axis=1), 1e-300)[:, None]
+        return np.column_stack([np.array(self.axis) + self.radius * unit, points[:, 2]])
+
+
+@dataclass(frozen=True)
+class Plane:
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    patch: str = ""
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        n = np.array(self.normal)
+        return points - ((points - np.array(self.point)) @ n)[:, None] * n
+
+
+def sector_planes(sector_deg: float) -> list[Surface]:
+    """The two planes through the axis that bound a sector; none for the whole part."""
+    if sector_deg >= 360:
+        return []
+    a = radians(sector_deg)
+    return [
+        Plane((0, 0, 0), (0, -1, 0), SYMMETRY_START),
+        Plane((0, 0, 0), (-sin(a), cos(a), 0), SYMMETRY_END),
+    ]
+
+
+def part_surfaces(
+    design: Design, part: str, outline: Meridian, sector_deg: float
+) -> list[Surface]:
+    """Every surface that a face of the part may lie on; earlier ones win where two coincide."""
+    found: list[Surface] = sector_planes(sector_deg)
+    found += [Swept(s) for s in outline.segments if not s.on_axis]
+    owner = design.shaft if part == "shaft" else design.flexspline
+    if owner.bolt_count:
+        assert owner.bolt_circle_diameter_mm and owner.bolt_hole_diameter_mm
+        r = owner.bolt_circle_diameter_mm / 2
+        found += [
+            HoleWall((r * cos(a), r * sin(a)), owner.bolt_hole_diameter_mm / 2)
+            for a in bolt_angles(owner.bolt_count)
+        ]
+    if part == "shaft":
+        found.append(Plane((0, 0, design.shaft.segment[0].length_mm), (0, 0, 1)))
+        if design.shaft.keyway:
+            key = design.shaft.keyway
+            floor = design.shaft.segment[-1].outer_diameter_mm / 2 - key.depth_mm
+            found += [
+                Plane((floor, 0, 0), (1, 0, 0)),
+                Plane((0, key.width_mm / 2, 0), (0, 1, 0)),
+                Plane((0, -key.width_mm / 2, 0), (0, 1, 0)),
+                Plane((0, 0, design.shaft.length - key.length_mm), (0, 0, 1)),
+            ]
+    return found

@@ -1,0 +1,198 @@
+"""The tagged surface: a part's CAD faces as triangles, each of which knows the surface it lies on.
+
+Patches are named here, at the CAD face, and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from geometry.cad import build_solid, partition_faces
+from geometry.design import Design
+from geometry.errors import GeometryError
+from geometry.meridian import meridian
+from geometry.surfaces import Surface, part_surfaces
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+ON_SURFACE = 1e-6
+"""A CAD face lies on a surface if all its vertices do, to this distance [mm]."""
+
+
+@dataclass(frozen=True)
+class TaggedSurface:
+    """Boundary of a part's sector as triangles, and the cuts that keep patch edges in the mesh.
+
+    Attributes
+    ----------
+    vertices : (n, 3) mm.
+    triangles : (m, 3) indices, outward normals.
+    surface_of : (m,) index into `surfaces` for each triangle.
+    surfaces : the analytic surfaces.
+    cut_vertices, cut_triangles : internal faces through the patch edges, (k, 3) each.
+    patch_areas : CAD area of each named patch [mm²].
+    volume : CAD volume [mm³].
+    sharp_edges : (p, 3) points along every sharp edge and every patch edge, for the stress rule.
+    sector_deg : angle of the sector about z.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    surface_of: np.ndarray
+    surfaces: tuple[Surface, ...]
+    cut_vertices: np.ndarray
+    cut_triangles: np.ndarray
+    patch_areas: dict[str, float]
+    volume: float
+    sharp_edges: np.ndarray
+    sector_deg: float
+
+
+def tagged_surface(
+    design: Design, part: str, sector_deg: float, chord_error: float, edge_spacing: float
+) -> TaggedSurface:
+    """Tessellate the CAD solid within `chord_error` [mm] and name its faces.
+
+    Raises
+    ------
+    GeometryError : no valid solid, a face on no known surface, or a surface that is not watertight.
+    """
+    outline = meridian(design, part)
+    solid = build_solid(design, part, sector_deg)
+    surfaces = part_surfaces(design, part, outline, sector_deg)
+    _mesh_faces(solid, chord_error)
+    points: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
+    owner: list[np.ndarray] = []
+    areas: dict[str, float] = defaultdict(float)
+    face_surface: dict[int, int] = {}
+    count = 0
+    for face in solid.Faces():
+        v, t = _triangles(face)
+        index = _surface_of(v, surfaces)
+        face_surface[face.hashCode()] = index
+        if surfaces[index].patch:
+            areas[surfaces[index].patch] += face.Area()
+        points.append(v)
+        triangles.append(t + count)
+        owner.append(np.full(len(t), index))
+        count += len(v)
+    vertices, faces = _merged(np.concatenate(points), np.concatenate(triangles))
+    surface_of = np.concatenate(owner)
+    solid_faces = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    faces, surface_of = faces[solid_faces], surface_of[solid_faces]
+    _check_watertight(vertices, faces, part)
+    cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg), chord_error)
+    return TaggedSurface(
+        vertices=vertices,
+        triangles=faces,
+        surface_of=surface_of,
+        surfaces=tuple(surfaces),
+        cut_vertices=cut_v,
+        cut_triangles=cut_t,
+        patch_areas=dict(areas),
+        volume=solid.Volume(),
+        sharp_edges=_sharp_edges(solid, face_surface, surfaces, edge_spacing),
+        sector_deg=sector_deg,
+    )
+
+
+def _mesh_faces(shape: cq.Shape, chord_error: float) -> None:
+    """Triangulate all faces at once, so that neighbours share their edges' points."""
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+
+    BRepMesh_IncrementalMesh(shape.wrapped, chord_error, False, 0.2, False)
+
+
+def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and triangles (m, 3) of a face that `_mesh_faces` has triangulated."""
+    from OCP.BRep import BRep_Tool
+    from OCP.TopAbs import TopAbs_REVERSED
+    from OCP.TopLoc import TopLoc_Location
+
+    where = TopLoc_Location()
+    found = BRep_Tool.Triangulation_s(face.wrapped, where)
+    if found is None:
+        raise GeometryError("the CAD kernel could not triangulate a face")
+    move = where.Transformation()
+    nodes = (found.Node(i + 1).Transformed(move) for i in range(found.NbNodes()))
+    vertices = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
+    triangles = np.array([found.Triangle(i + 1).Get() for i in range(found.NbTriangles())]) - 1
+    if face.wrapped.Orientation() == TopAbs_REVERSED:
+        triangles = triangles[:, ::-1]
+    return vertices, triangles
+
+
+def _surface_of(vertices: np.ndarray, surfaces: list[Surface]) -> int:
+    for i, s in enumerate(surfaces):
+        if np.abs(s.project(vertices) - vertices).max() < ON_SURFACE:
+            return i
+    raise GeometryError(
+        f"a CAD face around {np.round(vertices.mean(axis=0), 3).tolist()} mm lies on no surface of the design"
+    )
+
+
+def _merged(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join vertices that neighbouring faces share (closer than ON_SURFACE)."""
+    pairs = cKDTree(vertices).query_pairs(ON_SURFACE, output_type="ndarray")
+    n = len(vertices)
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    _, label = connected_components(graph, directed=False)
+    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
+    return vertices[first], inverse.ravel()[triangles]
+
+
+def _check_watertight(vertices: np.ndarray, triangles: np.ndarray, part: str) -> None:
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    if not (mesh.is_watertight and mesh.is_winding_consistent):
+        raise GeometryError(f"the tessellated surface of the {part} is not watertight")
+
+
+def _cuts(faces: list[cq.Face], chord_error: float) -> tuple[np.ndarray, np.ndarray]:
+    vertices, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for face in faces:
+        _mesh_faces(face, chord_error)
+        v, t = _triangles(face)
+        vertices.append(v)
+        triangles.append(t + count)
+        count += len(v)
+    return np.concatenate(vertices), np.concatenate(triangles)
+
+
+def _sharp_edges(
+    solid: cq.Solid, face_surface: dict[int, int], surfaces: list[Surface], spacing: float
+) -> np.ndarray:
+    """Points along the edges where the outward normal turns or the patch changes.
+
+    Edges on a plane of symmetry are not edges of the part.
+    """
+    faces_at: dict[int, list[cq.Face]] = defaultdict(list)
+    edges = {}
+    for face in solid.Faces():
+        for edge in face.Edges():
+            edges[edge.hashCode()] = edge
+            faces_at[edge.hashCode()].append(face)
+    points = [np.empty((0, 3))]
+    for key, edge in edges.items():
+        if len(faces_at[key]) != 2 or edge.geomType() == "OTHER":
+            continue
+        a, b = (surfaces[face_surface[f.hashCode()]] for f in faces_at[key])
+        if "symmetry" in a.patch or "symmetry" in b.patch:
+            continue
+        middle = edge.positionAt(0.5)
+        normals = [f.normalAt(middle) for f in faces_at[key]]
+        if a.patch == b.patch and normals[0].dot(normals[1]) > 1 - 1e-4:
+            continue
+        n = max(2, int(np.ceil(edge.Length() / spacing)) + 1)
+        points.append(np.array([edge.positionAt(t).toTuple() for t in np.linspace(0, 1, n)]))
+    return np.concatenate(points)
