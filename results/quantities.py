@@ -1,0 +1,203 @@
+"""The one table of quantities: result.json key, unit, long name, symbol and how it is printed.
+
+JSON, CSV, figures and the report all read it; no other file spells a unit or a symbol.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor, log10
+from typing import Literal
+
+THIN = "\N{NARROW NO-BREAK SPACE}"
+"""Between groups of three digits, and between a number and its unit."""
+
+Kind = Literal["number", "count", "bounds", "text"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One entry of result.json.
+
+    Attributes
+    ----------
+    key : path in result.json, nested keys joined by dots.
+    column : the CSV header, flat, the unit still its suffix.
+    unit : as printed, "" for none.
+    name : long name.
+    symbol : letter and index joined by "_", e.g. ``K_b``; "" for none.
+    kind : what stands under the key; "bounds" is a pair of numbers.
+    digits : significant digits in print (kind "number" and "bounds").
+    decimals : fixed decimals instead of significant digits.
+    """
+
+    key: str
+    column: str
+    unit: str
+    name: str
+    symbol: str = ""
+    kind: Kind = "number"
+    digits: int = 4
+    decimals: int | None = None
+
+    @property
+    def mathtext(self) -> str:
+        """The symbol for matplotlib, index upright."""
+        letter, _, index = self.symbol.partition("_")
+        return f"${letter}_{{\\mathrm{{{index}}}}}$" if index else f"${letter}$"
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis or a table's column: "long name in unit"."""
+        return f"{self.name} in {self.unit}" if self.unit else self.name
+
+    def text(self, value: float) -> str:
+        """The number as printed, without unit: ``44712.3`` → ``44 712`` for five digits."""
+        if self.kind == "count":
+            return grouped(value, 0)
+        if self.decimals is not None:
+            return grouped(value, self.decimals)
+        return grouped(value, _decimals(value, self.digits))
+
+    def with_unit(self, value: float) -> str:
+        """The number and its unit."""
+        return f"{self.text(value)}{THIN}{self.unit}" if self.unit else self.text(value)
+
+    def range_text(self, low: float, high: float) -> str:
+        """Both ends with the same decimals, enough of them that unequal ends look unequal."""
+        places = _decimals(high, self.digits) if self.decimals is None else self.decimals
+        while low != high and grouped(low, places) == grouped(high, places) and places < 6:
+            places += 1
+        return f"{grouped(low, places)} to {grouped(high, places)}"
+
+
+def grouped(value: float, decimals: int) -> str:
+    """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
+    text = f"{abs(value):,.{decimals}f}"
+    whole, point, rest = text.partition(".")
+    whole = whole.replace(",", "") if abs(value) < 9999.5 else whole.replace(",", THIN)
+    negative = value < 0 and float(f"{abs(value):.{decimals}f}") > 0
+    return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
+
+
+def _decimals(value: float, digits: int) -> int:
+    if value == 0:
+        return 0
+    return max(0, digits - 1 - floor(log10(abs(value))))
+
+
+_STIFFNESS = "N·m/rad"
+
+QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("design", "design", "", "Design", kind="text"),
+    Quantity("version", "version", "", "Program version", kind="text"),
+    Quantity(
+        "K_b_Nm_per_rad",
+        "K_b_Nm_per_rad",
+        _STIFFNESS,
+        "Flexspline stiffness, even torque on the ring (uniform)",
+        "K_b",
+        digits=5,
+    ),
+    Quantity(
+        "K_b_bounds_Nm_per_rad",
+        "K_b_bounds_Nm_per_rad",
+        _STIFFNESS,
+        "Bounds of the flexspline stiffness (uniform)",
+        "K_b",
+        kind="bounds",
+        digits=5,
+    ),
+    Quantity(
+        "K_b_lobes_Nm_per_rad",
+        "K_b_lobes_Nm_per_rad",
+        _STIFFNESS,
+        "Flexspline stiffness, torque at the two lobes, wave generator supports (lobes)",
+        "K_b,lobes",
+        digits=4,
+    ),
+    Quantity(
+        "K_b_lobes_unsupported_Nm_per_rad",
+        "K_b_lobes_unsupported_Nm_per_rad",
+        _STIFFNESS,
+        "Flexspline stiffness, torque at the two lobes, rim unsupported",
+        "K_b,free",
+        digits=4,
+    ),
+    Quantity(
+        "K_e_Nm_per_rad",
+        "K_e_Nm_per_rad",
+        _STIFFNESS,
+        "Output shaft stiffness",
+        "K_e",
+        digits=5,
+    ),
+    Quantity(
+        "K_e_bounds_Nm_per_rad",
+        "K_e_bounds_Nm_per_rad",
+        _STIFFNESS,
+        "Bounds of the output shaft stiffness",
+        "K_e",
+        kind="bounds",
+        digits=5,
+    ),
+    Quantity(
+        "K_series_Nm_per_rad",
+        "K_series_Nm_per_rad",
+        _STIFFNESS,
+        "Series stiffness, 1/K = 1/K_e + 1/K_b",
+        "K",
+        digits=5,
+    ),
+    Quantity(
+        "wave_generator_peak_mises_MPa",
+        "wave_generator_peak_mises_MPa",
+        "MPa",
+        "Peak von Mises stress, wave-generator ellipse",
+        "σ_WG",
+        digits=3,
+    ),
+    Quantity(
+        "torque_peak_mises_MPa",
+        "torque_peak_mises_MPa",
+        "MPa",
+        "Peak von Mises stress, load torque",
+        "σ_T",
+        digits=3,
+    ),
+    *(
+        Quantity(
+            f"backlash_arcsec.{leaf}",
+            f"backlash_{leaf}_arcsec",
+            "arcsec",
+            name,
+            symbol,
+            decimals=1,
+        )
+        for leaf, name, symbol in (
+            ("shaft", "Shaft wind-up", "Δ_1"),
+            ("flexspline", "Flexspline wind-up", "Δ_2"),
+            ("flank_clearance", "Flank clearance", "Δ_3"),
+            ("bearing_play", "Bearing play", "Δ_4"),
+            ("total", "Backlash, total", "Δ_bl"),
+            ("std", "Standard deviation of the total", "s_bl"),
+        )
+    ),
+    Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
+    Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),
+    Quantity("solver.dofs", "solver_dofs", "", "Unknowns, finest mesh", kind="count"),
+    Quantity("solver.wall_s", "solver_wall_s", "s", "Elapsed time", decimals=1),
+    Quantity("solver.symmetry", "solver_symmetry", "", "Part solved", kind="text"),
+)
+
+BY_KEY = {q.key: q for q in QUANTITIES}
+
+
+def quantity(key: str) -> Quantity:
+    """The entry of a result.json key (nested keys joined by dots).
+
+    Raises
+    ------
+    KeyError : no such key in the table.
+    """
+    return BY_KEY[key]

@@ -1,0 +1,70 @@
+"""How every picture looks: fonts, sizes and colours that survive grey print and colour blindness."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from results.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+COLOUR_MAP = "viridis"
+"""Perceptually uniform, monotonic in lightness: the same picture in grey and to every eye."""
+
+INK = "#1f2429"
+MUTED = "#6b747d"
+RULE = "#c9ced3"
+STEEL = "#cfd6dc"
+
+# Four lightness steps (L* about 25, 47, 65, 84), hues apart on the blue-yellow axis that red-green
+# blindness leaves intact.
+PALETTE = ("#123f66", "#2f7ab8", "#dd8f2d", "#f5d38a")
+ACCENT = "#b3371f"
+
+DPI = 200
+RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # ships with matplotlib
+    "font.size": 10.5,
+    "axes.titlesize": 12,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 12,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "grid.color": "#e4e7ea",
+    "grid.linewidth": 0.8,
+    "text.color": INK,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "mathtext.fontset": "dejavusans",
+    "mathtext.default": "it",
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+
+
+def new_figure(width_in: float, height_in: float, dpi: int = DPI) -> Figure:
+    """A figure bound to the Agg canvas, outside pyplot's global list."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=dpi, layout=None)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_png(figure: Figure, path: Path) -> None:
+    """Write the figure as PNG, whole or not at all, the same bytes for the same content."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=figure.dpi, metadata={"Software": "flexspline"})
+    write_bytes(path, buffer.getvalue())
