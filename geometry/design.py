@@ -6,15 +6,19 @@ together stand in `geometry.checks`.
 
 from __future__ import annotations
 
+from math import cos, radians
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Length = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False, description="mm")]
+SMALLEST_MM = 0.001
+"""Features below 1 µm are beneath what the CAD kernel keeps apart (its tolerance is 1e-4 µm)."""
+
+Length = Annotated[float, Field(ge=SMALLEST_MM, le=10_000, allow_inf_nan=False, description="mm")]
 LengthOrZero = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False, description="mm")]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False, description="%")]
 Micrometre = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False, description="µm")]
-BoltCount = Annotated[int, Field(ge=0, le=200, description="0: no holes")]
+BoltCount = Annotated[int, Field(ge=0, le=200)]
 
 
 class _Frozen(BaseModel):
@@ -22,21 +26,33 @@ class _Frozen(BaseModel):
 
 
 class _Bolted(_Frozen):
-    bolt_count: BoltCount = 0
-    bolt_circle_diameter_mm: Length | None = None
-    bolt_hole_diameter_mm: Length | None = None
+    bolt_count: BoltCount = Field(
+        default=0, description="number of bolt holes, the first at angle 0; 0: none"
+    )
+    bolt_circle_diameter_mm: Length | None = Field(
+        default=None, description="mm, through the holes' axes"
+    )
+    bolt_hole_diameter_mm: Length | None = Field(default=None, description="mm, of each hole")
 
 
 class _Flexspline(_Bolted):
     inner_diameter_mm: Length = Field(description="mm, of the tube, under the wave generator")
-    wall_thickness_mm: Length = Field(description="mm, smooth tube")
-    ring_thickness_mm: Length = Field(description="mm, toothed ring, inner surface to tooth root")
+    wall_thickness_mm: Length = Field(description="mm, of the smooth tube")
+    ring_thickness_mm: Length = Field(
+        description="mm, toothed ring, from inner surface to tooth root"
+    )
     length_mm: Length = Field(description="mm, closed end's outer face (z = 0) to the open rim")
     ring_width_mm: Length = Field(description="mm, axial length of the toothed ring")
-    ring_offset_mm: LengthOrZero = Field(0.0, description="mm, open rim to the ring's near edge")
-    diaphragm_thickness_mm: Length
-    inner_fillet_mm: LengthOrZero = Field(0.0, description="mm, inside corner of tube and diaphragm")
-    outer_fillet_mm: LengthOrZero = Field(0.0, description="mm, outside corner of the closed end")
+    ring_offset_mm: LengthOrZero = Field(
+        default=0.0, description="mm, open rim to the ring's near edge"
+    )
+    diaphragm_thickness_mm: Length = Field(description="mm, of the closed end's thin disc")
+    inner_fillet_mm: LengthOrZero = Field(
+        default=0.0, description="mm, radius of the inside corner of tube and diaphragm; 0: sharp"
+    )
+    outer_fillet_mm: LengthOrZero = Field(
+        default=0.0, description="mm, radius of the outside corner of the closed end; 0: sharp"
+    )
 
     @property
     def inner_radius(self) -> float:
@@ -63,44 +79,57 @@ class _Flexspline(_Bolted):
         """Lower end of the toothed ring, z [mm]."""
         return self.ring_end - self.ring_width_mm
 
+    @property
+    def shoulder_start(self) -> float:
+        """Where the 45° shoulder leaves the wall, z [mm]."""
+        return self.ring_start - (self.ring_radius - self.wall_radius)
+
 
 class Cup(_Flexspline):
     """A cup: the closed end carries a thick boss that bolts to the shaft."""
 
-    kind: Literal["cup"]
-    boss_diameter_mm: Length
-    boss_thickness_mm: Length
-    bore_diameter_mm: LengthOrZero = Field(0.0, description="mm, through hole in the boss")
+    kind: Literal["cup"] = Field(description="cup or hat")
+    boss_diameter_mm: Length = Field(description="mm, thick centre that bolts to the shaft")
+    boss_thickness_mm: Length = Field(description="mm, from z = 0")
+    bore_diameter_mm: LengthOrZero = Field(
+        default=0.0, description="mm, through hole in the boss; 0: none"
+    )
 
 
 class Hat(_Flexspline):
     """A hat (silk hat): the diaphragm runs outwards to a bolted flange."""
 
-    kind: Literal["hat"]
-    flange_outer_diameter_mm: Length
-    flange_inner_diameter_mm: Length
-    flange_thickness_mm: Length
+    kind: Literal["hat"] = Field(description="cup or hat")
+    flange_outer_diameter_mm: Length = Field(description="mm, outside of the bolted flange")
+    flange_inner_diameter_mm: Length = Field(description="mm, where the flange's thick part begins")
+    flange_thickness_mm: Length = Field(description="mm, from z = 0")
 
 
 class ShaftSegment(_Frozen):
-    length_mm: Length
-    outer_diameter_mm: Length
-    inner_diameter_mm: LengthOrZero = Field(0.0, description="mm; 0 is solid")
+    """One cylinder of the shaft; the first is the flange on the flexspline."""
+
+    length_mm: Length = Field(description="mm, along the axis")
+    outer_diameter_mm: Length = Field(description="mm")
+    inner_diameter_mm: LengthOrZero = Field(default=0.0, description="mm, of the bore; 0: solid")
 
 
 class Keyway(_Frozen):
     """A square-ended slot from the free end, centred at angle 0."""
 
-    width_mm: Length
-    depth_mm: Length
-    length_mm: Length
+    width_mm: Length = Field(description="mm, across the slot")
+    depth_mm: Length = Field(description="mm, flat floor below the last segment's outer radius")
+    length_mm: Length = Field(description="mm, from the free end")
 
 
 class Shaft(_Bolted):
-    fillet_mm: LengthOrZero = Field(0.0, description="mm, at inside corners of the outer diameter")
-    grip_length_mm: Length = Field(description="mm at the free end: where the output is held")
+    """The output shaft: segments stacked from the flange to the free end."""
+
+    fillet_mm: LengthOrZero = Field(
+        default=0.0, description="mm, radius at every inside corner where the outer diameter steps"
+    )
+    grip_length_mm: Length = Field(description="mm, at the free end: where the output is held")
     segment: tuple[ShaftSegment, ...] = Field(min_length=1, max_length=50, strict=False)
-    keyway: Keyway | None = None
+    keyway: Keyway | None = Field(default=None, description="optional slot from the free end")
 
     @property
     def length(self) -> float:
@@ -109,55 +138,99 @@ class Shaft(_Bolted):
 
 
 class Material(_Frozen):
-    name: str = Field(min_length=1, max_length=200)
-    youngs_modulus_GPa: float = Field(gt=0, le=2000, allow_inf_nan=False)
-    poissons_ratio: float = Field(ge=0, le=0.49, allow_inf_nan=False)
-    fatigue_limit_MPa: float | None = Field(None, gt=0, le=1e5, allow_inf_nan=False)
+    """Isotropic linear elastic material."""
+
+    name: str = Field(min_length=1, max_length=200, description="for the report")
+    youngs_modulus_GPa: float = Field(gt=0, le=2000, allow_inf_nan=False, description="GPa, E")
+    poissons_ratio: float = Field(ge=0, le=0.49, allow_inf_nan=False, description="1, ν")
+    fatigue_limit_MPa: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e5,
+        allow_inf_nan=False,
+        description="MPa, optional, compared with stress",
+    )
 
 
 class Materials(_Frozen):
+    """What the two parts are made of."""
+
     flexspline: Material
-    shaft: Material | None = Field(None, description="absent: the flexspline's")
+    shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
 
 
 class Gear(_Frozen):
-    module_mm: float = Field(gt=0, le=100, allow_inf_nan=False)
-    teeth_flexspline: int = Field(ge=10, le=10_000, description="z1")
-    teeth_circular_spline: int = Field(ge=11, le=10_000, description="z2")
-    pressure_angle_deg: float = Field(ge=5, le=45, allow_inf_nan=False)
-    flank_clearance_um: Micrometre = Field(description="µm, j_bn0, normal")
+    """The two gears, their flank clearance included."""
+
+    module_mm: float = Field(ge=SMALLEST_MM, le=100, allow_inf_nan=False, description="mm, m")
+    teeth_flexspline: int = Field(ge=10, le=10_000, description="number of teeth, z1")
+    teeth_circular_spline: int = Field(
+        ge=11, le=10_000, description="number of teeth, z2; z2 - z1 is even (two lobes)"
+    )
+    pressure_angle_deg: float = Field(ge=5, le=45, allow_inf_nan=False, description="deg, α")
+    flank_clearance_um: Micrometre = Field(description="µm, j_bn0, along the flank's normal")
+
+    @property
+    def centre_distance_mm(self) -> float:
+        """a = m(z2 − z1)/2 [mm], which is also w0, the wave generator's radial stroke."""
+        return self.module_mm * (self.teeth_circular_spline - self.teeth_flexspline) / 2
+
+    @property
+    def bearing_play_limit_um(self) -> float:
+        """c_max = 2a(1 − cos α) [µm]: there the working pressure angle is 0."""
+        return 2e3 * self.centre_distance_mm * (1 - cos(radians(self.pressure_angle_deg)))
 
 
 class Bearing(_Frozen):
-    radial_clearance_um: Micrometre = Field(description="µm, c")
-    bearing_play_model: Literal["involute", "small_displacement"] = "involute"
+    """The flexible bearing of the wave generator, and how its play opens the mesh."""
+
+    radial_clearance_um: Micrometre = Field(description="µm, c, radial internal clearance")
+    bearing_play_model: Literal["involute", "small_displacement"] = Field(
+        default="involute", description="involute (c up to c_max) or small_displacement (c·sin α)"
+    )
 
 
 class Load(_Frozen):
-    torque_Nm: float = Field(gt=0, le=1e6, allow_inf_nan=False, description="N·m, T_L")
+    """The torque at which the backlash is measured."""
+
+    torque_Nm: float = Field(gt=0, le=1e6, allow_inf_nan=False, description="N·m, T_L, each way")
 
 
 class Uncertainty(_Frozen):
     """One standard deviation each: what the prediction may be off by with nothing wrong with it."""
 
-    youngs_modulus_pct: Percent = 0.0
-    flank_clearance_um: Micrometre = 0.0
-    radial_clearance_um: Micrometre = 0.0
+    youngs_modulus_pct: Percent = Field(
+        default=0.0, description="%, of E, flexspline and shaft alike"
+    )
+    flank_clearance_um: Micrometre = Field(default=0.0, description="µm, of j_bn0")
+    radial_clearance_um: Micrometre = Field(default=0.0, description="µm, of c")
 
 
 class Solver(_Frozen):
-    model: Literal["axisymmetric", "solid", "auto"] = "auto"
-    load_case: Literal["uniform", "lobes"] = "uniform"
-    tolerance_pct: float = Field(0.5, ge=0.01, le=20, allow_inf_nan=False)
+    """How K is computed; all optional."""
+
+    model: Literal["axisymmetric", "solid", "auto"] = Field(
+        default="auto", description="axisymmetric (bodies of revolution only), solid or auto"
+    )
+    load_case: Literal["uniform", "lobes"] = Field(
+        default="uniform", description="uniform or lobes: which K_b enters the sum"
+    )
+    tolerance_pct: float = Field(
+        default=0.5, ge=0.01, le=20, allow_inf_nan=False, description="%, wanted error of K"
+    )
     edge_length_mm: float | None = Field(
-        None, gt=0, le=1000, allow_inf_nan=False, description="mm, fixes the first solid mesh"
+        default=None,
+        gt=0,
+        le=1000,
+        allow_inf_nan=False,
+        description="mm, fixes the first solid mesh",
     )
 
 
 class Design(_Frozen):
     """One strain wave gear: flexspline, output shaft, materials, gear, play, load."""
 
-    name: str = Field(min_length=1, max_length=200)
+    name: str = Field(min_length=1, max_length=200, description="of the design, for the report")
     flexspline: Annotated[Cup | Hat, Field(discriminator="kind")]
     shaft: Shaft
     material: Materials

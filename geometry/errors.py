@@ -2,27 +2,62 @@
 
 from __future__ import annotations
 
+MISSING = object()
+"""The value of a key that is not there."""
+
 
 class DesignError(ValueError):
     """A design that cannot be accepted: which key, its value, and what would work.
 
+    The message is one printable line, whatever the value holds.
+
     Attributes
     ----------
     key : dotted key of the design file, e.g. ``flexspline.wall_thickness_mm``.
-    value : what was found there.
+    value : what was found there; `MISSING` if nothing.
     reason : one clause that names the workable range, with its numbers.
+    more : how many further faults the design has.
     """
 
-    def __init__(self, key: str, value: object, reason: str) -> None:
-        self.key, self.value, self.reason = key, value, reason
-        super().__init__(f"{key} = {_short(value)}: {reason}")
+    def __init__(self, key: str, value: object, reason: str, more: int = 0) -> None:
+        self.key, self.value, self.reason, self.more = key, value, reason, more
+        found = "is missing" if value is MISSING else f"= {short(value)}"
+        also = f" (and {more} more)" if more else ""
+        super().__init__(f"{one_line(key)} {found}: {one_line(reason)}{also}")
+
+
+class DesignFileError(DesignError):
+    """A design file that cannot be read at all; `path` and why."""
+
+    def __init__(self, path: object, reason: str) -> None:
+        super().__init__(str(path), None, reason)
+        self.path = path
+        self.args = (f"{one_line(str(path))}: {one_line(reason)}",)
 
 
 class GeometryError(RuntimeError):
     """The CAD kernel did not produce the solid that the design describes."""
 
 
-def _short(value: object, limit: int = 60) -> str:
-    text = ascii(value) if isinstance(value, str) else str(value)
-    text = " ".join(text.split())
+def short(value: object, limit: int = 60) -> str:
+    """A value as one short printable line."""
+    if isinstance(value, bool):
+        text = str(value).lower()  # as TOML writes it
+    elif isinstance(value, int) and abs(value) >= 10**limit:
+        text = "a whole number of more than 60 digits"  # str() refuses thousands of digits
+    elif isinstance(value, dict):
+        text = "{a table}"
+    elif isinstance(value, list | tuple):
+        text = f"[a list of {len(value)}]"
+    elif isinstance(value, str):
+        text = f'"{value[: limit + 1]}"'
+    else:
+        text = str(value)
+    return one_line(text, limit)
+
+
+def one_line(text: str, limit: int = 600) -> str:
+    """Printable text on one line: control characters are written as escapes."""
+    text = text[: limit + 1]
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     return text if len(text) <= limit else text[: limit - 1] + "…"

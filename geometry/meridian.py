@@ -1,6 +1,6 @@
 """Meridian profiles: closed outlines in the (r, z) half plane, with fillets and named patches.
 
-Written once here as plain numbers; the CAD solid revolves them and the axisymmetric solver meshes them.
+Written once as plain numbers; the CAD solid revolves them, the axisymmetric solver meshes them.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Meridian:
-    """A closed, counter-clockwise outline; `cuts` are the lines across the material at patch edges."""
+    """A closed, counter-clockwise outline; `cuts` run across the material at patch edges."""
 
     segments: tuple[Segment, ...]
     cuts: tuple[Segment, ...] = ()
@@ -148,12 +148,8 @@ class Meridian:
         )
 
     def polygon(self, chord_error: float) -> np.ndarray:
-        """Vertices (n, 2) of the outline with arcs cut into chords no farther off than chord_error [mm]."""
-        points = [
-            s.at(np.arange(n) / n)
-            for s in self.segments
-            for n in [_chords(s, chord_error)]
-        ]
+        """Vertices (n, 2) of the outline, arcs as chords no farther off than chord_error [mm]."""
+        points = [s.at(np.arange(n) / n) for s in self.segments for n in [_chords(s, chord_error)]]
         return np.concatenate(points)
 
 

@@ -1,0 +1,86 @@
+"""Rules that tie several keys of a design together: what cannot be built is refused, with numbers.
+
+What one key may hold by itself stands in `geometry.design`. What can be built but looks wrong is a
+warning of `geometry.sanity`, never a refusal.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterator
+
+from geometry.check_flexspline import flexspline_faults
+from geometry.check_shaft import shaft_faults
+from geometry.design import Design
+from geometry.errors import DesignError
+
+
+def check(design: Design) -> None:
+    """Refuse an impossible design.
+
+    Raises
+    ------
+    DesignError : the first fault: its key, its value, the range that works; counts the others.
+    """
+    faults = list(_faults(design))
+    if faults:
+        first = faults[0]
+        raise DesignError(first.key, first.value, first.reason, more=len(faults) - 1)
+
+
+def _faults(design: Design) -> Iterator[DesignError]:
+    yield from _name_faults(design)
+    yield from flexspline_faults(design.flexspline)
+    yield from shaft_faults(design.shaft)
+    yield from _gear_faults(design)
+    yield from _play_faults(design)
+    yield from _solver_faults(design)
+
+
+def _name_faults(design: Design) -> Iterator[DesignError]:
+    names = {"name": design.name, "material.flexspline.name": design.material.flexspline.name}
+    if design.material.shaft:
+        names["material.shaft.name"] = design.material.shaft.name
+    for key, text in names.items():
+        if any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text):
+            yield DesignError(key, text, "must be one line of text without control characters")
+        elif not text.strip():
+            yield DesignError(key, text, "must hold 1 to 200 characters that are not blank")
+
+
+def _gear_faults(design: Design) -> Iterator[DesignError]:
+    z1, z2 = design.gear.teeth_flexspline, design.gear.teeth_circular_spline
+    if z2 <= z1 or (z2 - z1) % 2:
+        yield DesignError(
+            "gear.teeth_circular_spline",
+            z2,
+            f"must be teeth_flexspline = {z1} plus an even number for the two lobes: "
+            f"{z1 + 2}, {z1 + 4}, …",
+        )
+
+
+def _play_faults(design: Design) -> Iterator[DesignError]:
+    gear, bearing = design.gear, design.bearing
+    if bearing.bearing_play_model != "involute" or gear.centre_distance_mm <= 0:
+        return
+    c, limit = bearing.radial_clearance_um, gear.bearing_play_limit_um
+    if c > limit * (1 + 1e-12):
+        yield DesignError(
+            "bearing.radial_clearance_um",
+            c,
+            f"must be from 0 to c_max = 2a(1 - cos α) = {limit:.4g} µm, where the involute model "
+            'ends; bearing_play_model = "small_displacement" has no such end',
+        )
+
+
+def _solver_faults(design: Design) -> Iterator[DesignError]:
+    if design.solver.model != "axisymmetric":
+        return
+    holes = design.flexspline.bolt_count or design.shaft.bolt_count
+    if holes or design.shaft.keyway:
+        what = f"bolt_count = {holes} makes holes" if holes else "shaft.keyway is cut"
+        yield DesignError(
+            "solver.model",
+            design.solver.model,
+            f'must be "solid" or "auto": {what}, and the part is no body of revolution',
+        )

@@ -1,0 +1,79 @@
+"""From a design file to a checked Design; every fault is one line."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from geometry.checks import check
+from geometry.design import Design
+from geometry.errors import DesignFileError
+from geometry.plain_words import translate
+
+LARGEST_BYTES = 1_000_000
+"""A design takes 2 kB; a file beyond this is some other file."""
+
+
+def load_design(path: Path | str) -> Design:
+    """Read, validate and check a design file (TOML).
+
+    Raises
+    ------
+    DesignFileError : no such file, a directory, too large, not UTF-8, not TOML.
+    DesignError : unknown, missing or wrong key, or impossible geometry. Keys are dotted, array
+        elements are counted from 0: ``shaft.segment[1].length_mm``.
+    """
+    return design_from(read_toml(path))
+
+
+def read_toml(path: Path | str) -> dict[str, Any]:
+    """The file's tables.
+
+    Raises
+    ------
+    DesignFileError : no such file, a directory, too large, not UTF-8, not TOML.
+    """
+    try:
+        if Path(path).is_dir():
+            raise DesignFileError(path, "is a directory, not a design file")
+        if not Path(path).exists():
+            raise DesignFileError(path, "no such file")
+        if not Path(path).is_file():
+            raise DesignFileError(path, "is not a regular file")
+        size = Path(path).stat().st_size
+        if size > LARGEST_BYTES:
+            raise DesignFileError(
+                path, f"{size} bytes; a design file has at most {LARGEST_BYTES} bytes"
+            )
+        raw = Path(path).read_bytes()
+    except (OSError, ValueError) as fault:
+        if isinstance(fault, DesignFileError):
+            raise
+        raise DesignFileError(path, f"cannot be read ({fault})") from fault
+    try:
+        return tomllib.loads(raw.decode("utf-8-sig"))
+    except UnicodeDecodeError as fault:
+        raise DesignFileError(path, f"is not UTF-8 text (byte {fault.start})") from fault
+    except RecursionError as fault:
+        raise DesignFileError(path, "is nested too deeply") from fault
+    except ValueError as fault:  # also integers of more digits than Python converts
+        raise DesignFileError(path, f"is not valid TOML: {fault}") from fault
+
+
+def design_from(data: Mapping[str, Any]) -> Design:
+    """A checked Design from the tables of a design file.
+
+    Raises
+    ------
+    DesignError : unknown, missing or wrong key, or impossible geometry.
+    """
+    try:
+        design = Design.model_validate(data)
+    except ValidationError as fault:
+        raise translate(fault, data) from None
+    check(design)
+    return design

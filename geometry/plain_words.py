@@ -1,0 +1,74 @@
+"""What pydantic found wrong with a design, said in plain words on one line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from geometry.errors import MISSING, DesignError
+from geometry.schema import Location, allowed, dotted, keys_of
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails, ValidationError
+
+KINDS = ("cup", "hat")
+_NOUNS = {str: "text", bool: "true or false", dict: "a table", list: "a list"}
+
+
+def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
+    """The first fault as a DesignError that counts the others.
+
+    Unknown keys come first: a misspelt key is also a missing one, and its own name says more.
+    """
+    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+    first = _translated(found[0], data)
+    return DesignError(first.key, first.value, first.reason, more=len(found) - 1)
+
+
+def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
+    kind = _kind(data)
+    location = _without_tag(e["loc"])
+    if e["type"] == "extra_forbidden":
+        return DesignError(dotted(location), e["input"], _unknown(location, kind))
+    if e["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        location = (*location, "kind")
+        value = data["flexspline"].get("kind", MISSING)
+        verb = "give" if value is MISSING else "must be"
+        return DesignError(dotted(location), value, f'{verb} "cup" or "hat"')
+    if e["type"] == "missing":
+        return DesignError(dotted(location), MISSING, f"give {allowed(location, kind)}")
+    wrong = f", not {_NOUNS[type(e['input'])]}" if _is_wrong_type(e) else ""
+    return DesignError(dotted(location), e["input"], f"must be {allowed(location, kind)}{wrong}")
+
+
+def _is_wrong_type(e: ErrorDetails) -> bool:
+    return e["type"].endswith("_type") and type(e["input"]) in _NOUNS
+
+
+def _without_tag(location: Location) -> Location:
+    """Pydantic puts the chosen kind after ``flexspline``; it is no key of the file."""
+    if location[:1] == ("flexspline",) and location[1:2] in (("cup",), ("hat",)):
+        return (location[0], *location[2:])
+    return location
+
+
+def _kind(data: Mapping[str, Any]) -> str | None:
+    flexspline = data.get("flexspline")
+    kind = flexspline.get("kind") if isinstance(flexspline, Mapping) else None
+    return kind if kind in KINDS else None
+
+
+def _unknown(location: Location, kind: str | None) -> str:
+    table, key = location[:-1], str(location[-1])
+    known = keys_of(table, kind)
+    if table == ("flexspline",) and kind:
+        other = KINDS[1 - KINDS.index(kind)]
+        own = [k for k in known if k not in keys_of(table, other)]
+        if key in keys_of(table, other):
+            return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
+    near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
+    if near:
+        return f"unknown key; did you mean {near[0]}?"
+    where = f"[{dotted(table)}]" if table else "the design"
+    return f"unknown key; {where} takes {', '.join(known)}"

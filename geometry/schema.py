@@ -1,0 +1,108 @@
+"""The schema as plain data: what stands at a dotted key, which range it allows, in words."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from geometry.design import Design
+
+Location = tuple[str | int, ...]
+Node = dict[str, Any]
+
+UNITS = {
+    "_mm": "mm",
+    "_um": "µm",
+    "_GPa": "GPa",
+    "_MPa": "MPa",
+    "_Nm": "N·m",
+    "_deg": "deg",
+    "_pct": "%",
+}
+"""Key suffix to unit."""
+
+
+@cache
+def json_schema() -> Node:
+    """JSON Schema (2020-12) of the design file; editors complete and check with it."""
+    schema = Design.model_json_schema()
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "title": "flexspline design file",
+    }
+
+
+def node_at(location: Location, kind: str | None = None) -> Node:
+    """The schema of a key; `kind` says which flexspline is meant. Empty if there is no such key."""
+    node = json_schema()
+    for part in location:
+        node = resolved(node, kind)
+        if isinstance(part, int):
+            node = node.get("items", {})
+        else:
+            node = node.get("properties", {}).get(part, {})
+    return resolved(node, kind)
+
+
+def resolved(node: Node, kind: str | None = None) -> Node:
+    """Follow a reference, an optional value's type, or the flexspline's kind."""
+    outer = {k: v for k, v in node.items() if k in ("description", "default")}
+    if "$ref" in node:
+        target = json_schema()["$defs"][node["$ref"].split("/")[-1]]
+        return {**resolved(target, kind), **outer}
+    if "anyOf" in node:
+        inner = next(n for n in node["anyOf"] if n.get("type") != "null")
+        return {**resolved(inner, kind), **outer}
+    if "discriminator" in node:
+        mapping = node["discriminator"]["mapping"]
+        return resolved({"$ref": mapping[kind]}, kind) if kind in mapping else {"type": "object"}
+    return node
+
+
+def keys_of(location: Location, kind: str | None = None) -> list[str]:
+    """Keys that a table takes."""
+    return list(node_at(location, kind).get("properties", {}))
+
+
+def dotted(location: Location) -> str:
+    """``("shaft", "segment", 1, "width")`` → ``shaft.segment[1].width``, counted from 0."""
+    text = ""
+    for part in location:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            bare = part.isascii() and part.replace("_", "").replace("-", "").isalnum()
+            shown = part if bare else ascii(part)
+            text += ("." if text else "") + (shown if len(shown) <= 60 else shown[:59] + "…")
+    return text
+
+
+def allowed(location: Location, kind: str | None = None) -> str:
+    """What a key may hold, in words: ``a number from 0 to 100 (%)``."""
+    node = node_at(location, kind)
+    if "enum" in node:
+        return " or ".join(f'"{v}"' for v in node["enum"])
+    if "const" in node:
+        return f'"{node["const"]}"'
+    if "discriminator" in node or node.get("type") == "object":
+        return f"a table [{dotted(location)}]"
+    if node.get("type") == "array":
+        return f"{node['minItems']} to {node['maxItems']} tables [[{dotted(location)}]]"
+    if node.get("type") == "string":
+        return f"text of {node['minLength']} to {node['maxLength']} characters"
+    noun = "a whole number" if node.get("type") == "integer" else "a number"
+    return f"{noun} {_range(node)}{_unit(location)}"
+
+
+def _range(node: Node) -> str:
+    high = f"{node['maximum']:g}"
+    if "exclusiveMinimum" in node:
+        return f"above {node['exclusiveMinimum']:g} and up to {high}"
+    return f"from {node['minimum']:g} to {high}"
+
+
+def _unit(location: Location) -> str:
+    key = str(location[-1])
+    unit = next((u for suffix, u in UNITS.items() if key.endswith(suffix)), "")
+    return f" {unit}" if unit else ""
