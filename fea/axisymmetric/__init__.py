@@ -1,0 +1,1 @@
+"""Bodies of revolution: everything solved on the meridian, two-dimensional and fast."""

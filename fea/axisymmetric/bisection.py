@@ -1,0 +1,78 @@
+"""Local refinement of a meridian mesh by halving longest edges (Rivara 1984; red-green-blue)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.axisymmetric.meridian_mesh import MeridianMesh, edge_middles
+
+
+def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
+    """The mesh with marked triangles (mask (m,)) cut in four and their neighbours kept conforming.
+
+    New nodes of fillets are put on the exact arc.
+    """
+    tri = _longest_first(mesh.points, mesh.triangles)
+    pairs = np.sort(tri[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+    n = len(mesh.points)
+    keys, of = np.unique(pairs[:, 0] * n + pairs[:, 1], return_inverse=True)
+    of = of.reshape(-1, 3)
+    cut = np.zeros(len(keys), bool)
+    cut[of[marked]] = True
+    while True:
+        spread = cut[of].any(axis=1) & ~cut[of[:, 0]]
+        if not spread.any():
+            break
+        cut[of[spread, 0]] = True
+    new = np.full(len(keys), -1)
+    new[cut] = n + np.arange(cut.sum())
+    ends = np.column_stack([keys // n, keys % n])
+    middle = mesh.points[ends].mean(axis=1)
+    low, high = np.sort(mesh.edges, axis=1).T
+    rim = np.searchsorted(keys, low * n + high)
+    middle[rim] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
+    edges, segment = _halved(mesh, new[rim])
+    return MeridianMesh(
+        mesh.outline,
+        np.concatenate([mesh.points, middle[cut]]),
+        _children(tri, new[of]),
+        edges,
+        segment,
+    )
+
+
+def _longest_first(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Triangles turned so that their longest edge runs from corner 0 to corner 1."""
+    corner = points[triangles]
+    longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).argmax(axis=1)
+    return np.take_along_axis(triangles, (longest[:, None] + np.arange(3)) % 3, axis=1)
+
+
+def _halved(mesh: MeridianMesh, new: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Boundary edges and their segments, those with a new node split in two."""
+    cut = new >= 0
+    old, mine, at = mesh.edges[cut], mesh.edge_segment[cut], new[cut]
+    halves = [np.column_stack([old[:, 0], at]), np.column_stack([at, old[:, 1]])]
+    return (
+        np.concatenate([mesh.edges[~cut], *halves]),
+        np.concatenate([mesh.edge_segment[~cut], mine, mine]),
+    )
+
+
+def _children(tri: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """Triangles after the split; `new` (m, 3) holds each edge's middle node, or -1."""
+    has = new >= 0
+    a, b, c = tri.T
+    m, p, q = new.T
+    kinds = {
+        (False, False, False): [(a, b, c)],
+        (True, False, False): [(c, a, m), (b, c, m)],
+        (True, True, False): [(c, a, m), (m, b, p), (m, p, c)],
+        (True, False, True): [(b, c, m), (m, c, q), (m, q, a)],
+        (True, True, True): [(a, m, q), (m, b, p), (q, p, c), (m, p, q)],
+    }
+    parts = []
+    for kind, children in kinds.items():
+        mine = (has == kind).all(axis=1)
+        parts += [np.column_stack(child)[mine] for child in children]
+    return np.concatenate(parts)

@@ -1,0 +1,154 @@
+"""First mesh of a meridian: Delaunay refinement after Ruppert (J. Algorithms 18, 1995, 548-585).
+
+Boundary edges are halved until no vertex lies within their diametral circle, which makes each of
+them an edge of the Delaunay triangulation; then circumcentres of poorly shaped triangles are
+added, or the edges halved whose circle they would enter. Triangulations come from Qhull (scipy).
+Element size follows the local thickness by itself: one layer across a thin wall.
+"""
+
+from __future__ import annotations
+
+from math import ceil, pi, sin
+
+import numpy as np
+from scipy.spatial import Delaunay, cKDTree
+
+from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles, signed_areas
+from geometry.meridian import Meridian
+
+CHORD_ANGLE = pi / 12
+"""Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""
+SMALLEST_ANGLE = pi / 180 * 24
+"""Ruppert's proof covers 20.7°; in practice up to 30° ends, and P2 gains little beyond 24°."""
+ROUNDS = 300
+TOUCH = 1e-7
+"""Relative slack of circle tests: cocircular points of right-angled outlines count as outside."""
+
+
+def triangulate(outline: Meridian) -> MeridianMesh:
+    """Mesh an outline whose corners are not much sharper than 60°.
+
+    Raises
+    ------
+    MeshingError
+        If refinement does not end: the outline crosses itself or has needle corners.
+    """
+    points, edges, segment = _first_edges(outline)
+    for _ in range(ROUNDS):
+        crowded = _encroached(points, edges)
+        if not crowded.any():
+            triangles = _inside(points, edges, Delaunay(points).simplices)
+            added, crowded = _improvements(points, edges, triangles)
+            if not len(added) and not crowded.any():
+                return _checked(outline, points, triangles, edges, segment)
+            points = np.concatenate([points, added])
+        points, edges, segment = _halved(outline, points, edges, segment, crowded)
+    raise MeshingError(
+        f"the outline's mesh did not settle in {ROUNDS} rounds ({len(points)} points, shortest "
+        f"boundary edge {_lengths(points, edges).min():.3g} mm)"
+    )
+
+
+def _first_edges(outline: Meridian) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    points, segment = [], []
+    for i, s in enumerate(outline.segments):
+        n = 1 if s.centre is None else max(2, ceil(abs(s.sweep) / CHORD_ANGLE))
+        points.append(s.at(np.arange(n) / n))
+        segment += [i] * n
+    stacked = np.concatenate(points)
+    start = np.arange(len(stacked))
+    return stacked, np.column_stack([start, np.roll(start, -1)]), np.array(segment)
+
+
+def _lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+
+
+def _encroached(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Mask of edges with a vertex inside their diametral circle; the ends lie on the circle."""
+    nearest, _ = cKDTree(points).query(points[edges].mean(axis=1))
+    return nearest < _lengths(points, edges) / 2 * (1 - TOUCH)
+
+
+def _halved(
+    outline: Meridian,
+    points: np.ndarray,
+    edges: np.ndarray,
+    segment: np.ndarray,
+    mask: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    old, mine = edges[mask], segment[mask]
+    new = len(points) + np.arange(len(old))
+    points = np.concatenate([points, edge_middles(outline, points, old, mine)])
+    first, second = np.column_stack([old[:, 0], new]), np.column_stack([new, old[:, 1]])
+    return (
+        points,
+        np.concatenate([edges[~mask], first, second]),
+        np.concatenate([segment[~mask], mine, mine]),
+    )
+
+
+def _inside(points: np.ndarray, edges: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Triangles whose centroid lies within the outline (ray crossing), counter-clockwise."""
+    c = points[triangles].mean(axis=1)
+    a, b = points[edges[:, 0]], points[edges[:, 1]]
+    straddles = (a[:, 1] > c[:, 1, None]) != (b[:, 1] > c[:, 1, None])
+    rise = np.where(a[:, 1] == b[:, 1], 1.0, b[:, 1] - a[:, 1])
+    at = a[:, 0] + (c[:, 1, None] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
+    kept = triangles[(straddles & (at > c[:, 0, None])).sum(axis=1) % 2 == 1]
+    flipped = signed_areas(points, kept) < 0
+    kept[flipped] = kept[flipped][:, ::-1]
+    return kept
+
+
+def _improvements(
+    points: np.ndarray, edges: np.ndarray, triangles: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
+    corner = points[triangles]
+    sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
+    area = signed_areas(points, triangles)
+    radius = sides.prod(axis=1) / (4 * np.maximum(area, 1e-300))
+    bad = radius > sides.min(axis=1) / (2 * sin(SMALLEST_ANGLE))
+    if not bad.any():
+        return np.empty((0, 2)), np.zeros(len(edges), bool)
+    order = np.argsort(-radius[bad])
+    centre = _circumcentres(corner[bad])[order]
+    reach = radius[bad][order]
+    apart = np.linalg.norm(centre[:, None] - points[edges].mean(axis=1), axis=2)
+    enters = apart < _lengths(points, edges) / 2 * (1 - TOUCH)
+    free = ~enters.any(axis=1)
+    return _independent(centre[free], reach[free]), enters.any(axis=0)
+
+
+def _circumcentres(corner: np.ndarray) -> np.ndarray:
+    u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
+    return corner[:, 0] + off / twice[:, None]
+
+
+def _independent(centre: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Centres, largest circle first, none within reach of one taken before."""
+    taken: list[int] = []
+    for i in range(len(centre)):
+        if not taken or (np.linalg.norm(centre[taken] - centre[i], axis=1) > reach[i]).all():
+            taken.append(i)
+    return centre[taken]
+
+
+def _checked(
+    outline: Meridian,
+    points: np.ndarray,
+    triangles: np.ndarray,
+    edges: np.ndarray,
+    segment: np.ndarray,
+) -> MeridianMesh:
+    """Refuse a mesh that does not fill its polygon."""
+    a, b = points[edges[:, 0]], points[edges[:, 1]]
+    polygon = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)
+    meshed = float(signed_areas(points, triangles).sum())
+    if not abs(meshed - polygon) < 1e-9 * polygon:  # rounding of sums of a few thousand areas
+        raise MeshingError(f"triangles cover {meshed:.9g} mm² of an outline of {polygon:.9g} mm²")
+    return MeridianMesh(outline, points, triangles, edges, segment)
