@@ -1,0 +1,191 @@
+"""The four-term backlash sum, its standard deviation, and the torque-angle line that it implies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, hypot, isfinite, pi, radians
+
+import numpy as np
+
+from geometry.design import Design
+from pipeline.bearing_play import (
+    BearingPlayDomainError,
+    involute_clearance,
+    small_displacement_clearance,
+)
+from pipeline.play_spread import play_spread
+
+ARCSEC_PER_RAD = 180 * 3600 / pi
+MM_PER_UM = 1e-3
+
+
+class StiffnessValueError(ValueError):
+    """A stiffness that is not a positive number; `name`, `value` [N·m/rad]."""
+
+    def __init__(self, name: str, value: float) -> None:
+        self.name, self.value = name, value
+        super().__init__(f"{name} = {value:g} N·m/rad: must be above 0 and finite")
+
+
+@dataclass(frozen=True)
+class Backlash:
+    """The sum and what it may be off by; arcsec.
+
+    Attributes
+    ----------
+    shaft_arcsec, flexspline_arcsec : wind-up between −T_L and +T_L, 2T_L/K.
+    flank_clearance_arcsec, bearing_play_arcsec : the two parts of the gap.
+    total_arcsec : their sum.
+    std_arcsec : one standard deviation of the total, from `[uncertainty]` alone.
+    std_by_source_arcsec : its independent parts, by the source of doubt.
+    play_beyond_limit : probability that the play lies beyond the involute model's end, where
+        `std_arcsec` cannot answer for it; 0 for the small-displacement model.
+    model_form_arcsec : total with the other bearing-play model, less this total; None where the
+        other model has no answer.
+    """
+
+    shaft_arcsec: float
+    flexspline_arcsec: float
+    flank_clearance_arcsec: float
+    bearing_play_arcsec: float
+    total_arcsec: float
+    std_arcsec: float
+    std_by_source_arcsec: Mapping[str, float]
+    play_beyond_limit: float
+    model_form_arcsec: float | None
+
+
+def windup(torque_Nm: float, stiffness_Nm_per_rad: float) -> float:
+    """Wind-up between −T and +T of one spring, 2T/K [rad].
+
+    Parameters: T [N·m], K [N·m/rad], both positive. Source: article, section 1.1.
+
+    Examples
+    --------
+    Article, table 2: 0.5 N·m on 1.8e4 N·m/rad, "11.5″":
+
+    >>> round(windup(0.5, 1.8e4) * ARCSEC_PER_RAD, 2)
+    11.46
+    """
+    return 2 * torque_Nm / stiffness_Nm_per_rad
+
+
+def gap_angle(normal_clearance: float, module: float, teeth: int, pressure_angle: float) -> float:
+    """Output angle that a normal flank clearance leaves free, 2j/(m z1 cos α) [rad].
+
+    Parameters: j [mm], m [mm], z1, α [rad]. Source: article, section 1.2.
+
+    Examples
+    --------
+    Article, table 3: 3 µm at module 0.2, 200 teeth, 20°, "32.9″":
+
+    >>> round(gap_angle(0.003, 0.2, 200, radians(20)) * ARCSEC_PER_RAD, 2)
+    32.93
+    """
+    return 2 * normal_clearance / (module * teeth * cos(pressure_angle))
+
+
+def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Backlash:
+    """The four terms for a design whose flexspline and shaft have the given stiffness [N·m/rad].
+
+    Δ_bl = 2T_L/K_e + 2T_L/K_b + 2(j_bn0 + j′)/(m z1 cos α). Young's modulus is one for both parts'
+    doubt: its standard deviation acts on both compliances alike. The three sources are independent.
+
+    Raises
+    ------
+    StiffnessValueError : a stiffness that is not positive and finite.
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    _check_stiffness(K_b_Nm_per_rad, K_e_Nm_per_rad)
+    torque, doubt = design.load.torque_Nm, design.uncertainty
+    shaft = windup(torque, K_e_Nm_per_rad)
+    flexspline = windup(torque, K_b_Nm_per_rad)
+    flank = _gap(design, design.gear.flank_clearance_um * MM_PER_UM)
+    play = _gap(design, play_clearance(design))
+    total = shaft + flexspline + flank + play
+    play_std, beyond = play_spread(design.gear, design.bearing, doubt.radial_clearance_um)
+    std = {
+        "youngs_modulus": (shaft + flexspline) * doubt.youngs_modulus_pct / 100,
+        "flank_clearance": _gap(design, doubt.flank_clearance_um * MM_PER_UM),
+        "radial_clearance": _gap(design, play_std),
+    }
+    other = _other_play_clearance(design)
+    return Backlash(
+        shaft_arcsec=shaft * ARCSEC_PER_RAD,
+        flexspline_arcsec=flexspline * ARCSEC_PER_RAD,
+        flank_clearance_arcsec=flank * ARCSEC_PER_RAD,
+        bearing_play_arcsec=play * ARCSEC_PER_RAD,
+        total_arcsec=total * ARCSEC_PER_RAD,
+        std_arcsec=hypot(*std.values()) * ARCSEC_PER_RAD,
+        std_by_source_arcsec={k: v * ARCSEC_PER_RAD for k, v in std.items()},
+        play_beyond_limit=beyond,
+        model_form_arcsec=None if other is None else (_gap(design, other) - play) * ARCSEC_PER_RAD,
+    )
+
+
+def play_clearance(design: Design, model: str | None = None) -> float:
+    """Normal clearance j′ [mm] of the design's bearing play, by its model or by the one named.
+
+    Raises
+    ------
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    play = design.bearing.radial_clearance_um * MM_PER_UM
+    alpha = radians(design.gear.pressure_angle_deg)
+    if (model or design.bearing.bearing_play_model) == "small_displacement":
+        return small_displacement_clearance(play, alpha)
+    return involute_clearance(play, design.gear.centre_distance_mm, alpha)
+
+
+def gap_rad(design: Design) -> float:
+    """The whole angular gap at the output, 2(j_bn0 + j′)/(m z1 cos α) [rad].
+
+    Raises
+    ------
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    return _gap(design, design.gear.flank_clearance_um * MM_PER_UM + play_clearance(design))
+
+
+def angle_rad(
+    design: Design,
+    torque_Nm: float | np.ndarray,
+    K_b_Nm_per_rad: float,
+    K_e_Nm_per_rad: float,
+) -> np.ndarray:
+    """The torque-angle line θ = T(1/K_e + 1/K_b) + sign(T)·gap/2 [rad], same shape as torque [N·m].
+
+    Its ends at ±T_L are the four-term sum apart; at T = 0 the output may lie anywhere in the gap,
+    and the middle is returned.
+
+    Raises
+    ------
+    StiffnessValueError : a stiffness that is not positive and finite.
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    _check_stiffness(K_b_Nm_per_rad, K_e_Nm_per_rad)
+    torque = np.asarray(torque_Nm, float)
+    compliance = 1 / K_e_Nm_per_rad + 1 / K_b_Nm_per_rad
+    return torque * compliance + np.sign(torque) * gap_rad(design) / 2
+
+
+def _gap(design: Design, normal_clearance: float) -> float:
+    g = design.gear
+    return gap_angle(
+        normal_clearance, g.module_mm, g.teeth_flexspline, radians(g.pressure_angle_deg)
+    )
+
+
+def _other_play_clearance(design: Design) -> float | None:
+    involute = design.bearing.bearing_play_model == "involute"
+    try:
+        return play_clearance(design, "small_displacement" if involute else "involute")
+    except BearingPlayDomainError:
+        return None
+
+
+def _check_stiffness(K_b: float, K_e: float) -> None:
+    for name, value in (("K_b", K_b), ("K_e", K_e)):
+        if not (isfinite(value) and value > 0):
+            raise StiffnessValueError(name, value)
