@@ -109,7 +109,7 @@ class ShaftSegment(_Frozen):
     """One cylinder of the shaft; the first is the flange on the flexspline."""
 
     length_mm: Length = Field(description="mm, along the axis")
-    outer_diameter_mm: Length = Field(description="mm")
+    outer_diameter_mm: Length = Field(description="mm, outside")
     inner_diameter_mm: LengthOrZero = Field(default=0.0, description="mm, of the bore; 0: solid")
 
 

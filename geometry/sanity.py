@@ -1,0 +1,126 @@
+"""Physical sanity of a design: what can be built but is unusual is said with its numbers.
+
+Nothing here refuses a design. The ranges are rules of thumb, wide enough for long cups and flat
+hats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from geometry.check_flexspline import corner_wall
+from geometry.design import Cup, Design
+
+ROOT_TOLERANCE = 0.15
+"""Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""
+DEDENDUM = 1.25
+"""Of the standard basic rack (ISO 53), in modules."""
+WALL_RATIO = (0.005, 0.025)
+"""Usual wall / inner diameter."""
+LENGTH_RATIO = (0.2, 1.4)
+"""Usual length / inner diameter."""
+
+
+def warnings(design: Design) -> tuple[str, ...]:
+    """One line for everything unusual, each with its numbers; empty for a usual design."""
+    rules = (
+        _root_radius,
+        _proportions,
+        _bending,
+        _corner,
+        _wave_generator_room,
+        _bolts,
+        _play_edge,
+    )
+    return tuple(line for rule in rules for line in rule(design))
+
+
+def ring_bending_stress_MPa(design: Design) -> float:
+    """Stress of the toothed ring bent to the wave generator's ellipse [MPa].
+
+    σ = E/(1 − ν²)·(t/2)·3w0/R², a thin ring under w0 cos 2φ (ring theory), with t the ring's
+    thickness, R its middle radius and w0 = m(z2 − z1)/2.
+    """
+    f, material = design.flexspline, design.material.flexspline
+    middle = f.inner_radius + f.ring_thickness_mm / 2
+    plane = material.youngs_modulus_GPa * 1e3 / (1 - material.poissons_ratio**2)
+    return plane * f.ring_thickness_mm / 2 * 3 * design.gear.centre_distance_mm / middle**2
+
+
+def _root_radius(design: Design) -> Iterator[str]:
+    gear, ring = design.gear, design.flexspline.ring_radius
+    root = gear.module_mm * (gear.teeth_flexspline / 2 - DEDENDUM)
+    apart, allowed = abs(root - ring), ROOT_TOLERANCE * gear.module_mm
+    if apart > allowed:
+        yield (
+            f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm, but the ring's outer radius "
+            f"is {ring:.4g} mm: {apart:.3g} mm apart, more than {ROOT_TOLERANCE} module = "
+            f"{allowed:.3g} mm"
+        )
+
+
+def _proportions(design: Design) -> Iterator[str]:
+    f = design.flexspline
+    for name, value, (low, high) in (
+        ("wall_thickness_mm", f.wall_thickness_mm, WALL_RATIO),
+        ("length_mm", f.length_mm, LENGTH_RATIO),
+    ):
+        ratio = value / f.inner_diameter_mm
+        if not low <= ratio <= high:
+            yield (
+                f"flexspline.{name} / inner_diameter_mm = {value:g} / {f.inner_diameter_mm:g} = "
+                f"{ratio:.3g}, usually {low:g} to {high:g}"
+            )
+
+
+def _bending(design: Design) -> Iterator[str]:
+    limit = design.material.flexspline.fatigue_limit_MPa
+    stress = ring_bending_stress_MPa(design)
+    if limit is not None and stress > limit:
+        yield (
+            f"bending the ring to the wave generator takes about {stress:.0f} MPa, above "
+            f"material.flexspline.fatigue_limit_MPa = {limit:g}"
+        )
+
+
+def _corner(design: Design) -> Iterator[str]:
+    f = design.flexspline
+    wall, usual = corner_wall(f), min(f.wall_thickness_mm, f.diaphragm_thickness_mm)
+    if wall < 0.5 * usual:
+        yield (
+            f"between inner_fillet_mm = {f.inner_fillet_mm:g} and outer_fillet_mm = "
+            f"{f.outer_fillet_mm:g} only {wall:.3g} mm of wall is left, below half of {usual:g} mm"
+        )
+
+
+def _wave_generator_room(design: Design) -> Iterator[str]:
+    f = design.flexspline
+    if isinstance(f, Cup):
+        key, value = "boss_thickness_mm", f.boss_thickness_mm
+        reaches = "the wave generator's place"
+    else:
+        key, value = "flange_thickness_mm", f.flange_thickness_mm
+        reaches = "the circular spline's place"
+    if value > f.ring_start:
+        yield (
+            f"flexspline.{key} = {value:g} reaches above the ring's lower edge z = "
+            f"{f.ring_start:g} mm, {reaches}"
+        )
+
+
+def _bolts(design: Design) -> Iterator[str]:
+    f, s = design.flexspline, design.shaft
+    for key in ("bolt_count", "bolt_circle_diameter_mm", "bolt_hole_diameter_mm"):
+        ours, theirs = getattr(f, key), getattr(s, key)
+        if f.bolt_count and s.bolt_count and ours != theirs:
+            yield f"flexspline.{key} = {ours:g}, but shaft.{key} = {theirs:g}: they bolt together"
+
+
+def _play_edge(design: Design) -> Iterator[str]:
+    c, s = design.bearing.radial_clearance_um, design.uncertainty.radial_clearance_um
+    limit = design.gear.bearing_play_limit_um
+    if design.bearing.bearing_play_model == "involute" and s and c + 2 * s > limit:
+        yield (
+            f"bearing.radial_clearance_um = {c:g} ± {s:g} comes within two deviations of c_max = "
+            f"{limit:.4g} µm at {design.gear.pressure_angle_deg:g}°, where the involute model ends"
+        )

@@ -1,0 +1,155 @@
+"""A commented design to start from; the comments are the schema's own descriptions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+from geometry.schema import Location, allowed, json_schema, node_at
+
+__all__ = ["json_schema", "template"]
+
+Table = dict[str, Any]
+
+OPTIONAL: frozenset[Location] = frozenset(
+    {("shaft", "keyway"), ("material", "shaft"), ("solver", "edge_length_mm")}
+)
+"""Written as comments: their absence means something."""
+
+_STEEL = {
+    "name": "34CrNiMo6",
+    "youngs_modulus_GPa": 206.0,
+    "poissons_ratio": 0.3,
+    "fatigue_limit_MPa": 500.0,
+}
+_CUP: Table = {
+    "kind": "cup",
+    "inner_diameter_mm": 38.4,
+    "wall_thickness_mm": 0.4,
+    "ring_thickness_mm": 0.55,
+    "length_mm": 30.0,
+    "ring_width_mm": 8.0,
+    "ring_offset_mm": 0.0,
+    "diaphragm_thickness_mm": 0.6,
+    "boss_diameter_mm": 18.0,
+    "boss_thickness_mm": 3.0,
+    "bore_diameter_mm": 8.0,
+    "inner_fillet_mm": 1.0,
+    "outer_fillet_mm": 1.0,
+    "bolt_count": 6,
+    "bolt_circle_diameter_mm": 13.0,
+    "bolt_hole_diameter_mm": 2.5,
+}
+_CUP_SHAFT: Table = {
+    "bolt_count": 6,
+    "bolt_circle_diameter_mm": 13.0,
+    "bolt_hole_diameter_mm": 2.5,
+    "fillet_mm": 0.5,
+    "grip_length_mm": 10.0,
+    "segment": [
+        {"length_mm": 4.0, "outer_diameter_mm": 20.0, "inner_diameter_mm": 6.0},
+        {"length_mm": 24.0, "outer_diameter_mm": 17.0, "inner_diameter_mm": 6.0},
+    ],
+    "keyway": {"width_mm": 5.0, "depth_mm": 3.0, "length_mm": 10.0},
+}
+_HAT: Table = {
+    "kind": "hat",
+    "inner_diameter_mm": 38.4,
+    "wall_thickness_mm": 0.4,
+    "ring_thickness_mm": 0.55,
+    "length_mm": 22.0,
+    "ring_width_mm": 8.0,
+    "ring_offset_mm": 0.0,
+    "diaphragm_thickness_mm": 0.4,
+    "flange_outer_diameter_mm": 68.0,
+    "flange_inner_diameter_mm": 54.0,
+    "flange_thickness_mm": 3.0,
+    "inner_fillet_mm": 1.0,
+    "outer_fillet_mm": 1.0,
+    "bolt_count": 12,
+    "bolt_circle_diameter_mm": 61.0,
+    "bolt_hole_diameter_mm": 3.2,
+}
+_HAT_SHAFT: Table = {
+    "bolt_count": 12,
+    "bolt_circle_diameter_mm": 61.0,
+    "bolt_hole_diameter_mm": 3.2,
+    "fillet_mm": 1.0,
+    "grip_length_mm": 10.0,
+    "segment": [
+        {"length_mm": 6.0, "outer_diameter_mm": 68.0, "inner_diameter_mm": 20.0},
+        {"length_mm": 18.0, "outer_diameter_mm": 32.0, "inner_diameter_mm": 20.0},
+    ],
+    "keyway": {"width_mm": 5.0, "depth_mm": 3.0, "length_mm": 10.0},
+}
+
+
+def template(kind: Literal["cup", "hat"] = "cup") -> str:
+    """Text of a design file that loads as it stands, every key with its meaning and unit."""
+    title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
+    lines = [title, *_lines((), _values(kind), kind, optional=False)]
+    return "\n".join(lines) + "\n"
+
+
+def _values(kind: str) -> Table:
+    return {
+        "name": f"my {kind}",
+        "flexspline": _CUP if kind == "cup" else _HAT,
+        "shaft": _CUP_SHAFT if kind == "cup" else _HAT_SHAFT,
+        "material": {"flexspline": _STEEL, "shaft": _STEEL},
+        "gear": {
+            "module_mm": 0.2,
+            "teeth_flexspline": 200,
+            "teeth_circular_spline": 202,
+            "pressure_angle_deg": 20.0,
+            "flank_clearance_um": 3.0,
+        },
+        "bearing": {"radial_clearance_um": 12.0, "bearing_play_model": "involute"},
+        "load": {"torque_Nm": 0.5},
+        "uncertainty": {
+            "youngs_modulus_pct": 2.0,
+            "flank_clearance_um": 1.0,
+            "radial_clearance_um": 2.5,
+        },
+        "solver": {
+            "model": "auto",
+            "load_case": "uniform",
+            "tolerance_pct": 0.5,
+            "edge_length_mm": 1.0,
+        },
+    }
+
+
+def _lines(location: Location, table: Table, kind: str, optional: bool) -> Iterator[str]:
+    """The table's own keys, then the tables below it, as TOML wants them."""
+    for key, value in table.items():
+        if not isinstance(value, dict | list):
+            off = "# " if optional or (*location, key) in OPTIONAL else ""
+            setting = f"{off}{key} = {_toml(value)}"
+            yield f"{setting:<36} # {_meaning((*location, key), kind)}"
+    for key, value in table.items():
+        below = (*location, key)
+        off = "# " if optional or below in OPTIONAL else ""
+        name = ".".join(str(part) for part in below)
+        if isinstance(value, dict):
+            if any(not isinstance(v, dict) for v in value.values()):  # [material] holds tables only
+                yield ""
+                yield f"{off + f'[{name}]':<36} # {_about(below, kind)}"
+            yield from _lines(below, value, kind, bool(off))
+        elif isinstance(value, list):
+            for i, item in enumerate(value):
+                yield f"{off + f'[[{name}]]':<36} # {_about((*below, i), kind)}"
+                yield from _lines((*below, i), item, kind, bool(off))
+
+
+def _about(location: Location, kind: str) -> str:
+    """First line of a table's description."""
+    return node_at(location, kind).get("description", "").partition("\n")[0]
+
+
+def _meaning(location: Location, kind: str) -> str:
+    return node_at(location, kind).get("description") or allowed(location, kind)
+
+
+def _toml(value: str | float) -> str:
+    return f'"{value}"' if isinstance(value, str) else str(value)
