@@ -18,11 +18,13 @@ from geometry.cad import build_solid, partition_faces
 from geometry.design import Design
 from geometry.errors import GeometryError
 from geometry.meridian import meridian
-from geometry.surfaces import Surface, part_surfaces
+from geometry.surfaces import HoleWall, Surface, part_surfaces
 
 if TYPE_CHECKING:
     import cadquery as cq
 
+SMOOTH = 0.02
+"""Faces whose normals differ by less than this angle [rad] join smoothly."""
 ON_SURFACE = 1e-6
 """A CAD face lies on a surface if all its vertices do, to this distance [mm]."""
 
@@ -41,6 +43,8 @@ class TaggedSurface:
     patch_areas : CAD area of each named patch [mm²].
     volume : CAD volume [mm³].
     sharp_edges : (p, 3) points along every sharp edge and every patch edge, for the stress rule.
+    critical_edges : (q, 3) those of them where the torsional stress is singular: patch edges and
+        inside corners, the rims of bolt holes left out (the boss carries them).
     sector_deg : angle of the sector about z.
     """
 
@@ -53,6 +57,7 @@ class TaggedSurface:
     patch_areas: dict[str, float]
     volume: float
     sharp_edges: np.ndarray
+    critical_edges: np.ndarray
     sector_deg: float
 
 
@@ -77,7 +82,7 @@ def tagged_surface(
     count = 0
     for face in solid.Faces():
         v, t = _triangles(face)
-        index = _surface_of(v, surfaces)
+        index = _surface_of(np.vstack([v, _inside_point(face)]), surfaces)
         face_surface[face.hashCode()] = index
         if surfaces[index].patch:
             areas[surfaces[index].patch] += face.Area()
@@ -91,6 +96,7 @@ def tagged_surface(
     faces, surface_of = faces[solid_faces], surface_of[solid_faces]
     _check_watertight(vertices, faces, part)
     cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg), chord_error)
+    sharp, critical = _sharp_edges(solid, face_surface, surfaces, edge_spacing)
     return TaggedSurface(
         vertices=vertices,
         triangles=faces,
@@ -100,7 +106,8 @@ def tagged_surface(
         cut_triangles=cut_t,
         patch_areas=dict(areas),
         volume=solid.Volume(),
-        sharp_edges=_sharp_edges(solid, face_surface, surfaces, edge_spacing),
+        sharp_edges=sharp,
+        critical_edges=critical,
         sector_deg=sector_deg,
     )
 
@@ -129,6 +136,22 @@ def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
     if face.wrapped.Orientation() == TopAbs_REVERSED:
         triangles = triangles[:, ::-1]
     return vertices, triangles
+
+
+def _inside_point(face: cq.Face) -> np.ndarray:
+    """A point (1, 3) inside the face, exactly on its surface, off its edges.
+
+    A flat disc is triangulated with all its vertices on the rim, which lies on the cylinder too.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.TopLoc import TopLoc_Location
+
+    found = BRep_Tool.Triangulation_s(face.wrapped, TopLoc_Location())
+    corners = [found.UVNode(i) for i in found.Triangle(1).Get()]
+    u, v = (sum(c.Coord()[k] for c in corners) / 3 for k in (0, 1))
+    p = BRepAdaptor_Surface(face.wrapped).Value(u, v)
+    return np.array([[p.X(), p.Y(), p.Z()]])
 
 
 def _surface_of(vertices: np.ndarray, surfaces: list[Surface]) -> int:
@@ -171,8 +194,8 @@ def _cuts(faces: list[cq.Face], chord_error: float) -> tuple[np.ndarray, np.ndar
 
 def _sharp_edges(
     solid: cq.Solid, face_surface: dict[int, int], surfaces: list[Surface], spacing: float
-) -> np.ndarray:
-    """Points along the edges where the outward normal turns or the patch changes.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points along the edges where the normal turns or the patch changes: all, and the critical ones.
 
     Edges on a plane of symmetry are not edges of the part.
     """
@@ -182,17 +205,31 @@ def _sharp_edges(
         for edge in face.Edges():
             edges[edge.hashCode()] = edge
             faces_at[edge.hashCode()].append(face)
-    points = [np.empty((0, 3))]
+    sharp, critical = [np.empty((0, 3))], [np.empty((0, 3))]
     for key, edge in edges.items():
-        if len(faces_at[key]) != 2 or edge.geomType() == "OTHER":
+        if len(faces_at[key]) != 2:
             continue
         a, b = (surfaces[face_surface[f.hashCode()]] for f in faces_at[key])
         if "symmetry" in a.patch or "symmetry" in b.patch:
             continue
-        middle = edge.positionAt(0.5)
-        normals = [f.normalAt(middle) for f in faces_at[key]]
-        if a.patch == b.patch and normals[0].dot(normals[1]) > 1 - 1e-4:
+        turn = _turn(edge, *faces_at[key])
+        if a.patch == b.patch and abs(turn) < SMOOTH:
             continue
         n = max(2, int(np.ceil(edge.Length() / spacing)) + 1)
-        points.append(np.array([edge.positionAt(t).toTuple() for t in np.linspace(0, 1, n)]))
-    return np.concatenate(points)
+        points = np.array([edge.positionAt(t).toTuple() for t in np.linspace(0, 1, n)])
+        sharp.append(points)
+        on_hole = isinstance(a, HoleWall) or isinstance(b, HoleWall)
+        if not on_hole and (a.patch != b.patch or turn < -SMOOTH):
+            critical.append(points)
+    return np.concatenate(sharp), np.concatenate(critical)
+
+
+def _turn(edge: cq.Edge, one: cq.Face, other: cq.Face) -> float:
+    """Sine-like measure of the corner at an edge's middle: 0 smooth, negative an inside corner."""
+    middle = edge.positionAt(0.5)
+    n, m = one.normalAt(middle), other.normalAt(middle)
+    across = n.cross(m).Length
+    # the direction from the edge into face `one`: on an outside corner it points away from m
+    inward = one.Center().sub(middle)
+    inward = inward.sub(n.multiply(inward.dot(n)))
+    return across if inward.dot(m) < 0 else -across
