@@ -1,0 +1,1 @@
+"""Solid models: quadratic tetrahedra of a part's sector, from mesher to stress."""

@@ -1,0 +1,177 @@
+"""Load cases of a solid model: what is held, what is driven, what is loaded, and the stiffness of it.
+
+All constraints are on cylindrical components (radial, tangential, axial) of nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from fea.solid.assembly import NodeFrames, stiffness_matrix
+from fea.solid.elements import facet_points
+from fea.solid.errors import SolveError
+from fea.solid.solver import Solution, solve
+from fea.types import NMM_PER_NM, Elastic, TetMesh
+from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+
+RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
+LOBE_HALF_WIDTH = pi / 6
+"""φ0: the mesh carries torque over ±30° about each end of the major axis (contract)."""
+BALANCE_LIMIT = 1e-6
+"""Energy and reaction give the same K to this; measured 1e-12 to 1e-10."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A solved case: displacement (n, 3) Cartesian mm, and K where the case defines one.
+
+    `K_energy` and `K_reaction` are for the whole part, N·m/rad; 0 where the case has none.
+    """
+
+    mesh: TetMesh
+    displacement: np.ndarray
+    K_energy: float
+    K_reaction: float
+    residual: float
+    dofs: int
+
+
+@dataclass(frozen=True)
+class Model:
+    """A mesh with its assembled stiffness matrix, shared by all load cases on it."""
+
+    mesh: TetMesh
+    material: Elastic
+    frames: NodeFrames
+    matrix: csr_matrix
+
+    @classmethod
+    def of(cls, mesh: TetMesh, material: Elastic) -> Model:
+        frames = NodeFrames.cylindrical(mesh.nodes)
+        return cls(mesh, material, frames, stiffness_matrix(mesh, material, frames))
+
+    @property
+    def copies(self) -> float:
+        return 360.0 / self.mesh.sector_deg
+
+
+class _Supports:
+    """Prescribed components; what is set later wins."""
+
+    def __init__(self, model: Model) -> None:
+        n = len(model.mesh.nodes)
+        self._mask = np.zeros((n, 3), bool)
+        self._value = np.zeros((n, 3))
+        self._model = model
+
+    def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
+        self._mask[nodes, component] = True
+        self._value[nodes, component] = value
+
+    def symmetry(self, antisymmetric: bool) -> None:
+        mesh = self._model.mesh
+        for patch in (SYMMETRY_START, SYMMETRY_END):
+            nodes = mesh.nodes_on(patch)
+            if antisymmetric:
+                self.set(nodes, RADIAL)
+                self.set(nodes, AXIAL)
+                # the axis lies in both planes: what is normal to one lies in the other
+                self.set(nodes[self._model.frames.radius[nodes] == 0], TANGENTIAL)
+            else:
+                self.set(nodes, TANGENTIAL)
+                axis = nodes[self._model.frames.radius[nodes] == 0]
+                if mesh.sector_deg != 180:
+                    self.set(axis, RADIAL)
+
+    def hold(self, patch: str) -> None:
+        nodes = self._model.mesh.nodes_on(patch)
+        for component in (RADIAL, TANGENTIAL, AXIAL):
+            self.set(nodes, component)
+
+    def solve(self, load: np.ndarray) -> Solution:
+        fixed = np.flatnonzero(self._mask.ravel())
+        return solve(self._model.matrix, load, fixed, self._value.ravel()[fixed])
+
+
+def torsion(model: Model, driven: str) -> Solved:
+    """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
+
+    Raises
+    ------
+    SolveError : residual, or energy and reaction disagree beyond BALANCE_LIMIT.
+    """
+    supports = _Supports(model)
+    supports.symmetry(antisymmetric=True)
+    nodes = model.mesh.nodes_on(driven)
+    for component in (RADIAL, AXIAL):
+        supports.set(nodes, component)
+    supports.set(nodes, TANGENTIAL, model.frames.radius[nodes])
+    supports.hold("mount")
+    solution = supports.solve(np.zeros(model.matrix.shape[0]))
+    twice_energy = solution.unknowns @ (model.matrix @ solution.unknowns)
+    torque = solution.reactions[3 * nodes + TANGENTIAL] @ model.frames.radius[nodes]
+    held = model.mesh.nodes_on("mount")
+    opposite = solution.reactions[3 * held + TANGENTIAL] @ model.frames.radius[held]
+    for other in (twice_energy, -opposite):
+        if abs(other / torque - 1) > BALANCE_LIMIT:
+            raise SolveError(
+                f"torques do not balance: driven {torque:.9g}, held {-opposite:.9g},"
+                f" from energy {twice_energy:.9g} N·mm"
+            )
+    scale = model.copies / NMM_PER_NM
+    return _solved(model, solution, twice_energy * scale, torque * scale)
+
+
+def lobes(model: Model, supported: bool) -> Solved:
+    """Torque entering at the two lobes; `supported`: the seat may not move radially.
+
+    The field is for a torque of 1 N·m on the whole part; K = T²/(2·strain energy).
+    """
+    supports = _Supports(model)
+    supports.symmetry(antisymmetric=True)
+    if supported:
+        supports.set(model.mesh.nodes_on("seat"), RADIAL)
+    supports.hold("mount")
+    load, torque = _lobe_load(model)
+    load *= NMM_PER_NM / (torque * model.copies)
+    solution = supports.solve(load)
+    twice_energy = (solution.unknowns @ load) * model.copies
+    stored = solution.unknowns @ (model.matrix @ solution.unknowns) * model.copies
+    scale = NMM_PER_NM**2 / NMM_PER_NM
+    return _solved(model, solution, scale / stored, scale / twice_energy)
+
+
+def _lobe_load(model: Model) -> tuple[np.ndarray, float]:
+    """Nodal forces (3n,) of a unit lobe traction [MPa] and their torque [N·mm] on the sector."""
+    facets = model.mesh.on("mesh")
+    rule = facet_points(model.mesh.nodes, facets, degree=8)
+    phi = np.arctan2(rule.points[..., 1], rule.points[..., 0])
+    off = np.minimum(np.abs(phi), pi - np.abs(phi))  # from the nearer end of the major axis
+    traction = np.where(off < LOBE_HALF_WIDTH, np.cos(pi * off / (2 * LOBE_HALF_WIDTH)) ** 2, 0.0)
+    load = np.zeros(model.matrix.shape[0])
+    forces = np.einsum("kq,qi->ki", traction * rule.weights, rule.values)
+    np.add.at(load, 3 * facets + TANGENTIAL, forces)
+    radius = np.hypot(rule.points[..., 0], rule.points[..., 1])
+    return load, float((traction * radius * rule.weights).sum())
+
+
+def ellipse(model: Model, w0_mm: float) -> Solved:
+    """`mount` held, `seat` given the radial displacement w0·cos 2φ, its other components free."""
+    supports = _Supports(model)
+    supports.symmetry(antisymmetric=False)
+    nodes = model.mesh.nodes_on("seat")
+    phi = np.arctan2(model.mesh.nodes[nodes, 1], model.mesh.nodes[nodes, 0])
+    supports.set(nodes, RADIAL, w0_mm * np.cos(2 * phi))
+    supports.hold("mount")
+    return _solved(model, supports.solve(np.zeros(model.matrix.shape[0])), 0.0, 0.0)
+
+
+def _solved(model: Model, solution: Solution, K_energy: float, K_reaction: float) -> Solved:
+    u = model.frames.to_cartesian(solution.unknowns.reshape(-1, 3))
+    return Solved(
+        model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count
+    )

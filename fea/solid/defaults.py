@@ -1,0 +1,38 @@
+"""Mesh settings for a part, from its own dimensions. Measured choices: docs/decisions.md."""
+
+from __future__ import annotations
+
+from fea.solid.mesh import MeshSpec
+from fea.solid.sizing import Grading
+from geometry.design import Design
+
+CHORD_PER_ENVELOPE = 1.5
+"""Chord error of the tessellation over the mesher's envelope: the nodes are put back onto the exact
+surfaces afterwards, so neither limits accuracy, and coarse chords mesh faster."""
+
+
+def first_spec(design: Design, part: str) -> MeshSpec:
+    """The first, coarse mesh; `solver.edge_length_mm` fixes its largest edge."""
+    if part == "shaft":
+        segments = design.shaft.segment
+        wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
+        outer = max(s.outer_diameter_mm for s in segments) / 2
+        on_axis = any(s.inner_diameter_mm == 0 for s in segments)
+        far = min(0.45 * wall, design.shaft.length / 8, outer / 3)
+        near, envelope = 0.4 * far, far / 100
+    else:
+        f = design.flexspline
+        wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
+        on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
+        far = min(5 * wall, f.length_mm / 6, outer / 3)
+        near, envelope = min(wall, far / 2), wall / 20
+    if design.solver.edge_length_mm is not None:
+        far = design.solver.edge_length_mm
+        near = min(near, far)
+    return MeshSpec(
+        grading=Grading(near, far, growth=1.0),
+        envelope=envelope,
+        snap_limit=5 * envelope,
+        # half the outer radius: elements twice as long around the tube, fair ones at the bolts
+        unrolled_radius=0.0 if on_axis else outer / 2,
+    )

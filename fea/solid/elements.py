@@ -1,0 +1,133 @@
+"""Quadratic tetrahedra through scikit-fem: gradients, volumes, facet integrals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fea.types import TetMesh
+
+
+def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
+    """scikit-fem's MeshTet; corners (n, 3), tets (m, 4)."""
+    from skfem import MeshTet
+
+    return MeshTet(np.ascontiguousarray(corners.T), np.ascontiguousarray(tets.T), sort_t=False)
+
+
+def quadratic_mesh(nodes: np.ndarray, cells: np.ndarray) -> Any:
+    """scikit-fem's curved MeshTet2; its node order is TetMesh's (corners, then edges)."""
+    from skfem import MeshTet2
+
+    return MeshTet2(
+        np.ascontiguousarray(nodes.T), np.ascontiguousarray(cells[:, :4].T), sort_t=False
+    )
+
+
+@dataclass(frozen=True)
+class Gradients:
+    """Basis gradients (m, q, 10, 3) 1/mm and weights w·det J (m, q) mm³ at quadrature points."""
+
+    gradients: np.ndarray
+    weights: np.ndarray
+
+
+def gradients(nodes: np.ndarray, cells: np.ndarray, points: np.ndarray, weights: np.ndarray) -> Gradients:
+    """Gradients of the ten basis functions of curved elements at reference points (q, 3)."""
+    local = reference_gradients(points)  # (q, 10, 3)
+    jacobian = np.einsum("mix,qij->mqxj", nodes[cells], local)  # dx/dξ
+    inverse, det = _inverse3(jacobian)
+    # grad_x = J^-T grad_ξ
+    global_ = np.matmul(local[None], inverse)
+    return Gradients(global_, det * weights)
+
+
+def _inverse3(j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inverse and determinant of 3×3 matrices (..., 3, 3) by cofactors (faster than LAPACK here)."""
+    a, b, c = j[..., 0, :], j[..., 1, :], j[..., 2, :]
+    inverse = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
+    det = np.einsum("...i,...i->...", a, inverse[..., 0])
+    return inverse / det[..., None, None], det
+
+
+def reference_gradients(points: np.ndarray) -> np.ndarray:
+    """d φ_i / d ξ at reference points: (q, 10, 3); scikit-fem's ElementTetP2."""
+    from skfem import ElementTetP2
+
+    element = ElementTetP2()
+    return np.stack([element.lbasis(points.T, i)[1].T for i in range(10)], axis=1)
+
+
+def reference_values(points: np.ndarray) -> np.ndarray:
+    """φ_i at reference points: (q, 10)."""
+    from skfem import ElementTetP2
+
+    element = ElementTetP2()
+    return np.stack([element.lbasis(points.T, i)[0] for i in range(10)], axis=1)
+
+
+def tet_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Quadrature points (q, 3) and weights (q,) on the reference tetrahedron."""
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefTet
+
+    points, weights = get_quadrature(RefTet, degree)
+    return points.T, weights
+
+
+NODES = np.array(
+    [
+        [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1],
+        [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5], [0, 0.5, 0.5],
+    ]
+)  # fmt: skip
+"""Reference coordinates of the ten nodes."""
+
+
+def smallest_jacobian(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Smallest det J over nodes and the degree-4 quadrature points, per element (m,)."""
+    points = np.vstack([NODES, tet_rule(4)[0]])
+    return gradients(nodes, cells, points, np.ones(len(points))).weights.min(axis=1)
+
+
+def element_volumes(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Volumes of curved elements (m,) mm³."""
+    return gradients(nodes, cells, *tet_rule(4)).weights.sum(axis=1)
+
+
+@dataclass(frozen=True)
+class FacetPoints:
+    """Quadrature on six-node facets: points (k, q, 3) mm, values (q, 6), weights·area (k, q) mm²."""
+
+    points: np.ndarray
+    values: np.ndarray
+    weights: np.ndarray
+
+
+def facet_points(nodes: np.ndarray, facets: np.ndarray, degree: int = 4) -> FacetPoints:
+    """Quadrature points of curved facets."""
+    from skfem import ElementTriP2
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefTri
+
+    where, weights = get_quadrature(RefTri, degree)
+    element = ElementTriP2()
+    pairs = [element.lbasis(where, i) for i in range(6)]
+    values = np.stack([p[0] for p in pairs], axis=1)
+    local = np.stack([p[1].T for p in pairs], axis=1)  # (q, 6, 2)
+    x = nodes[facets]
+    tangents = np.einsum("kix,qij->kqjx", x, local)
+    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2)
+    return FacetPoints(np.einsum("qi,kix->kqx", values, x), values, area * weights)
+
+
+def facet_areas(nodes: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Areas (k,) mm² of six-node facets."""
+    return facet_points(nodes, facets).weights.sum(axis=1)
+
+
+def mesh_gradients(mesh: TetMesh, degree: int = 4) -> Gradients:
+    """Gradients at the quadrature points of a given degree (4 is exact for P2 on straight edges)."""
+    return gradients(mesh.nodes, mesh.cells, *tet_rule(degree))

@@ -1,0 +1,203 @@
+"""From a tagged CAD surface to a checked mesh of curved quadratic tetrahedra with named patches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.solid.errors import MeshQualityError
+from fea.solid.sizing import Grading, graded_background
+from fea.solid.snap import snap_to_surfaces
+from fea.solid.elements import element_volumes, facet_areas, linear_mesh, smallest_jacobian
+from fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
+from fea.solid.unroll import Cartesian, Space, Unrolled
+from fea.types import TetMesh
+from geometry.nearest import nearest_triangles
+from geometry.tagged import TaggedSurface
+
+AREA_TOLERANCE = 0.02
+"""A patch whose mesh area is farther than this from its CAD area is refused."""
+VOLUME_TOLERANCE = 0.01
+RETRIES = (1.0, 0.95, 0.9)
+FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+"""Outward faces of a positively oriented tetrahedron; face i is opposite corner i."""
+
+
+@dataclass(frozen=True)
+class MeshSpec:
+    """What to ask of the mesher; lengths in mm.
+
+    `unrolled_radius` 0 meshes in part space, otherwise see `fea.solid.unroll`.
+    """
+
+    grading: Grading
+    envelope: float
+    snap_limit: float
+    unrolled_radius: float = 0.0
+    stop_energy: float = 10.0
+    time_limit_s: float = 300.0
+
+
+def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
+    """Mesh a part's sector; the mesher is not deterministic, so a poor mesh is tried again, finer.
+
+    Raises
+    ------
+    MesherError : from the mesher.
+    MeshQualityError : a patch or the volume is not the CAD's, or an element is inverted.
+    """
+    for factor in RETRIES:
+        try:
+            return _mesh_once(surface, replace(spec, grading=spec.grading.scaled(factor)))
+        except MeshQualityError:
+            if factor == RETRIES[-1]:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
+    space: Space = (
+        Unrolled(spec.unrolled_radius, surface.sector_deg)
+        if spec.unrolled_radius
+        else Cartesian()
+    )
+    boundary = space.to(surface.vertices)
+    vertices = np.vstack([boundary, space.to(surface.cut_vertices)])
+    triangles = np.vstack([surface.triangles, surface.cut_triangles + len(boundary)])
+    settings = TetwildSettings(
+        spec.grading.far, spec.envelope, spec.stop_energy, spec.time_limit_s
+    )
+    box = vertices.min(axis=0), vertices.max(axis=0)
+    background = graded_background(space.to(surface.critical_edges), box, spec.grading)
+    points, tets = tetrahedralize(vertices, triangles, settings, background)
+    points, tets = _without_orphans(points, tets)
+    faces = boundary_faces(tets)
+    facet_surface = _tag(points, faces, boundary, surface, spec)
+    return _quadratic(points, tets, faces, facet_surface, surface, space, spec)
+
+
+def boundary_faces(tets: np.ndarray) -> np.ndarray:
+    """Faces (k, 3) that belong to one tetrahedron only, outward."""
+    faces = tets[:, FACES].reshape(-1, 3)
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return faces[first[count == 1]]
+
+
+def _without_orphans(points: np.ndarray, tets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    used, compact = np.unique(tets, return_inverse=True)
+    return points[used], compact.reshape(tets.shape)
+
+
+def _tag(
+    points: np.ndarray,
+    faces: np.ndarray,
+    boundary: np.ndarray,
+    surface: TaggedSurface,
+    spec: MeshSpec,
+) -> np.ndarray:
+    """Surface index of every boundary facet, in meshing space where both are planar."""
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    centres = corners.mean(axis=1)
+    triangle = np.full(len(faces), -1)
+    for reach in (spec.snap_limit, 5 * spec.snap_limit):  # the envelope is kept but for a few facets
+        lost = np.flatnonzero(triangle < 0)
+        if not len(lost):
+            break
+        triangle[lost], _ = nearest_triangles(
+            centres[lost], normals[lost], boundary, surface.triangles, reach
+        )
+    if (triangle < 0).any():
+        raise MeshQualityError(
+            f"{int((triangle < 0).sum())} boundary facets lie more than {reach:.3g} mm"
+            " off the CAD surface"
+        )
+    return surface.surface_of[triangle]
+
+
+def _quadratic(
+    points: np.ndarray,
+    tets: np.ndarray,
+    faces: np.ndarray,
+    facet_surface: np.ndarray,
+    surface: TaggedSurface,
+    space: Space,
+    spec: MeshSpec,
+) -> TetMesh:
+    """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
+    raw = space.back(points)
+    n = len(points)
+    corners = snap_to_surfaces(raw, faces, facet_surface, surface.surfaces, spec.snap_limit)
+    corners = _undo_inverted(raw, corners, tets)
+    edges, cells, facets = _with_middles(corners, tets, faces)
+    # a middle follows its corners in meshing space, then goes onto the surface itself
+    middles = space.back(space.to(corners)[edges].mean(axis=1))
+    nodes = snap_to_surfaces(
+        np.vstack([corners, middles]), facets, facet_surface, surface.surfaces, spec.snap_limit
+    )
+    nodes[:n] = corners
+    nodes = _straighten_inverted(nodes, cells, edges)
+    names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
+    facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
+    mesh = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
+    _check(mesh, surface)
+    return mesh
+
+
+def _undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np.ndarray:
+    """Take back the moves of nodes whose tetrahedra they flattened (under a tenth of the volume)."""
+    before = signed_volumes(raw, tets)
+    out = snapped.copy()
+    for _ in range(10):
+        bad = signed_volumes(out, tets) < 0.1 * before
+        if not bad.any():
+            return out
+        nodes = np.unique(tets[bad])
+        out[nodes] = raw[nodes]
+    raise MeshQualityError("boundary nodes cannot be put onto the CAD surface without inversion")
+
+
+def _with_middles(
+    corners: np.ndarray, tets: np.ndarray, faces: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Edges (e, 2), ten-node cells and six-node facets; middle node of edge i is len(corners) + i."""
+    mesh = linear_mesh(corners, tets)
+    edges = mesh.edges.T
+    n = len(corners)
+    cells = np.hstack([tets, mesh.t2e.T + n])
+    key = edges[:, 0].astype(np.int64) * n + edges[:, 1]
+    order = np.argsort(key)
+    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2).astype(np.int64)
+    found = order[np.searchsorted(key[order], sides[:, :, 0] * n + sides[:, :, 1])]
+    return edges, cells, np.hstack([faces, found + n])
+
+
+def _straighten_inverted(nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Straighten the edges of elements that curving them has inverted."""
+    n = len(nodes) - len(edges)
+    out = nodes.copy()
+    for _ in range(5):
+        bad = smallest_jacobian(out, cells) <= 0
+        if not bad.any():
+            return out
+        middles = np.unique(cells[bad, 4:])
+        out[middles] = out[edges[middles - n]].mean(axis=1)
+    raise MeshQualityError(f"{int(bad.sum())} elements are inverted even with straight edges")
+
+
+def _check(mesh: TetMesh, surface: TaggedSurface) -> None:
+    """Compare volume and patch areas with the CAD's."""
+    volume = element_volumes(mesh.nodes, mesh.cells).sum()
+    if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
+        raise MeshQualityError(
+            f"the mesh holds {volume:.6g} mm³, the CAD solid {surface.volume:.6g} mm³"
+        )
+    for patch, wanted in surface.patch_areas.items():
+        area = facet_areas(mesh.nodes, mesh.on(patch)).sum()
+        if abs(area / wanted - 1) > AREA_TOLERANCE:
+            raise MeshQualityError(
+                f"patch '{patch}' has {area:.6g} mm² in the mesh, {wanted:.6g} mm² in the CAD,"
+                f" allowed difference {AREA_TOLERANCE:.0%}"
+            )

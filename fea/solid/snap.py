@@ -1,0 +1,77 @@
+"""Put boundary nodes back onto the exact CAD surfaces, from which the mesher strays by its envelope."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.surfaces import Plane, Surface
+
+ROUNDS = 40
+"""Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the
+distance, so 40 reach rounding."""
+AGREED = 1e-8
+
+
+def snap_to_surfaces(
+    points: np.ndarray,
+    faces: np.ndarray,
+    facet_surface: np.ndarray,
+    surfaces: Sequence[Surface],
+    limit: float,
+) -> np.ndarray:
+    """Nodes of `faces` moved onto their surfaces; a copy of `points` (n, 3) mm.
+
+    A node where several surfaces meet goes to their common point. If that is farther than `limit`
+    [mm] (a smooth joint, which the mesher need not follow), it goes to the nearest surface alone,
+    but never leaves a plane of symmetry.
+    """
+    out = points.copy()
+    for owners, nodes in _nodes_by_surfaces(faces, facet_surface).items():
+        group = [surfaces[i] for i in owners]
+        moved, settled = _common_point(points[nodes], group)
+        fine = settled & (np.linalg.norm(moved - points[nodes], axis=1) <= limit)
+        out[nodes[fine]] = moved[fine]
+        if len(group) > 1 and not fine.all():
+            out[nodes[~fine]] = _nearest_alone(points[nodes[~fine]], group, limit)
+    return out
+
+
+def _nodes_by_surfaces(
+    faces: np.ndarray, facet_surface: np.ndarray
+) -> dict[tuple[int, ...], np.ndarray]:
+    pairs = np.unique(
+        np.column_stack([faces.ravel(), np.repeat(facet_surface, faces.shape[1])]), axis=0
+    )
+    nodes, start = np.unique(pairs[:, 0], return_index=True)
+    groups: dict[tuple[int, ...], list[int]] = defaultdict(list)
+    for node, owners in zip(nodes, np.split(pairs[:, 1], start[1:]), strict=True):
+        groups[tuple(owners.tolist())].append(int(node))
+    return {k: np.array(v) for k, v in groups.items()}
+
+
+def _common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
+    """Alternating projections, and whether each point settled on all surfaces."""
+    moved = points
+    for _ in range(ROUNDS if len(group) > 1 else 1):
+        before = moved
+        for surface in group:
+            moved = surface.project(moved)
+        if np.abs(moved - before).max() < AGREED:
+            break
+    off = np.max([np.abs(s.project(moved) - moved).max(axis=1) for s in group], axis=0)
+    return moved, off < 1e-6
+
+
+def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -> np.ndarray:
+    planes = [s for s in group if isinstance(s, Plane) and "symmetry" in s.patch]
+    others = [s for s in group if s not in planes]
+    if not others:
+        return points
+    targets = [_common_point(points, [s, *planes])[0] for s in others]
+    away = np.array([np.linalg.norm(t - points, axis=1) for t in targets])
+    best = away.argmin(axis=0)
+    chosen = np.array(targets)[best, np.arange(len(points))]
+    return np.where((away.min(axis=0) <= limit)[:, None], chosen, points)

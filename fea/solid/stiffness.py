@@ -1,0 +1,115 @@
+"""Torsional stiffness by a sequence of finer meshes, with bounds from two estimates of the error.
+
+Prescribed rotation makes every K_h an upper bound of K (minimum potential energy). The recovery
+estimate e_h of K_h's error is too small where stresses are singular, by a factor c that hardly
+changes from mesh to mesh; two meshes give c: K_1 − c·e_1 = K_2 − c·e_2. So K ≈ K_h − c·e_h, and the
+bounds are K_h − 2c·e_h and K_h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.solid.cases import Model, Solved, torsion
+from fea.solid.errors import SolidError
+from fea.solid.mesh import MeshSpec
+from fea.solid.sizing import Grading
+from fea.solid.stress import energy_error
+from fea.types import Elastic, MeshLevel, Stiffness, TetMesh
+
+Mesher = Callable[[MeshSpec], TetMesh]
+MAX_LEVELS = 5
+EFFICIENCY = (1.0, 3.0)
+"""Range of c believed: measured 1.5 to 2.1 on cups, hats and shafts against two-sided bounds."""
+NEAR_STEP, FAR_STEP = 0.35, 0.85
+"""From mesh to mesh: the singular edges hold most of the error, so they are refined fastest."""
+
+
+@dataclass(frozen=True)
+class SolidStiffness:
+    """The stiffness, and the finest mesh's solution for 1 rad."""
+
+    stiffness: Stiffness
+    model: Model
+    solved: Solved
+
+
+def solid_stiffness(
+    mesher: Mesher,
+    first: MeshSpec,
+    material: Elastic,
+    driven: str,
+    tolerance: float,
+    symmetry: str,
+    progress: Callable[[str], None],
+) -> SolidStiffness:
+    """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
+
+    Raises
+    ------
+    SolidError : from mesher and solver, or the tolerance is not met after MAX_LEVELS meshes.
+    """
+    spec = first
+    levels: list[MeshLevel] = []
+    errors: list[float] = []
+    for _ in range(MAX_LEVELS):
+        mesh = mesher(spec)
+        model = Model.of(mesh, material)
+        solved = torsion(model, driven)
+        estimate = energy_error(mesh, solved.displacement, material).relative * solved.K_energy
+        levels.append(_level(spec, solved))
+        errors.append(estimate)
+        if len(levels) > 1:
+            c = efficiency(levels, errors)
+            half = c * estimate / solved.K_energy
+            progress(f"{len(mesh.cells)} elements, K ± {half:.2%}")
+            if half <= tolerance:
+                return SolidStiffness(_stiffness(levels, estimate, c, symmetry), model, solved)
+        spec = _finer(spec)
+    raise SolidError(
+        f"K is known to ± {half:.2%} after {MAX_LEVELS} meshes, wanted {tolerance:.2%}:"
+        " raise solver.tolerance_pct"
+    )
+
+
+def _finer(spec: MeshSpec) -> MeshSpec:
+    g = spec.grading
+    return replace(spec, grading=Grading(g.near * NEAR_STEP, g.far * FAR_STEP, g.growth))
+
+
+def efficiency(levels: list[MeshLevel], errors: list[float]) -> float:
+    """c of the last two meshes, kept within EFFICIENCY."""
+    gained = levels[-2].K_Nm_per_rad - levels[-1].K_Nm_per_rad
+    estimated = errors[-2] - errors[-1]
+    c = gained / estimated if estimated > 0 else EFFICIENCY[1]
+    return float(np.clip(c, *EFFICIENCY))
+
+
+def _level(spec: MeshSpec, solved: Solved) -> MeshLevel:
+    return MeshLevel(
+        edge_length_mm=spec.grading.far,
+        elements=len(solved.mesh.cells),
+        dofs=solved.dofs,
+        K_Nm_per_rad=solved.K_energy,
+        K_reaction_Nm_per_rad=solved.K_reaction,
+        residual=solved.residual,
+    )
+
+
+def _stiffness(levels: list[MeshLevel], error: float, c: float, symmetry: str) -> Stiffness:
+    upper = levels[-1].K_Nm_per_rad
+    return Stiffness(
+        K_Nm_per_rad=upper - c * error,
+        lower_Nm_per_rad=upper - 2 * c * error,
+        upper_Nm_per_rad=upper,
+        model="solid",
+        symmetry=symmetry,
+        method=(
+            f"recovery estimate of the energy error (Zienkiewicz-Zhu) on {len(levels)} meshes,"
+            f" scaled by {c:.2f} from the last two; K = finest mesh less the scaled estimate"
+        ),
+        levels=tuple(levels),
+    )

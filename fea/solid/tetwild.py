@@ -1,0 +1,129 @@
+"""fTetWild in a child process: it is C++ that can hang or crash, so it gets a time limit.
+
+Run as ``python -m fea.solid.tetwild IN.npz OUT.npz`` it is the child.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fea.solid.errors import MesherError
+
+
+@dataclass(frozen=True)
+class TetwildSettings:
+    """fTetWild's parameters; lengths in mm, absolute.
+
+    `stop_energy` is the AMIPS energy at which optimisation ends (a regular tetrahedron has 3).
+    """
+
+    edge_length: float
+    envelope: float
+    stop_energy: float = 10.0
+    time_limit_s: float = 300.0
+
+
+@dataclass(frozen=True)
+class Background:
+    """A sizing field: wanted edge lengths (n,) mm at the corners (n, 3) of tets (m, 4)."""
+
+    points: np.ndarray
+    tets: np.ndarray
+    edge_length: np.ndarray
+
+
+def tetrahedralize(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    settings: TetwildSettings,
+    background: Background | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Fill a closed triangle surface (internal faces allowed) with tetrahedra.
+
+    Parameters
+    ----------
+    vertices : (n, 3) mm; triangles : (m, 3) indices.
+
+    Returns
+    -------
+    points (k, 3) mm and tets (t, 4), positively oriented.
+
+    Raises
+    ------
+    MesherError : time limit passed, crash, or no elements.
+    """
+    with tempfile.TemporaryDirectory(prefix="flexspline-mesh-") as folder:
+        given, made = Path(folder) / "in.npz", Path(folder) / "out.npz"
+        values: dict[str, Any] = asdict(settings)
+        if background is not None:
+            values |= {f"bg_{k}": v for k, v in vars(background).items()}
+        np.savez(given, vertices=vertices, triangles=triangles, **values)
+        command = [sys.executable, "-m", "fea.solid.tetwild", str(given), str(made)]
+        try:
+            done = subprocess.run(
+                command,
+                cwd=folder,  # fTetWild leaves files where it runs
+                env=os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
+                timeout=settings.time_limit_s,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise MesherError(
+                f"the mesher did not finish within {settings.time_limit_s:.0f} s"
+                f" at edge length {settings.edge_length:.3g} mm",
+                "try a larger solver.edge_length_mm, or remove very small fillets and steps",
+            ) from None
+        if done.returncode != 0 or not made.exists():
+            last = done.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
+            raise MesherError(
+                f"the mesher ended with status {done.returncode} ({last[0][:200]})",
+                "try a slightly different solver.edge_length_mm",
+            )
+        with np.load(made) as out:
+            points, tets = out["points"], out["tets"].astype(np.int64)
+    if len(tets) == 0:
+        raise MesherError("the mesher returned no elements", "check the part's proportions")
+    flipped = signed_volumes(points, tets) < 0
+    tets[flipped] = tets[flipped][:, [0, 2, 1, 3]]
+    return points, tets
+
+
+def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
+    """Volumes (t,) mm³, positive when corner 3 lies on the side of (1-0)×(2-0)."""
+    a, b, c = (points[tets[:, i]] - points[tets[:, 0]] for i in (1, 2, 3))
+    return np.einsum("ij,ij->i", np.cross(a, b), c) / 6
+
+
+def _child(given: str, made: str) -> None:
+    import pytetwild
+
+    with np.load(given) as g:
+        vertices, triangles = g["vertices"], g["triangles"].astype(np.int32)
+        sized = "bg_points" in g
+        diagonal = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        points, tets = pytetwild.tetrahedralize(
+            vertices,
+            triangles,
+            edge_length_abs=float(g["edge_length"]),
+            epsilon=float(g["envelope"]) / diagonal,
+            stop_energy=float(g["stop_energy"]),
+            simplify=False,
+            bg_vertices=g["bg_points"] if sized else None,
+            bg_tets=g["bg_tets"].astype(np.int32) if sized else None,
+            bg_values=g["bg_edge_length"] if sized else None,
+        )
+    np.savez(made, points=points, tets=tets)
+
+
+if __name__ == "__main__":
+    _child(sys.argv[1], sys.argv[2])

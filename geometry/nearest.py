@@ -1,0 +1,47 @@
+"""Which CAD surface a mesh facet lies on: the nearest tagged triangle whose normal agrees."""
+
+from __future__ import annotations
+
+import numpy as np
+
+PAIRS_AT_ONCE = 4_000_000
+"""Bounds the memory of the box test."""
+
+
+def nearest_triangles(
+    points: np.ndarray,
+    normals: np.ndarray,
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    reach: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Index (k,) of the triangle nearest to each point, and its distance (k,) [mm].
+
+    `points` and unit `normals` are (k, 3), `vertices` (n, 3), `triangles` (m, 3). A triangle that
+    faces more than 60° away counts only where there is no other. Points with no triangle within
+    `reach` [mm] get index -1 and an infinite distance.
+    """
+    import trimesh
+
+    corners = vertices[triangles]
+    low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
+    step = max(1, PAIRS_AT_ONCE // len(triangles))
+    found = np.full(len(points), -1)
+    away = np.full(len(points), np.inf)
+    for start in range(0, len(points), step):
+        p = points[start : start + step]
+        inside = np.ones((len(p), len(triangles)), bool)
+        for axis in range(3):
+            inside &= (p[:, axis, None] >= low[:, axis]) & (p[:, axis, None] <= high[:, axis])
+        i, t = np.nonzero(inside)
+        distance = np.linalg.norm(trimesh.triangles.closest_point(corners[t], p[i]) - p[i], axis=1)
+        agree = np.einsum("ij,ij->i", normals[start + i], facing[t])
+        # along shared edges distances are equal: the better normal decides
+        score = distance + 1e-6 * (1 - agree) + np.where(agree > 0.5, 0.0, 1e3 * reach)
+        order = np.lexsort((score, i))
+        rows, first = np.unique(i[order], return_index=True)
+        found[start + rows] = t[order][first]
+        away[start + rows] = distance[order][first]
+    return found, np.where(away <= reach, away, np.inf)
