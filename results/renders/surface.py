@@ -86,24 +86,30 @@ def element_edges(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
     """The element edges of the facets as lines through their middle nodes."""
     edges = np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
     _, first = np.unique(edges[:, 1], return_index=True)  # a middle node belongs to one edge
-    return _lines(points, edges[first])
+    return lines(points, edges[first])
 
 
 def creases(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
     """Element edges at which the surface turns by more than CREASE_DEG, or ends."""
+    return lines(points, crease_edges(points, facets))
+
+
+def crease_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Nodes (k, 3) of those edges: corner, middle, corner."""
     edges = np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
     a, b, c = (points[facets[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     owner = np.tile(np.arange(len(facets)), 3)
     order = np.argsort(edges[:, 1], kind="stable")
-    middle, begin, count = np.unique(edges[order, 1], return_index=True, return_counts=True)
+    _, begin, count = np.unique(edges[order, 1], return_index=True, return_counts=True)
     one, other = owner[order[begin]], owner[order[np.minimum(begin + 1, len(order) - 1)]]
     turned = np.einsum("ij,ij->i", normal[one], normal[other]) < np.cos(np.radians(CREASE_DEG))
-    return _lines(points, edges[order[begin[(count != 2) | turned]]])
+    return edges[order[begin[(count != 2) | turned]]]
 
 
-def _lines(points: np.ndarray, edges: np.ndarray) -> pv.PolyData:
+def lines(points: np.ndarray, edges: np.ndarray) -> pv.PolyData:
+    """Polylines through the nodes (k, 3) of edges."""
     import pyvista as pv
 
     used, local = np.unique(edges, return_inverse=True)

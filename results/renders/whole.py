@@ -121,7 +121,9 @@ def _mirrored_pairs(sector_deg: float) -> int:
         return 0
     pairs = 180 / sector_deg
     if abs(pairs - round(pairs)) > 1e-6:
-        raise ValueError(f"a sector of {sector_deg:g}° does not fit a whole number of times in 180°")
+        raise ValueError(
+            f"a sector of {sector_deg:g}° does not fit a whole number of times in 180°"
+        )
     return round(pairs)
 
 

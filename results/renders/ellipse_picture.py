@@ -1,0 +1,72 @@
+"""The flexspline on the wave generator: the ellipse, magnified, with its stress."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from fea.types import SolidField
+from results.renders.scene import Shot, View, shoot
+from results.renders.sheet import INSET, MAIN, Sheet, write_sheet
+from results.renders.shown import (
+    Seen,
+    goes_beyond,
+    magnification,
+    peak_mark,
+    stress_bar,
+    stress_layers,
+    stress_note,
+    wires,
+)
+from results.renders.surface import crease_edges, lines, skin
+from results.renders.whole import whole_part
+from results.style import ACCENT
+
+_VIEW = View(-68.0, 34.0)
+"""Along the minor axis more than the major, so that the ellipse's long side lies across."""
+_ALONG_AXIS = View(-90.0, 89.999)
+_STILL = 1e-2
+"""Edges that move by less than this part of the size coincide with the deformed ones: not drawn."""
+
+
+def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) -> None:
+    """Write the PNG: deformed shape over the undeformed edges, also seen along the axis.
+
+    Parameters
+    ----------
+    field : the solution with the seat displaced radially by w0 cos 2φ.
+    amplitude_mm : w0.
+    """
+    whole = whole_part(field.mesh, field.displacement, field.mises, "symmetric")
+    shown = skin(whole)
+    size = float(np.ptp(whole.nodes[:, 0]))
+    factor = magnification(float(np.linalg.norm(field.displacement, axis=1).max()), size)
+    shift = factor * whole.displacement
+    main = Seen(whole.nodes + shift, shown, _VIEW)
+    inset = Seen(whole.nodes + shift, shown, _ALONG_AXIS)
+    edges = crease_edges(whole.nodes, shown.facets)
+    moving = np.linalg.norm(shift, axis=1)[edges].max(axis=1) > _STILL * size
+    before = lines(whole.nodes, edges[moving])
+    beyond = goes_beyond(field.peak, shown, whole.mises)
+
+    def shot(seen: Seen, frame: tuple[int, int], line: float) -> Shot:
+        layers = stress_layers(seen.points, whole.mises, shown, field.peak, line)
+        return shoot([*layers, wires(before, ACCENT, 1.3 * line)], seen.view, frame)
+
+    write_sheet(
+        path,
+        shot(main, MAIN, 2.4),
+        shot(inset, INSET, 2.0),
+        Sheet(
+            title="Flexspline on the wave generator: stress",
+            subtitle=f"von Mises stress; seat displaced radially by w0 cos 2φ, w0 = {amplitude_mm:.3g} mm",
+            inset_title="along the axis",
+            note=(
+                f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
+                + stress_note(beyond)
+            ),
+            bar=stress_bar(field.peak, beyond),
+            mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),
+        ),
+    )
