@@ -119,3 +119,5 @@ class Stiffness:
     method: str
     """Plain words: how the bounds were obtained."""
     levels: tuple[MeshLevel, ...]
+    error_scale: float = 1.0
+    """True error over estimated error, as found from the meshes; 1 where the bounds are theorems."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from fea.solid.cases import Solved
 from fea.solid.errors import SolveError
 from fea.solid.stress import nodal_stress, von_mises
+from fea.solid.unfold import folded
 from fea.types import Elastic, SolidField, StressPeak, TetMesh
 
 LATTICE = 6
@@ -14,30 +16,38 @@ LATTICE = 6
 that the figure does not depend on where nodes happen to lie."""
 
 
+@dataclass(frozen=True)
+class SharpEdges:
+    """Points (k, 3) mm along the sharp edges and patch edges of a sector, and how far they reach.
+
+    Stresses nearer to them than `clearance_mm` are not counted. A larger sector is folded onto this.
+    """
+
+    points: np.ndarray
+    sector_deg: float
+    clearance_mm: float
+
+
 def stress_field(
-    solved: Solved,
+    mesh: TetMesh,
+    displacement: np.ndarray,
     material: Elastic,
     load_case: str,
-    scale: float,
-    sharp_edges: np.ndarray,
-    clearance_mm: float,
+    edges: SharpEdges,
 ) -> SolidField:
-    """Displacement and von Mises stress of a solved case times `scale`, with the counted peak.
-
-    Points nearer than `clearance_mm` to `sharp_edges` (k, 3) are not counted.
+    """von Mises stress of a displacement (n, 3) Cartesian mm, with the peak that counts.
 
     Raises
     ------
-    SolveError : no point is that far from every edge.
+    SolveError : no point is far enough from every edge.
     """
-    u = solved.displacement * scale
-    stress = nodal_stress(solved.mesh, u, material)
-    peak = _peak(solved.mesh, stress, sharp_edges, clearance_mm)
-    return SolidField(solved.mesh, load_case, u, von_mises(stress), peak)
+    stress = nodal_stress(mesh, displacement, material)
+    peak = _peak(mesh, stress, edges)
+    return SolidField(mesh, load_case, displacement, von_mises(stress), peak)
 
 
 def _peak(
-    mesh: TetMesh, stress: np.ndarray, sharp_edges: np.ndarray, clearance_mm: float
+    mesh: TetMesh, stress: np.ndarray, edges: SharpEdges
 ) -> StressPeak:
     from scipy.spatial import cKDTree
 
@@ -47,14 +57,14 @@ def _peak(
     on_surface = np.einsum("qi,kiab->kqab", values, stress[outer]).reshape(-1, 3, 3)
     points = np.vstack([mesh.nodes, surface])
     mises = np.concatenate([von_mises(stress), von_mises(on_surface)])
-    away, _ = cKDTree(sharp_edges).query(points)
-    counted = np.flatnonzero(away >= clearance_mm)
+    away, _ = cKDTree(edges.points).query(folded(points, edges.sector_deg))
+    counted = np.flatnonzero(away >= edges.clearance_mm)
     if not len(counted):
-        raise SolveError(f"no point of the part is {clearance_mm:g} mm away from its edges")
+        raise SolveError(f"no point of the part is {edges.clearance_mm:g} mm away from its edges")
     top = counted[mises[counted].argmax()]
     x, y, z = (float(v) for v in points[top])
     excluded = (
-        f"points nearer than {clearance_mm:g} mm to a sharp edge or a patch edge,"
+        f"points nearer than {edges.clearance_mm:g} mm to a sharp edge or a patch edge,"
         " where the linear solution is singular"
     )
     return StressPeak(float(mises[top]), (x, y, z), excluded)

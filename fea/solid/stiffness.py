@@ -112,4 +112,5 @@ def _stiffness(levels: list[MeshLevel], error: float, c: float, symmetry: str) -
             f" scaled by {c:.2f} from the last two; K = finest mesh less the scaled estimate"
         ),
         levels=tuple(levels),
+        error_scale=c,
     )

@@ -12,6 +12,15 @@ MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 MIRRORED_FACET = [0, 2, 1, 5, 4, 3]
 
 
+def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
+    """Points (n, 3) reflected back into the sector from 0 to `sector_deg`."""
+    step = np.radians(sector_deg)
+    phi = np.arctan2(points[:, 1], points[:, 0]) % (2 * step)
+    phi = np.minimum(phi, 2 * step - phi)
+    r = np.hypot(points[:, 0], points[:, 1])
+    return np.column_stack([r * np.cos(phi), r * np.sin(phi), points[:, 2]])
+
+
 def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
     """The sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane."""
     times = round(sector_deg / mesh.sector_deg)

@@ -1,0 +1,192 @@
+"""One part of a gear: CAD, mesh and torsional stiffness, each answered from the cache when it can."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.mesh import MeshSpec, mesh_surface
+from fea.solid.stiffness import solid_stiffness
+from fea.types import Elastic, Stiffness, TetMesh
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.meridian import meridian
+from geometry.symmetry import Sector, sector_of
+from geometry.tagged import TaggedSurface, tagged_surface
+from pipeline.cache import Cache
+from pipeline.progress import Progress
+
+DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
+EDGE_POINTS_PER_WALL = 8
+"""Sharp edges are sampled this finely for the stress rule: its distance is one wall thickness."""
+
+
+@dataclass(frozen=True)
+class MeshedPart:
+    """A mesh and the sharp edges (k, 3) [mm] of the same sector, for the stress rule."""
+
+    mesh: TetMesh
+    sharp_edges: np.ndarray
+
+
+@dataclass(frozen=True)
+class TwistedPart:
+    """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad."""
+
+    stiffness: Stiffness
+    meshed: MeshedPart
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """What every stage needs: the design, the cache, and somebody to tell."""
+
+    design: Design
+    cache: Cache
+    progress: Progress
+
+    def part(self, name: str) -> PartModel:
+        return PartModel(self, name)
+
+
+@dataclass(frozen=True)
+class PartModel:
+    """The flexspline or the shaft of a design."""
+
+    shop: Workshop
+    name: str
+
+    @property
+    def material(self) -> Elastic:
+        design = self.shop.design
+        own = design.shaft_material if self.name == "shaft" else design.material.flexspline
+        return Elastic.of(own)
+
+    @property
+    def sector(self) -> Sector:
+        return sector_of(self.shop.design, self.name, "torsion")
+
+    @property
+    def is_revolved(self) -> bool:
+        """Whether the part is a body of revolution."""
+        design = self.shop.design
+        if self.name == "shaft":
+            return not design.shaft.bolt_count and design.shaft.keyway is None
+        return not design.flexspline.bolt_count
+
+    @property
+    def geometry_key(self) -> Mapping[str, Any]:
+        """What the part's shape depends on, and nothing else."""
+        design = self.shop.design
+        own = design.shaft if self.name == "shaft" else design.flexspline
+        return {"part": self.name, "shape": own.model_dump(mode="json")}
+
+    @property
+    def torsion_key(self) -> Mapping[str, Any]:
+        """What the solid solution depends on."""
+        design = self.shop.design
+        return {
+            **self.geometry_key,
+            "material": asdict(self.material),
+            "tolerance_pct": design.solver.tolerance_pct,
+            "spec": asdict(first_spec(design, self.name)),
+        }
+
+    @cached_property
+    def _surface(self) -> TaggedSurface:
+        spec = first_spec(self.shop.design, self.name)
+        spacing = self.shop.design.flexspline.wall_thickness_mm / EDGE_POINTS_PER_WALL
+        with self.shop.progress.stage(f"CAD of the {self.name}"):
+            return tagged_surface(
+                self.shop.design,
+                self.name,
+                self.sector.degrees,
+                CHORD_PER_ENVELOPE * spec.envelope,
+                spacing,
+            )
+
+    def meshed(self, spec: MeshSpec) -> MeshedPart:
+        """The sector's mesh to a specification."""
+
+        def make() -> MeshedPart:
+            surface = self._surface
+            with self.shop.progress.stage(f"mesh of the {self.name}"):
+                return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
+
+        inputs = {**self.geometry_key, "spec": asdict(spec)}
+        return self.shop.cache.get("mesh", inputs, make)[0]
+
+    def stiffness(self) -> Stiffness:
+        """K by the design's `solver.model`: axisymmetric where the part allows it, else solid."""
+        if self.axisymmetric:
+            return self._axisymmetric_stiffness()
+        return self.twisted().stiffness
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether K comes from the axisymmetric model.
+
+        Raises
+        ------
+        DesignError : that model is asked for and the part has holes or a keyway.
+        """
+        wanted = self.shop.design.solver.model
+        if wanted == "axisymmetric" and not self.is_revolved:
+            raise DesignError(
+                "solver.model",
+                wanted,
+                f"the {self.name} has bolt holes or a keyway and is no body of revolution;"
+                ' "solid" or "auto" works',
+            )
+        return self.is_revolved and wanted != "solid"
+
+    def _axisymmetric_stiffness(self) -> Stiffness:
+        design = self.shop.design
+        tolerance = design.solver.tolerance_pct / 100
+
+        def make() -> Stiffness:
+            with self.shop.progress.stage(f"axisymmetric bounds of the {self.name}"):
+                outline = meridian(design, self.name)
+                return torsional_stiffness(outline, self.material, DRIVEN[self.name], tolerance)
+
+        inputs = {
+            **self.geometry_key,
+            "material": asdict(self.material),
+            "tolerance_pct": design.solver.tolerance_pct,
+        }
+        return self.shop.cache.get("axisymmetric", inputs, make)[0]
+
+    def twisted(self) -> TwistedPart:
+        """The solid model turned by 1 rad, refined until the tolerance is met."""
+        design = self.shop.design
+
+        def make() -> TwistedPart:
+            with self.shop.progress.stage(f"torsion of the {self.name}"):
+                edges: dict[MeshSpec, np.ndarray] = {}
+
+                def mesher(spec: MeshSpec) -> TetMesh:
+                    made = self.meshed(spec)
+                    edges[spec] = made.sharp_edges
+                    return made.mesh
+
+                found = solid_stiffness(
+                    mesher,
+                    first_spec(design, self.name),
+                    self.material,
+                    DRIVEN[self.name],
+                    design.solver.tolerance_pct / 100,
+                    self.sector.label,
+                    lambda text: self.shop.progress.note(f"  {self.name}: {text}"),
+                )
+            meshed = MeshedPart(found.solved.mesh, next(iter(edges.values())))
+            return TwistedPart(found.stiffness, meshed, found.solved.displacement)
+
+        return self.shop.cache.get("torsion", self.torsion_key, make)[0]
+
