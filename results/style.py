@@ -1,4 +1,4 @@
-"""How every picture looks: fonts, sizes and colours that survive grey print and colour blindness."""
+"""How every picture looks: fonts, sizes, colours that survive grey print and colour blindness."""
 
 from __future__ import annotations
 

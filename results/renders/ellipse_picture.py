@@ -60,7 +60,8 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
         shot(inset, INSET, 2.0),
         Sheet(
             title="Flexspline on the wave generator: stress",
-            subtitle=f"von Mises stress; seat displaced radially by w0 cos 2φ, w0 = {amplitude_mm:.3g} mm",
+            subtitle="von Mises stress; seat displaced radially by w0 cos 2φ, "
+            f"w0 = {amplitude_mm:.3g} mm",
             inset_title="along the axis",
             note=(
                 f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"

@@ -1,4 +1,4 @@
-"""Off-screen pictures of surfaces: parallel projection, so that world points map to pixels exactly."""
+"""Off-screen pictures of surfaces, in parallel projection: part points map to pixels exactly."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def stress_layers(
 
 
 def stress_bar(peak: StressPeak, beyond: bool) -> Bar:
-    """The colour scale; it ends at the reported peak because sharp corners have no finite stress."""
+    """The colour scale; it ends at the reported peak: sharp corners have no finite stress."""
     stress = quantity("torque_peak_mises_MPa")
     top = stress.text(peak.mises_MPa)
     return Bar(f"von Mises\nin {stress.unit}", peak.mises_MPa, top, beyond)

@@ -1,4 +1,4 @@
-"""Surfaces and edges of quadratic tetrahedra for drawing: six-node facets as four triangles each."""
+"""Surfaces and edges of quadratic tetrahedra for drawing: a six-node facet is four triangles."""
 
 from __future__ import annotations
 

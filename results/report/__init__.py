@@ -1,0 +1,1 @@
+"""The PDF report: its content as data, and the typst template that sets it."""

@@ -1,0 +1,135 @@
+"""The model's torque-angle line: two elastic branches, the gap between them, its uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pipeline.backlash import Backlash
+from results.quantities import quantity
+from results.style import ACCENT, INK, MUTED, PALETTE, RC, new_figure, save_png
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_REACH = 1.25
+"""How far beyond ±T_L the line is drawn."""
+
+
+def write_torque_angle(
+    path: Path,
+    angle_arcsec: Callable[[np.ndarray], np.ndarray],
+    torque_Nm: float,
+    backlash: Backlash,
+) -> None:
+    """Write the chart of θ(T) with T_L, the gap and the lost motion.
+
+    Parameters
+    ----------
+    angle_arcsec : the model's line, torque [N·m] of shape (n,) to angle [arcsec].
+    torque_Nm : T_L.
+    backlash : its terms set the gap and the 1σ band; its total is the lost motion drawn.
+    """
+    import matplotlib as mpl
+
+    with mpl.rc_context(RC):
+        figure = new_figure(8.0, 4.6)
+        axes = figure.add_axes((0.095, 0.125, 0.875, 0.775))
+        torque = np.linspace(1e-6, _REACH, 60) * torque_Nm
+        for sign in (-1.0, 1.0):
+            t = sign * torque
+            angle = angle_arcsec(t)
+            spread = band(t, torque_Nm, backlash)
+            axes.fill_between(
+                t, angle - spread, angle + spread, color=PALETTE[1], alpha=0.22, lw=0,
+                label="1σ" if sign > 0 else None,
+            )  # fmt: skip
+            axes.plot(
+                t, angle, color=PALETTE[0], lw=2.4, solid_capstyle="round",
+                label="model" if sign > 0 else None,
+            )  # fmt: skip
+        _annotate(axes, angle_arcsec, torque_Nm, backlash)
+        save_png(figure, path)
+
+
+def band(torque: np.ndarray, load_Nm: float, backlash: Backlash) -> np.ndarray:
+    """1σ of the angle [arcsec] at each torque: half the backlash's, the elastic part as |T|/T_L."""
+    parts = backlash.std_by_source_arcsec
+    elastic = parts.get("youngs_modulus", 0.0)
+    gap = np.sqrt(sum(v**2 for name, v in parts.items() if name != "youngs_modulus"))
+    return np.hypot(gap, elastic * np.abs(torque) / load_Nm) / 2
+
+
+def _annotate(
+    axes: Axes,
+    angle_arcsec: Callable[[np.ndarray], np.ndarray],
+    load: float,
+    backlash: Backlash,
+) -> None:
+    low, high = angle_arcsec(np.array([-load, load]))
+    gap = backlash.flank_clearance_arcsec + backlash.bearing_play_arcsec
+    arcsec = quantity("backlash_arcsec.total")
+    end = np.array([_REACH * load])
+    highest = float(angle_arcsec(end)[0])
+    top = max(1.35 * highest, 1.08 * (highest + float(band(end, load, backlash)[0])))
+    axes.plot([0, 0], [-gap / 2, gap / 2], color=PALETTE[0], lw=2.4, ls=(0, (1.5, 1.5)))
+    axes.axhline(0, color=MUTED, lw=0.8)
+    for t, angle, words, side in ((-load, low, "−T", 1), (load, high, "+T", -1)):
+        axes.plot([t, t], [-top, angle], color=MUTED, lw=0.8, ls=(0, (4, 3)))
+        axes.plot([t], [angle], "o", ms=7, mfc="white", mec=PALETTE[0], mew=2)
+        axes.annotate(
+            f"{words}$_{{\\mathrm{{L}}}}$ = {'−' if t < 0 else ''}{load:.4g} N·m",
+            (t, -top),
+            (5 * side, 6),
+            textcoords="offset points",
+            ha="left" if side > 0 else "right",
+            color=INK,
+        )
+    axes.plot([-load, 1.16 * load], [low, low], color=MUTED, lw=0.8, ls=(0, (4, 3)))
+    axes.plot([load, 1.16 * load], [high, high], color=MUTED, lw=0.8, ls=(0, (4, 3)))
+    _span(axes, 1.13 * load, low, high)
+    axes.annotate(
+        f"lost motion\n{arcsec.text(backlash.total_arcsec)} ± {arcsec.text(backlash.std_arcsec)}"
+        f" {arcsec.unit}",
+        (0.97 * load, 0),
+        (0, -24),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        weight="bold",
+    )
+    _span(axes, -0.09 * load, -gap / 2, gap / 2)
+    axes.annotate(
+        f"gap {arcsec.text(gap)} {arcsec.unit}",
+        (-0.09 * load, 0),
+        (-8, 14),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+    )
+    axes.set_xlim(-_REACH * load, _REACH * load)
+    axes.set_ylim(-top, top)
+    axes.grid(True)
+    axes.set_xlabel("output torque T in N·m")
+    axes.set_ylabel(f"output angle θ in {arcsec.unit}")
+    axes.set_title("Angle at the output, wave generator locked")
+    axes.legend(loc="upper left", ncols=2)
+
+
+def _span(axes: Axes, x: float, low: float, high: float) -> None:
+    axes.annotate(
+        "",
+        (x, high),
+        (x, low),
+        arrowprops={
+            "arrowstyle": "<|-|>",
+            "color": ACCENT,
+            "lw": 1.5,
+            "shrinkA": 0,
+            "shrinkB": 0,
+            "mutation_scale": 13,
+        },
+    )
