@@ -44,9 +44,9 @@ class MeridianMesh:
         """Arcs of one kind circumscribed by tangents; those of the other stay cut by chords.
 
         Chords of a convex arc (material within its circle) lie in the material, tangents outside;
-        of a concave arc the other way round. An edge of opening angle a between two nodes at distance
-        R/cos(a/2) from the centre clears the circle; where one of them is the arc's end, which
-        stays at R, the other needs R/cos a.
+        of a concave arc the other way round. An edge of opening angle a between two nodes at
+        distance R/cos(a/2) from the centre clears the circle; where one of them is the arc's end,
+        which stays at R, the other needs R/cos a.
         """
         moved = self.points.copy()
         for index, s in enumerate(self.outline.segments):

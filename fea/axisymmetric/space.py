@@ -74,7 +74,7 @@ def quadratic(mesh: MeridianMesh, points: np.ndarray, degree: int) -> Space:
         dofs=dofs,
         count=basis.N,
         places=basis.doflocs.T,
-        values=np.stack([basis.basis[i][0].value[0] for i in range(6)]),
+        values=np.stack([np.asarray(basis.basis[i][0])[0] for i in range(6)]),
         gradients=np.stack([basis.basis[i][0].grad for i in range(6)]).transpose(2, 0, 3, 1),
         weights=basis.dx,
         rz=np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1),

@@ -13,7 +13,7 @@ from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from geometry.meridian import Meridian
 
 BULK = 0.75
-"""Share of the gap whose triangles are refined each round (Dörfler, SIAM J. Numer. Anal. 33, 1996)."""
+"""Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""
 MOST_TRIANGLES = 400_000
 
 

@@ -21,6 +21,8 @@ CHORD_ANGLE = pi / 12
 SMALLEST_ANGLE = pi / 180 * 24
 """Ruppert's proof covers 20.7°; in practice up to 30° ends, and P2 gains little beyond 24°."""
 ROUNDS = 300
+MOST_POINTS = 20_000
+"""An outline without crossings needs a few hundred; one that crosses itself has no end."""
 TOUCH = 1e-7
 """Relative slack of circle tests: cocircular points of right-angled outlines count as outside."""
 
@@ -35,6 +37,8 @@ def triangulate(outline: Meridian) -> MeridianMesh:
     """
     points, edges, segment = _first_edges(outline)
     for _ in range(ROUNDS):
+        if len(points) > MOST_POINTS:
+            break
         crowded = _encroached(points, edges)
         if not crowded.any():
             triangles = _inside(points, edges, Delaunay(points).simplices)
@@ -44,8 +48,8 @@ def triangulate(outline: Meridian) -> MeridianMesh:
             points = np.concatenate([points, added])
         points, edges, segment = _halved(outline, points, edges, segment, crowded)
     raise MeshingError(
-        f"the outline's mesh did not settle in {ROUNDS} rounds ({len(points)} points, shortest "
-        f"boundary edge {_lengths(points, edges).min():.3g} mm)"
+        f"the outline cannot be meshed: still uneven with {len(points)} points, shortest boundary "
+        f"edge {_lengths(points, edges).min():.3g} mm; it crosses itself or has needle corners"
     )
 
 

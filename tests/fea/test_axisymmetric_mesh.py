@@ -1,0 +1,111 @@
+"""The meridian mesher: it fills the outline, keeps angles, and encloses arcs from both sides."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
+from fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
+from geometry.design import Cup
+from geometry.meridian import Meridian, Segment, cup_meridian
+
+CUP = Cup(
+    kind="cup",
+    inner_diameter_mm=38.4,
+    wall_thickness_mm=0.4,
+    ring_thickness_mm=0.55,
+    length_mm=30.0,
+    ring_width_mm=8.0,
+    diaphragm_thickness_mm=0.6,
+    boss_diameter_mm=18.0,
+    boss_thickness_mm=3.0,
+    bore_diameter_mm=8.0,
+    inner_fillet_mm=1.0,
+    outer_fillet_mm=1.0,
+)
+
+
+def angles(points, triangles):
+    corner = points[triangles]
+    u = np.roll(corner, -1, axis=1) - corner
+    v = np.roll(corner, 1, axis=1) - corner
+    cross = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    return np.arctan2(cross, (u * v).sum(axis=2))
+
+
+def volume(points, triangles):
+    return float(
+        2 * pi * (signed_areas(points, triangles) * points[triangles, 0].mean(axis=1)).sum()
+    )
+
+
+def randomly_refined(mesh, seed: int):
+    return refined(mesh, np.random.default_rng(seed).random(len(mesh.triangles)) < 0.4)
+
+
+def test_first_mesh_has_the_promised_angles():
+    mesh = triangulate(cup_meridian(CUP))
+    # nodes are put on arcs as edges are halved, before triangles are judged: no slack but rounding
+    assert angles(mesh.points, mesh.triangles).min() > SMALLEST_ANGLE - 1e-9
+
+
+def test_refinement_stays_conforming_and_well_shaped():
+    mesh = triangulate(cup_meridian(CUP))
+    for seed in range(4):
+        mesh = randomly_refined(mesh, seed)
+        pairs = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+        edges, uses = np.unique(pairs, axis=0, return_counts=True)
+        assert uses.max() == 2
+        rim = np.sort(mesh.edges, axis=1)
+        assert {tuple(e) for e in edges[uses == 1]} == {tuple(e) for e in rim}
+    # longest-edge bisection keeps at least half the first mesh's smallest angle (Rosenberg and
+    # Stenger 1975); arcs move nodes a little, hence the 5 %
+    assert angles(mesh.points, mesh.triangles).min() > 0.95 * SMALLEST_ANGLE / 2
+
+
+def test_volumes_enclose_pappus_and_close_up():
+    outline = cup_meridian(CUP)
+    mesh = triangulate(outline)
+    apart = []
+    for _ in range(3):
+        more = volume(mesh.containing(), mesh.triangles)
+        less = volume(mesh.contained(), mesh.triangles)
+        assert less < outline.volume < more
+        apart.append(more - less)
+        mesh = refined(mesh, np.ones(len(mesh.triangles), bool))
+    # chord areas fall with the square of the chord; 3.5 for 4 leaves room for the arcs' end edges
+    assert apart[0] / apart[2] > 3.5**2
+
+
+def test_every_arc_clears_the_polygons():
+    mesh = randomly_refined(randomly_refined(triangulate(cup_meridian(CUP)), 1), 2)
+    for index, s in enumerate(mesh.outline.segments):
+        if s.centre is None:
+            continue
+        edges = mesh.edges[mesh.edge_segment == index]
+        pushed = mesh.containing() if s.sweep > 0 else mesh.contained()
+        a, b = pushed[edges[:, 0]] - s.centre, pushed[edges[:, 1]] - s.centre
+        t = np.linspace(0, 1, 21)[:, None, None]
+        distance = np.linalg.norm(a + t * (b - a), axis=2)
+        assert distance.min() > s.radius * (1 - 1e-12)
+
+
+def test_nodes_of_fillets_lie_on_the_arc_after_refinement():
+    mesh = randomly_refined(triangulate(cup_meridian(CUP)), 3)
+    for index, s in enumerate(mesh.outline.segments):
+        nodes = np.unique(mesh.edges[mesh.edge_segment == index])
+        off = np.linalg.norm(mesh.points[nodes] - s.nearest(mesh.points[nodes]), axis=1)
+        assert off.max() < 1e-12 * 30  # rounding at the part's size
+
+
+def test_crossing_outline_is_refused():
+    corners = [(1.0, 0.0), (3.0, 2.0), (3.0, 0.0), (1.0, 2.0)]
+    bow = Meridian(
+        tuple(Segment(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True))
+    )
+    with pytest.raises(MeshingError):
+        triangulate(bow)
