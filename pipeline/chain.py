@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from fea.solid.cases import Model, ellipse
@@ -35,22 +35,30 @@ CACHED_TYPES: tuple[type, ...] = (
 
 @dataclass(frozen=True)
 class Stiffnesses:
-    """K_b of each load case that was solved, and K_e."""
+    """K_b of each load case that was solved, and K_e; None where nobody asked."""
 
-    K_b: Stiffness
-    K_e: Stiffness
+    K_b: Stiffness | None
+    K_e: Stiffness | None
     K_b_lobes: Stiffness | None = None
     K_b_lobes_unsupported: Stiffness | None = None
 
     def in_sum(self, design: Design) -> Stiffness:
         """The K_b that enters the backlash sum, by `solver.load_case`."""
-        if design.solver.load_case == "lobes" and self.K_b_lobes is not None:
-            return self.K_b_lobes
-        return self.K_b
+        chosen = self.K_b_lobes if design.solver.load_case == "lobes" else self.K_b
+        if chosen is None:
+            raise LookupError("K_b was not solved")
+        return chosen
+
+    @property
+    def shaft(self) -> Stiffness:
+        """K_e, which somebody must have asked for."""
+        if self.K_e is None:
+            raise LookupError("K_e was not solved")
+        return self.K_e
 
     def series_Nm_per_rad(self, design: Design) -> float:
         """1/K = 1/K_e + 1/K_b."""
-        return 1 / (1 / self.K_e.K_Nm_per_rad + 1 / self.in_sum(design).K_Nm_per_rad)
+        return 1 / (1 / self.shaft.K_Nm_per_rad + 1 / self.in_sum(design).K_Nm_per_rad)
 
 
 @dataclass(frozen=True)
@@ -68,22 +76,22 @@ class RunResult:
     stage_seconds: Mapping[str, float]
 
 
-def stiffnesses(shop: Workshop) -> Stiffnesses:
-    """K_b and K_e, and the lobes' K_b where the design asks for it.
+def stiffnesses(shop: Workshop, flexspline: bool = True, shaft: bool = True) -> Stiffnesses:
+    """K_b and K_e, those that are asked for, and the lobes' K_b where the design sums with it.
 
     Raises
     ------
     DesignError, GeometryError, SolidError
     """
-    flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
-    _ = flexspline.axisymmetric, shaft.axisymmetric  # refuse before the long work
-    found = Stiffnesses(flexspline.stiffness(), shaft.stiffness())
-    if shop.design.solver.load_case == "lobes":
-        rim = rim_loads(shop, flexspline)
-        found = replace(
-            found, K_b_lobes=rim.K_b_lobes, K_b_lobes_unsupported=rim.K_b_lobes_unsupported
-        )
-    return found
+    rim_part, shaft_part = shop.part("flexspline"), shop.part("shaft")
+    for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
+        _ = wanted and part.axisymmetric  # refuse before the long work
+    K_b = rim_part.stiffness() if flexspline else None
+    K_e = shaft_part.stiffness() if shaft else None
+    if not flexspline or shop.design.solver.load_case == "uniform":
+        return Stiffnesses(K_b, K_e)
+    rim = rim_loads(shop, rim_part)
+    return Stiffnesses(K_b, K_e, rim.K_b_lobes, rim.K_b_lobes_unsupported)
 
 
 def run(shop: Workshop) -> RunResult:
@@ -109,7 +117,7 @@ def run(shop: Workshop) -> RunResult:
 
 def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
     """The four-term sum with the stiffnesses found."""
-    return backlash(design, found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad)
+    return backlash(design, found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad)
 
 
 def torque_field(part: PartModel) -> SolidField:

@@ -1,0 +1,65 @@
+"""STEP, STL and VTU files of a design."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from fea.types import SolidField
+from geometry.cad import build_solid, write_step, write_stl
+from pipeline.chain import Workshop, rim_loads, torque_field
+from results.renders.whole import whole_part
+
+STL_CHORD_ERROR_MM = 0.01
+
+
+def write_exports(shop: Workshop, folder: Path) -> list[Path]:
+    """Whole parts as STEP and STL [mm]; solved fields as VTU: displacement [mm], von Mises [MPa].
+
+    Every file appears whole or not at all.
+    """
+    done: list[Path] = []
+    for name in ("flexspline", "shaft"):
+        with shop.progress.stage(f"CAD of the whole {name}"):
+            solid = build_solid(shop.design, name)
+            done.append(_whole(folder / f"{name}.step", lambda p, s=solid: write_step(s, p)))
+            done.append(
+                _whole(
+                    folder / f"{name}.stl",
+                    lambda p, s=solid: write_stl(s, p, STL_CHORD_ERROR_MM),
+                )
+            )
+    flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
+    fields = {
+        "flexspline_torque": torque_field(flexspline),
+        "shaft_torque": torque_field(shaft),
+        "wave_generator": rim_loads(shop, flexspline).wave_generator,
+    }
+    for name, field in fields.items():
+        with shop.progress.stage(f"VTU {name}"):
+            done.append(_whole(folder / f"{name}.vtu", lambda p, f=field: _write_vtu(f, p)))
+    return done
+
+
+def _whole(path: Path, write: Callable[[Path], object]) -> Path:
+    """Write under another name with the same ending, then move into place."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-") as folder:
+        made = Path(folder) / path.name
+        write(made)
+        os.replace(made, path)
+    return path
+
+
+def _write_vtu(field: SolidField, path: Path) -> None:
+    """The whole part, the sector reflected and turned, as quadratic tetrahedra."""
+    import pyvista as pv
+
+    mirror = "symmetric" if field.load_case.startswith("wave generator") else "antisymmetric"
+    whole = whole_part(field.mesh, field.displacement, field.mises, mirror)
+    grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: whole.cells}, whole.nodes)
+    grid.point_data["displacement_mm"] = whole.displacement
+    grid.point_data["von_mises_MPa"] = whole.mises
+    grid.save(path)

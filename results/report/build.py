@@ -1,0 +1,45 @@
+"""The report of a run: typed results into the report's content."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pipeline.chain import RunResult
+from results.records import program_version
+from results.report.content import Pictures, ReportContent
+from results.report.versions import library_versions
+from results.report.write import write_report
+
+
+def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]) -> None:
+    """`report.pdf` of `flexspline run`; `pictures` as `results.pictures` names them."""
+    found, fields, design = result.stiffnesses, result.fields, result.design
+    assert found.K_b is not None
+    content = ReportContent(
+        design=design,
+        version=program_version(),
+        K_b=found.K_b,
+        K_e=found.shaft,
+        K_series_Nm_per_rad=found.series_Nm_per_rad(design),
+        backlash=result.backlash,
+        pictures=Pictures(
+            budget=pictures["backlash_budget"],
+            torque_angle=pictures["torque_angle"],
+            flexspline_stress=pictures["flexspline_torque"],
+            shaft_stress=pictures["shaft_torque"],
+            wave_generator=pictures["wave_generator"],
+            flexspline_mesh=pictures["flexspline_mesh"],
+            shaft_mesh=pictures["shaft_mesh"],
+            convergence=pictures["convergence"],
+        ),
+        K_b_lobes=found.K_b_lobes,
+        K_b_lobes_unsupported=found.K_b_lobes_unsupported,
+        flexspline_peak=fields["flexspline_torque"].peak,
+        shaft_peak=fields["shaft_torque"].peak,
+        wave_generator_peak=fields["wave_generator"].peak,
+        warnings=result.warnings,
+        stage_seconds=result.stage_seconds,
+        versions=library_versions(),
+    )
+    write_report(path, content)
