@@ -1,0 +1,75 @@
+"""What goes into a report: typed values and the pictures' paths, nothing formatted yet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from fea.types import Stiffness, StressPeak
+from geometry.design import Design
+from pipeline.backlash import Backlash
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """PNG files that the report shows; what is None is left out."""
+
+    budget: Path | None = None
+    torque_angle: Path | None = None
+    flexspline_stress: Path | None = None
+    shaft_stress: Path | None = None
+    wave_generator: Path | None = None
+    flexspline_mesh: Path | None = None
+    shaft_mesh: Path | None = None
+    convergence: Path | None = None
+
+
+@dataclass(frozen=True)
+class ReportContent:
+    """Everything that one report says.
+
+    Attributes
+    ----------
+    version : of this program.
+    K_b, K_e : flexspline (load case "uniform") and shaft.
+    K_series_Nm_per_rad : of the K_b that enters the sum and K_e.
+    K_b_lobes, K_b_lobes_unsupported : the other load cases, None where they were not solved.
+    flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
+    warnings : one line each.
+    stage_seconds : elapsed time of each stage that was computed and not read from the cache.
+    versions : name and version of the libraries that computed and drew.
+    issued : date as it shall be printed; "" prints none, and the same content gives the same file.
+    """
+
+    design: Design
+    version: str
+    K_b: Stiffness
+    K_e: Stiffness
+    K_series_Nm_per_rad: float
+    backlash: Backlash
+    pictures: Pictures = Pictures()
+    K_b_lobes: Stiffness | None = None
+    K_b_lobes_unsupported: Stiffness | None = None
+    flexspline_peak: StressPeak | None = None
+    shaft_peak: StressPeak | None = None
+    wave_generator_peak: StressPeak | None = None
+    warnings: tuple[str, ...] = ()
+    stage_seconds: Mapping[str, float] | None = None
+    versions: Mapping[str, str] | None = None
+    issued: str = ""
+
+    @property
+    def K_b_in_sum(self) -> Stiffness:
+        """The K_b that `solver.load_case` puts into the sum."""
+        if self.design.solver.load_case == "lobes" and self.K_b_lobes is not None:
+            return self.K_b_lobes
+        return self.K_b
+
+    @property
+    def K_series_bounds_Nm_per_rad(self) -> tuple[float, float]:
+        """1/(1/K_b + 1/K_e) at both parts' lower and at both parts' upper bounds."""
+        K_b, K_e = self.K_b_in_sum, self.K_e
+        low = 1 / (1 / K_b.lower_Nm_per_rad + 1 / K_e.lower_Nm_per_rad)
+        high = 1 / (1 / K_b.upper_Nm_per_rad + 1 / K_e.upper_Nm_per_rad)
+        return low, high

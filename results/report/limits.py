@@ -1,0 +1,103 @@
+"""What the figures assume and where they end, in sentences that carry this design's numbers."""
+
+from __future__ import annotations
+
+from results.quantities import quantity
+from results.report.content import ReportContent
+
+
+def assumptions(content: ReportContent) -> list[list[str]]:
+    """Pairs of heading and text."""
+    design, b = content.design, content.backlash
+    arcsec = quantity("backlash_arcsec.total")
+    uniform = content.K_b_in_sum is content.K_b
+    found = [
+        [
+            "Material and size of motion",
+            "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
+            "mounting face is held, so the bolted joint between them counts as rigid.",
+        ],
+        [
+            "Teeth",
+            "Not drawn. The toothed ring is a plain ring of "
+            f"{design.flexspline.ring_thickness_mm:g} mm, the thickness under the tooth roots as "
+            "the design file gives it; teeth that stiffen the ring must be in that figure.",
+        ],
+        [
+            "Where the torque enters",
+            "K_b depends on it, which is why every K_b here carries its load case. The sum uses "
+            + (
+                "“uniform”, the ring turned rigidly."
+                if uniform
+                else "“lobes”, the torque at the two ends of the major axis."
+            ),
+        ],
+        [
+            "Wave generator",
+            f"A given ellipse, w0 cos 2φ with w0 = {design.gear.centre_distance_mm:.3g} mm, that the seat follows "
+            "without friction and without lifting off.",
+        ],
+        ["Bearing play", _play(content)],
+        [
+            "Standard deviation",
+            f"The {arcsec.text(b.std_arcsec)} {arcsec.unit} contain only what the design file "
+            "states under “uncertainty”, taken as independent and normal. The error of the model "
+            "itself is not in it.",
+        ],
+        [
+            "Left out of the sum",
+            "Friction hysteresis, stiffness that grows with load, temperature, wear, the "
+            "compliance of circular spline, housing, bearings and bolts. Measured lost motion "
+            "contains all of them and is as a rule larger and softer near zero torque.",
+        ],
+    ]
+    peaks = [content.wave_generator_peak, content.flexspline_peak, content.shaft_peak]
+    stated = {p.excluded for p in peaks if p is not None}
+    if stated:
+        found.append(
+            [
+                "Peak stress",
+                "A linear solution is singular at sharp edges and patch edges; no number there "
+                "converges. Left out of the peaks: " + "; ".join(sorted(stated)) + ".",
+            ]
+        )
+    return found
+
+
+def fatigue(content: ReportContent) -> str:
+    """One sentence that sets the wave generator's stress against the stated fatigue limit; or ""."""
+    limit = content.design.material.flexspline.fatigue_limit_MPa
+    peak = content.wave_generator_peak
+    if limit is None or peak is None:
+        return ""
+    stress = quantity("wave_generator_peak_mises_MPa")
+    return (
+        f"The wave generator's ellipse alternates twice per turn: its peak of "
+        f"{stress.with_unit(peak.mises_MPa)} is {100 * peak.mises_MPa / limit:.0f} % of the stated "
+        f"fatigue limit of {limit:g} MPa. Surface, size and mean stress are not considered."
+    )
+
+
+def _play(content: ReportContent) -> str:
+    design, b = content.design, content.backlash
+    arcsec = quantity("backlash_arcsec.total")
+    if design.bearing.bearing_play_model == "involute":
+        text = (
+            "Involute model of the clearance; it ends at a play of "
+            f"{design.gear.bearing_play_limit_um:.4g} µm "
+            f"(here {design.bearing.radial_clearance_um:g} µm)."
+        )
+        other = "small-displacement"
+    else:
+        text = "Small-displacement model, j′ = c sin α."
+        other = "involute"
+    if b.model_form_arcsec is not None:
+        sign = "more" if b.model_form_arcsec >= 0 else "less"
+        text += (
+            f" The {other} model gives {arcsec.text(abs(b.model_form_arcsec))} {arcsec.unit} "
+            f"{sign}; that difference is error of the model, not part of the standard deviation."
+        )
+    if b.play_beyond_limit > 5e-4:
+        text += f" With probability {100 * b.play_beyond_limit:.2g} % the play lies beyond that end."
+    return text
+
