@@ -62,7 +62,7 @@ def bolt_angles(count: int) -> list[float]:
 
 def bolt_depth(design: Design, part: str) -> tuple[float, float]:
     """How far a hole's tool starts below z = 0 and where it ends [mm]."""
-    over = 1.0  # beyond the face, so that the cut has no coplanar cap
+    over = 0.01  # beyond the face, so that the cut has no coplanar cap; less than any gap above
     if part == "shaft":
         segments = design.shaft.segment
         first = segments[0].length_mm

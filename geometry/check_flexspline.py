@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, ceil, hypot, pi, sin, sqrt
 
-from geometry.design import Cup, Hat, Shaft
+from geometry.design import SMALLEST_MM, Cup, Hat, Shaft
 from geometry.errors import MISSING, DesignError
 
 TINY = 1e-6
@@ -48,15 +48,23 @@ def corner_wall(f: Cup | Hat) -> float:
     return d - hypot(d - t, d - h) if d > max(t, h) else min(t, h)
 
 
+def is_step(height: float) -> bool:
+    """No step, or one that the CAD kernel sees [mm]."""
+    return height == 0 or height >= SMALLEST_MM - 1e-9
+
+
 def _ring_faults(f: Cup | Hat) -> Iterator[DesignError]:
     h, length = f.diaphragm_thickness_mm, f.length_mm
     rise = f.ring_thickness_mm - f.wall_thickness_mm
     if h >= length - TINY:
         yield _fault(f, "diaphragm_thickness_mm", f"must be below length_mm = {length:g}")
         return
-    if rise < -1e-9:
+    if not is_step(rise):
         yield _fault(
-            f, "ring_thickness_mm", f"must be at least wall_thickness_mm = {f.wall_thickness_mm:g}"
+            f,
+            "ring_thickness_mm",
+            f"must be at least wall_thickness_mm = {f.wall_thickness_mm:g}: the same, or "
+            f"{SMALLEST_MM:g} more",
         )
         return
     seat_floor, shoulder_floor = (h, 0.0) if isinstance(f, Cup) else (0.0, h)
@@ -121,11 +129,12 @@ def _hat_faults(f: Hat) -> Iterator[DesignError]:
 
 def _thickness_faults(f: Cup | Hat, key: str, value: float) -> Iterator[DesignError]:
     h, length = f.diaphragm_thickness_mm, f.length_mm
-    if value < h - 1e-9 or value >= length - TINY:
+    if not is_step(value - h) or value >= length - TINY:
         yield _fault(
             f,
             key,
-            f"must be at least diaphragm_thickness_mm = {h:g} and below length_mm = {length:g}",
+            f"must be at least diaphragm_thickness_mm = {h:g} (the same, or {SMALLEST_MM:g} more) "
+            f"and below length_mm = {length:g}",
         )
 
 

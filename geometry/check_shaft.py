@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from itertools import accumulate, pairwise
 from math import sqrt
 
-from geometry.check_flexspline import TINY, bolt_faults
-from geometry.design import Keyway, Shaft
+from geometry.check_flexspline import TINY, bolt_faults, is_step
+from geometry.design import SMALLEST_MM, Keyway, Shaft
 from geometry.errors import DesignError
 
 
@@ -46,12 +46,20 @@ def _segment_faults(s: Shaft) -> Iterator[DesignError]:
                     f"must be above segment[{j}].inner_diameter_mm = {bored.inner_diameter_mm:g}, "
                     "or the two segments do not meet",
                 )
+        for key in ("outer_diameter_mm", "inner_diameter_mm"):
+            below, above = getattr(a, key), getattr(b, key)
+            if not is_step(abs(above - below) / 2):
+                yield DesignError(
+                    f"shaft.segment[{i + 1}].{key}",
+                    above,
+                    f"must equal segment[{i}].{key} = {below:g} or differ by at least "
+                    f"{2 * SMALLEST_MM:g} mm",
+                )
 
 
 def _steps(s: Shaft) -> list[float]:
     """Radius change from each segment to the next [mm]; 0 where there is no step."""
-    found = [(b.outer_diameter_mm - a.outer_diameter_mm) / 2 for a, b in pairwise(s.segment)]
-    return [d if abs(d) > TINY else 0.0 for d in found]
+    return [(b.outer_diameter_mm - a.outer_diameter_mm) / 2 for a, b in pairwise(s.segment)]
 
 
 def _fillet_faults(s: Shaft) -> Iterator[DesignError]:

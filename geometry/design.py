@@ -9,13 +9,30 @@ from __future__ import annotations
 from math import cos, radians
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 SMALLEST_MM = 0.001
 """Features below 1 µm are beneath what the CAD kernel keeps apart (its tolerance is 1e-4 µm)."""
 
+
+def _zero_or_visible(value: float) -> float:
+    if 0 < value < SMALLEST_MM:
+        raise ValueError(f"must be 0 or at least {SMALLEST_MM}")
+    return value
+
+
 Length = Annotated[float, Field(ge=SMALLEST_MM, le=10_000, allow_inf_nan=False, description="mm")]
-LengthOrZero = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False, description="mm")]
+LengthOrZero = Annotated[
+    float,
+    Field(
+        ge=0,
+        le=10_000,
+        allow_inf_nan=False,
+        description="mm",
+        json_schema_extra={"anyOf": [{"const": 0}, {"minimum": SMALLEST_MM}]},
+    ),
+    AfterValidator(_zero_or_visible),
+]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False, description="%")]
 Micrometre = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False, description="µm")]
 BoltCount = Annotated[int, Field(ge=0, le=200)]

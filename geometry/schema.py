@@ -51,8 +51,8 @@ def resolved(node: Node, kind: str | None = None) -> Node:
     if "$ref" in node:
         target = json_schema()["$defs"][node["$ref"].split("/")[-1]]
         return {**resolved(target, kind), **outer}
-    if "anyOf" in node:
-        inner = next(n for n in node["anyOf"] if n.get("type") != "null")
+    if {"type": "null"} in node.get("anyOf", ()):
+        inner = next(n for n in node["anyOf"] if n != {"type": "null"})
         return {**resolved(inner, kind), **outer}
     if "discriminator" in node:
         mapping = node["discriminator"]["mapping"]
@@ -99,7 +99,11 @@ def _range(node: Node) -> str:
     high = f"{node['maximum']:g}"
     if "exclusiveMinimum" in node:
         return f"above {node['exclusiveMinimum']:g} and up to {high}"
-    return f"from {node['minimum']:g} to {high}"
+    low = f"from {node['minimum']:g} to {high}"
+    if "anyOf" in node:  # zero stands for "none"
+        zero, rest = node["anyOf"]
+        return f"equal to {zero['const']:g} or from {rest['minimum']:g} to {high}"
+    return low
 
 
 def _unit(location: Location) -> str:

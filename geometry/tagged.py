@@ -82,7 +82,7 @@ def tagged_surface(
     count = 0
     for face in solid.Faces():
         v, t = _triangles(face)
-        index = _surface_of(np.vstack([v, _inside_point(face)]), surfaces)
+        index = _surface_of(v, _inside_point(face), surfaces)
         face_surface[face.hashCode()] = index
         if surfaces[index].patch:
             areas[surfaces[index].patch] += face.Area()
@@ -139,10 +139,7 @@ def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside_point(face: cq.Face) -> np.ndarray:
-    """A point (1, 3) inside the face, exactly on its surface, off its edges.
-
-    A flat disc is triangulated with all its vertices on the rim, which lies on the cylinder too.
-    """
+    """A point (1, 3) off the face's edges, exactly on its surface though not always in its bounds."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.TopLoc import TopLoc_Location
@@ -154,13 +151,20 @@ def _inside_point(face: cq.Face) -> np.ndarray:
     return np.array([[p.X(), p.Y(), p.Z()]])
 
 
-def _surface_of(vertices: np.ndarray, surfaces: list[Surface]) -> int:
-    for i, s in enumerate(surfaces):
-        if np.abs(s.project(vertices) - vertices).max() < ON_SURFACE:
-            return i
-    raise GeometryError(
-        f"a CAD face around {np.round(vertices.mean(axis=0), 3).tolist()} mm lies on no surface of the design"
-    )
+def _surface_of(vertices: np.ndarray, inside: np.ndarray, surfaces: list[Surface]) -> int:
+    """The surface that all vertices lie on; of several, the one nearest to the inside point.
+
+    A flat disc is triangulated with all its vertices on the rim, which lies on the cylinder too.
+    """
+    near = [
+        i for i, s in enumerate(surfaces) if np.abs(s.project(vertices) - vertices).max() < ON_SURFACE
+    ]
+    if not near:
+        where = np.round(vertices.mean(axis=0), 3).tolist()
+        raise GeometryError(f"a CAD face around {where} mm lies on no surface of the design")
+    off = [np.abs(surfaces[i].project(inside) - inside).max() for i in near]
+    first = next(k for k, d in enumerate(off) if d < min(off) + ON_SURFACE)
+    return near[first]
 
 
 def _merged(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

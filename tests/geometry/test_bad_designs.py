@@ -1,0 +1,201 @@
+"""Every bad design file is refused with one line: its key, its value, and the range that works.
+
+Ranges were worked out by hand from the contract's geometry of the two examples:
+xb1-40: Ri = 19.2, Rw = 19.6, L = 30, ring 8 long, boss r = 9, bore r = 4, diaphragm 0.6, wall 0.4;
+hat-25: Ri = 28.8, Rw = 29.3, L = 28, ring from 16 to 27, flange r = 39 to 48, diaphragm 0.5;
+keyed-shaft: segments of 4, 12, 20 mm, r = 10, 9, 8, bore r = 3, keyway 5 x 3 x 16.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from changed_design import changed_text
+from geometry.errors import DesignError, DesignFileError
+from geometry.load import LARGEST_BYTES, load_design
+
+
+@dataclass(frozen=True)
+class Bad:
+    """Changes to an example, and what the line must say: key, value, range."""
+
+    example: str
+    changes: dict[str, str | None]
+    says: tuple[str, ...]
+
+    @property
+    def id(self) -> str:
+        return " ".join(f"{k}={str(v)[:16]}" for k, v in self.changes.items())
+
+
+def cup(says: tuple[str, ...], **changes: str | None) -> Bad:
+    return Bad("xb1-40", {k.replace("__", "."): v for k, v in changes.items()}, says)
+
+
+def hat(says: tuple[str, ...], **changes: str | None) -> Bad:
+    return Bad("hat-25", {k.replace("__", "."): v for k, v in changes.items()}, says)
+
+
+def shaft(says: tuple[str, ...], **changes: str) -> Bad:
+    """Of the keyed shaft; ``s0``, ``s1``, ``s2`` are its segments."""
+    dotted = {}
+    for key, value in changes.items():
+        segment, _, rest = key.partition("__")
+        if segment in ("s0", "s1", "s2"):
+            dotted[f"shaft.segment[{segment[1]}].{rest}"] = value
+        else:
+            dotted["shaft." + key.replace("__", ".")] = value
+    return Bad("keyed-shaft", dotted, says)
+
+
+ONE_KEY = [
+    cup(("flexspline.wal_thickness_mm", "0.4", "wall_thickness_mm"), flexspline__wal_thickness_mm="0.4"),
+    cup(("gear.modul_mm", "did you mean module_mm"), gear__modul_mm="0.2", gear__module_mm=None),
+    cup(("beering", "unknown key", "bearing"), beering__radial_clearance_um="1"),
+    cup(("flexspline.wall_thickness_mm", "missing", "0.001 to 10000 mm"), flexspline__wall_thickness_mm=None),
+    cup(("flexspline.wall_thickness_mm", "-0.4", "0.001 to 10000 mm"), flexspline__wall_thickness_mm="-0.4"),
+    cup(("flexspline.wall_thickness_mm", "nan", "0.001 to 10000 mm"), flexspline__wall_thickness_mm="nan"),
+    cup(("flexspline.length_mm", "inf", "0.001 to 10000 mm"), flexspline__length_mm="inf"),
+    cup(("flexspline.length_mm", '"30"', "a number", "not text"), flexspline__length_mm='"30"'),
+    cup(("flexspline.bolt_count", "6.5", "whole number from 0 to 200"), flexspline__bolt_count="6.5"),
+    cup(("flexspline.bolt_count", "-6", "from 0 to 200"), flexspline__bolt_count="-6"),
+    cup(("flexspline.bolt_count", "true", "whole number"), flexspline__bolt_count="true"),
+    cup(("flexspline.kind", '"bowl"', '"cup" or "hat"'), flexspline__kind='"bowl"'),
+    cup(("flexspline.kind", "missing", '"cup" or "hat"'), flexspline__kind=None),
+    cup(("flexspline.flange_thickness_mm", "3", "belongs to a hat", "boss_thickness_mm"), flexspline__flange_thickness_mm="3"),
+    hat(("flexspline.boss_diameter_mm", "18", "belongs to a cup", "flange_inner_diameter_mm"), flexspline__boss_diameter_mm="18"),
+    cup(("material.flexspline.poissons_ratio", "0.5", "0 to 0.49"), material__flexspline__poissons_ratio="0.5"),
+    cup(("material.flexspline.youngs_modulus_GPa", "0", "above 0 and up to 2000 GPa"), material__flexspline__youngs_modulus_GPa="0"),
+    cup(("load.torque_Nm", "0.0", "above 0"), load__torque_Nm="0.0"),
+    cup(("gear.pressure_angle_deg", "90", "5 to 45 deg"), gear__pressure_angle_deg="90"),
+    cup(("bearing.bearing_play_model", '"linear"', '"involute" or "small_displacement"'), bearing__bearing_play_model='"linear"'),
+    cup(("solver.model", '"magic"', '"axisymmetric" or "solid" or "auto"'), solver__model='"magic"'),
+    cup(("uncertainty.youngs_modulus_pct", "-1", "0 to 100 %"), uncertainty__youngs_modulus_pct="-1"),
+    cup(("name", "1 to 200 characters"), name='""'),
+    cup(("name", r"\n", "one line"), name=r'"two\nlines"'),
+    cup(("name", "1 to 200 characters"), name='"' + "x" * 5000 + '"'),
+    cup(("load.torque_Nm", "digits", "above 0"), load__torque_Nm="0x" + "f" * 5000),
+    cup((r"'od\nd'", "unknown key"), **{r'"od\nd"': "1"}),
+]  # fmt: skip
+
+GEOMETRY = [
+    # Ri − boss r = 10.2; ring start − diaphragm = 21.4
+    cup(("flexspline.inner_fillet_mm", "25.0", "0 to 10.2 mm"), flexspline__inner_fillet_mm="25"),
+    # Rw − boss r = 10.6
+    cup(("flexspline.outer_fillet_mm", "11.0", "0 to 10.6 mm"), flexspline__outer_fillet_mm="11"),
+    # 1 + 0.4 + 0.6 + √(2·0.4·0.6) = 2.6928
+    cup(("flexspline.outer_fillet_mm", "2.7", "below 2.693"), flexspline__outer_fillet_mm="2.7"),
+    cup(("flexspline.bolt_circle_diameter_mm", "16.0", "between 10.5 and 15.5"), flexspline__bolt_circle_diameter_mm="16"),
+    cup(("flexspline.bolt_hole_diameter_mm", "6.0", "below 5 mm"), flexspline__bolt_hole_diameter_mm="6"),
+    # π/asin(2.5/13) = 16.2 holes; 13 sin(π/17) = 2.389
+    cup(("flexspline.bolt_count", "17", "0 to 16", "below 2.389 mm"), flexspline__bolt_count="17"),
+    cup(("flexspline.bolt_circle_diameter_mm", "missing", "bolt_count = 6", "between 8 and 18"), flexspline__bolt_circle_diameter_mm=None),
+    cup(("flexspline.bore_diameter_mm", "18.0", "below boss_diameter_mm = 18"), flexspline__bore_diameter_mm="18"),
+    cup(("flexspline.boss_diameter_mm", "38.4", "below inner_diameter_mm = 38.4"), flexspline__boss_diameter_mm="38.4"),
+    cup(("flexspline.boss_thickness_mm", "0.5", "at least diaphragm_thickness_mm = 0.6"), flexspline__boss_thickness_mm="0.5"),
+    cup(("flexspline.boss_thickness_mm", "30.0", "below length_mm = 30"), flexspline__boss_thickness_mm="30"),
+    cup(("flexspline.diaphragm_thickness_mm", "30.0", "below length_mm = 30"), flexspline__diaphragm_thickness_mm="30"),
+    cup(("flexspline.ring_thickness_mm", "0.3", "at least wall_thickness_mm = 0.4"), flexspline__ring_thickness_mm="0.3"),
+    # inside 30 − 0.6 = 29.4, outside 30 − 0.15 = 29.85
+    cup(("flexspline.ring_width_mm", "31.0", "at most 29.4 mm"), flexspline__ring_width_mm="31"),
+    cup(("flexspline.ring_offset_mm", "29.5", "below 29.4"), flexspline__ring_offset_mm="29.5"),
+    # the ring leaves 30 − 28.9 − 0.6 = 0.5 for the fillet
+    cup(("flexspline.inner_fillet_mm", "1.0", "0 to 0.5 mm", "ring"), flexspline__ring_width_mm="28.9"),
+    hat(("flexspline.flange_inner_diameter_mm", "58.0", "above", "58.6"), flexspline__flange_inner_diameter_mm="58"),
+    hat(("flexspline.flange_outer_diameter_mm", "78.0", "above flange_inner_diameter_mm = 78"), flexspline__flange_outer_diameter_mm="78"),
+    hat(("flexspline.flange_thickness_mm", "0.4", "at least diaphragm_thickness_mm = 0.5"), flexspline__flange_thickness_mm="0.4"),
+    # flange r − Rw = 9.7
+    hat(("flexspline.inner_fillet_mm", "9.8", "0 to 9.7 mm"), flexspline__inner_fillet_mm="9.8"),
+    hat(("flexspline.bolt_circle_diameter_mm", "80.0", "between 81.4 and 92.6"), flexspline__bolt_circle_diameter_mm="80"),
+    # a shoulder to r = 32.3 reaches the flange's r = 31 at z = 16 − 1.3
+    hat(("flexspline.flange_thickness_mm", "15.0", "below 14.7 mm"), flexspline__flange_thickness_mm="15",
+        flexspline__flange_inner_diameter_mm="62", flexspline__ring_thickness_mm="3.5", flexspline__inner_fillet_mm="0.5"),
+    shaft(("shaft.segment[1].inner_diameter_mm", "18.0", "below outer_diameter_mm = 18"), s1__inner_diameter_mm="18"),
+    shaft(("shaft.segment[2].outer_diameter_mm", "16.0", "above segment[1].inner_diameter_mm = 17"), s1__inner_diameter_mm="17"),
+    shaft(("shaft.fillet_mm", "1.5", "0 to 1 mm", "segment[0] to segment[1]"), fillet_mm="1.5"),
+    shaft(("shaft.fillet_mm", "0.5", "0 to 0.3 mm", "length_mm = 0.3"), s1__length_mm="0.3"),
+    shaft(("shaft.grip_length_mm", "36.0", "below", "36 mm"), grip_length_mm="36"),
+    shaft(("shaft.grip_length_mm", "19.8", "at most 19.5 or at least 20 mm"), grip_length_mm="19.8"),
+    shaft(("shaft.bolt_circle_diameter_mm", "missing", "bolt_count = 6"), bolt_count="6", bolt_hole_diameter_mm="3"),
+    shaft(("shaft.bolt_circle_diameter_mm", "18.0", "between 9 and 17"), bolt_count="6", bolt_circle_diameter_mm="18", bolt_hole_diameter_mm="3"),
+    shaft(("shaft.keyway.depth_mm", "5.0", "below 5 mm"), keyway__depth_mm="5"),
+    # chord at r = 8, depth 3: 2√(64 − 25)
+    shaft(("shaft.keyway.width_mm", "12.5", "below 12.49 mm"), keyway__width_mm="12.5"),
+    shaft(("shaft.keyway.length_mm", "36.0", "below", "36 mm"), keyway__length_mm="36"),
+    cup(("gear.teeth_circular_spline", "200", "202"), gear__teeth_circular_spline="200"),
+    cup(("gear.teeth_circular_spline", "203", "even", "202, 204"), gear__teeth_circular_spline="203"),
+    # 2·0.2·(1 − cos 20°) = 24.12 µm
+    cup(("bearing.radial_clearance_um", "24.2", "24.12 µm", "small_displacement"), bearing__radial_clearance_um="24.2"),
+    cup(("solver.model", '"axisymmetric"', '"solid" or "auto"', "bolt_count = 6"), solver__model='"axisymmetric"'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("bad", ONE_KEY + GEOMETRY, ids=lambda b: b.id)
+def test_bad_design_is_refused_in_one_line(bad: Bad, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(changed_text(bad.example, bad.changes), encoding="utf-8")
+    with pytest.raises(DesignError) as caught:
+        load_design(path)
+    line = str(caught.value)
+    assert line.isprintable()  # so it is one line
+    assert len(line) < 700
+    assert line.startswith(bad.says[0])
+    for words in bad.says:
+        assert words in line
+
+
+def test_further_faults_are_counted(tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    three = {"load.torque_Nm": "-1", "gear.module_mm": "0", "flexspline.length_mm": "nan"}
+    path.write_text(changed_text("xb1-40", three), encoding="utf-8")
+    with pytest.raises(DesignError, match=r"\(and 2 more\)$"):
+        load_design(path)
+
+
+def test_missing_table_is_named(tmp_path: Path) -> None:
+    text = changed_text("xb1-40", {}).replace("[bearing]\n", "")
+    path = tmp_path / "bad.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(DesignError) as caught:
+        load_design(path)
+    assert "radial_clearance_um" in str(caught.value)  # now an unknown key of [gear]
+    assert caught.value.more == 1  # and [bearing] is missing
+
+
+FILES = {
+    "not UTF-8": (b'name = "\xff"', "not UTF-8"),
+    "syntax": (b"name = \n[flexspline", "not valid TOML"),
+    "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
+    "null byte": (b"name = \x00", "not valid TOML"),
+    "deep nesting": (b"x = " + b"[" * 50_000, "TOML|nested"),
+    "huge integer": (b"x = " + b"9" * 9000, "TOML"),
+    "too large": (b"#" * (LARGEST_BYTES + 1), "1000001 bytes"),
+    "empty": (b"", "name is missing"),
+    "not a table": (b"flexspline = 3", "flexspline = 3|name is missing"),
+}
+
+
+@pytest.mark.parametrize(("content", "says"), FILES.values(), ids=FILES)
+def test_bad_file_is_refused_in_one_line(content: bytes, says: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_bytes(content)
+    with pytest.raises(DesignError, match=says) as caught:
+        load_design(path)
+    assert str(caught.value).isprintable()
+
+
+def test_no_file_directory_and_pipe_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(DesignFileError, match="no such file"):
+        load_design(tmp_path / "absent.toml")
+    with pytest.raises(DesignFileError, match="is a directory"):
+        load_design(tmp_path)
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(DesignFileError, match="not a regular file"):
+        load_design(tmp_path / "pipe.toml")
+    with pytest.raises(DesignFileError) as caught:
+        load_design("nul\x00 and\nnewline.toml")
+    assert str(caught.value).isprintable()

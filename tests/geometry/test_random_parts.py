@@ -1,0 +1,89 @@
+"""Whatever `geometry.checks` accepts, the CAD kernel builds, with the right volume and patches."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+
+from cad_volume import assert_volume
+from changed_design import changed_design, shaft_of
+from geometry.cad import build_solid
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.meridian import meridian
+from geometry.tagged import tagged_surface
+from random_parts import Segments, cups, hats, shafts
+
+SHORT = settings(max_examples=15, deadline=None, derandomize=True)
+LONG = settings(
+    max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much]
+)
+AREA = 1e-6
+"""Relative: the kernel integrates areas to about 1e-8; a lost face would be a hundredth at least."""
+
+
+def flexspline_builds(example: str, changes: dict[str, str]) -> None:
+    try:
+        design = changed_design(example, changes)
+    except DesignError:
+        assume(False)
+    assert_volume(design, "flexspline")
+    assert_patches(design, "flexspline", ("mesh", "seat"))
+
+
+def shaft_builds(segments: Segments, text: str, fillet: float) -> None:
+    try:
+        design = shaft_of(segments, text, fillet)
+    except DesignError:
+        assume(False)
+    if design.shaft.keyway:
+        assert build_solid(design, "shaft").Volume() < meridian(design, "shaft").volume
+        assert tagged_surface(design, "shaft", 360.0, 0.05, 1.0).patch_areas["grip"] > 0
+    else:
+        assert_volume(design, "shaft")
+        assert_patches(design, "shaft", ("grip", "mount"))
+
+
+def assert_patches(design: Design, part: str, patches: tuple[str, ...]) -> None:
+    areas = tagged_surface(design, part, 360.0, 0.05, 1.0).patch_areas
+    for patch in patches:
+        assert areas[patch] == pytest.approx(meridian(design, part).patch_area(patch), rel=AREA)
+
+
+@given(cups())
+@SHORT
+def test_cups_build(changes: dict[str, str]) -> None:
+    flexspline_builds("xb1-40", changes)
+
+
+@given(hats())
+@SHORT
+def test_hats_build(changes: dict[str, str]) -> None:
+    flexspline_builds("hat-25", changes)
+
+
+@given(shafts())
+@SHORT
+def test_shafts_build(case: tuple[Segments, str, float]) -> None:
+    shaft_builds(*case)
+
+
+@pytest.mark.long
+@given(cups())
+@LONG
+def test_three_hundred_cups_build(changes: dict[str, str]) -> None:
+    flexspline_builds("xb1-40", changes)
+
+
+@pytest.mark.long
+@given(hats())
+@LONG
+def test_three_hundred_hats_build(changes: dict[str, str]) -> None:
+    flexspline_builds("hat-25", changes)
+
+
+@pytest.mark.long
+@given(shafts())
+@LONG
+def test_three_hundred_shafts_build(case: tuple[Segments, str, float]) -> None:
+    shaft_builds(*case)
