@@ -60,8 +60,7 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
         shot(inset, INSET, 2.0),
         Sheet(
             title="Flexspline on the wave generator: stress",
-            subtitle="von Mises stress; seat displaced radially by w0 cos 2φ, "
-            f"w0 = {amplitude_mm:.3g} mm",
+            subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
             inset_title="along the axis",
             note=(
                 f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"

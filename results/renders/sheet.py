@@ -25,10 +25,10 @@ MAIN = (860, 950)
 INSET, LARGE_INSET = (440, 480), (600, 640)
 """Pixels of the views, width and height; the large inset goes where there is no colour bar."""
 _MAIN_AT, _INSET_AT = (40, 116), (930, 176)
-_LABEL_AT = (1150, 870)
+_LABEL_AT = (1150, 850)
 _DPI = 100
-_TITLE, _SUBTITLE, _TEXT, _NOTE = 44, 34, 36, 30
-"""Text heights in pixels: printed 80 mm wide, half size, the smallest is still 1.5 mm."""
+_TITLE, _SUBTITLE, _TEXT, _NOTE = 50, 38, 44, 34
+"""Text heights in pixels: printed 80 mm wide, half size, the smallest is still 1.7 mm."""
 
 
 @dataclass(frozen=True)
@@ -71,11 +71,11 @@ def write_sheet(path: Path, main: Shot, inset: Shot, sheet: Sheet) -> None:
         figure = new_figure(WIDTH / _DPI, HEIGHT / _DPI, _DPI)
         _image(figure, main, _MAIN_AT)
         _image(figure, inset, _INSET_AT)
-        _say(figure, (44, 1146), sheet.title, _TITLE, INK, "bold")
-        _say(figure, (44, 1090), sheet.subtitle, _SUBTITLE, MUTED)
+        _say(figure, (44, 1140), sheet.title, _TITLE, INK, "bold")
+        _say(figure, (44, 1082), sheet.subtitle, _SUBTITLE, MUTED)
         _say(figure, (44, 28), sheet.note, _NOTE, MUTED)
         middle = _INSET_AT[0] + inset.image.shape[1] / 2
-        _say(figure, (middle, _INSET_AT[1] - 44), sheet.inset_title, _NOTE, MUTED, ha="center")
+        _say(figure, (middle, _INSET_AT[1] - 46), sheet.inset_title, _NOTE, MUTED, ha="center")
         if sheet.bar:
             _bar(figure, sheet.bar)
         if sheet.mark:
@@ -127,7 +127,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    axes = figure.add_axes(_box(1412, 170, 46, 780))
+    axes = figure.add_axes(_box(1408, 170, 46, 750))
     scale = figure.colorbar(
         ScalarMappable(Normalize(0.0, bar.high), COLOUR_MAP),
         cax=axes,
@@ -139,7 +139,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
     scale.outline.set_linewidth(0.8)
     axes.minorticks_off()
     axes.tick_params(labelsize=_pt(_TEXT), width=1.5, length=8, pad=8)
-    _say(figure, (1490, 1000), bar.label, _TEXT, INK, ha="center")
+    _say(figure, (1478, 970), bar.label, _TEXT, INK, ha="center")
 
 
 def _ticks(high: float) -> tuple[list[float], list[str]]:
@@ -198,7 +198,7 @@ def _legend(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
         loc="lower left",
         bbox_to_anchor=(36 / WIDTH, 20 / HEIGHT),
         ncols=len(entries),
-        fontsize=_pt(_TEXT - 3),
+        fontsize=_pt(_NOTE + 3),
         handlelength=1.1,
         handleheight=1.0,
         columnspacing=1.4,

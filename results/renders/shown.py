@@ -66,10 +66,8 @@ def stress_bar(peak: StressPeak, beyond: bool) -> Bar:
 def stress_note(beyond: bool) -> str:
     """One line about the colour range."""
     if beyond:
-        return (
-            "Colours end at the reported peak; the stress at sharp corners beyond it is singular."
-        )
-    return "Colours end at the reported peak."
+        return "Colours end at the peak; beyond it, sharp corners are singular."
+    return "Colours end at the peak."
 
 
 def goes_beyond(peak: StressPeak, shown: Skin, mises: np.ndarray) -> bool:

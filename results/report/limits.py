@@ -34,8 +34,9 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         ],
         [
             "Wave generator",
-            f"A given ellipse, w0 cos 2φ with w0 = {design.gear.centre_distance_mm:.3g} mm, that the seat follows "
-            "without friction and without lifting off.",
+            f"A given ellipse, w₀ cos 2φ with w₀ = {design.gear.centre_distance_mm:.3g} mm, that the seat follows "
+            "without friction and without lifting off. In load case “lobes” the seat is held "
+            "radially both ways, so it cannot lift off either.",
         ],
         ["Bearing play", _play(content)],
         [
@@ -98,6 +99,7 @@ def _play(content: ReportContent) -> str:
             f"{sign}; that difference is error of the model, not part of the standard deviation."
         )
     if b.play_beyond_limit > 5e-4:
-        text += f" With probability {100 * b.play_beyond_limit:.2g} % the play lies beyond that end."
+        text += (
+            f" With probability {100 * b.play_beyond_limit:.2g} % the play lies beyond that end."
+        )
     return text
-

@@ -8,6 +8,7 @@ from results.quantities import Quantity, grouped, quantity
 from results.report.content import ReportContent
 
 Row = dict[str, str]
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def answers(content: ReportContent) -> list[Row]:
@@ -74,7 +75,7 @@ def solves(content: ReportContent) -> list[Row]:
                 "half_width": f"±{half:.2g} %",
                 "residual": _power(last.residual),
                 "energy": _power(abs(last.K_reaction_Nm_per_rad / last.K_Nm_per_rad - 1)),
-                "method": s.method,
+                "method": s.method[:1].upper() + s.method[1:].rstrip("."),
             }
         )
     return rows
@@ -152,8 +153,11 @@ def _row(entry: Quantity, value: float, bounds: str) -> Row:
 
 
 def _power(value: float) -> str:
-    """Order of magnitude of a rounding-size number."""
-    return f"{value:.0e}".replace("e-0", "e-") if value else "0"
+    """Order of magnitude of a rounding-size number, ``3·10⁻⁶``."""
+    if not value:
+        return "0"
+    digit, exponent = f"{value:.0e}".split("e")
+    return f"{digit}·10" + str(int(exponent)).translate(_RAISED)
 
 
 def _holes(count: int) -> str:
