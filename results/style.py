@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,7 @@ PALETTE = ("#123f66", "#2f7ab8", "#dd8f2d", "#f5d38a")
 ACCENT = "#b3371f"
 
 DPI = 200
-RC: dict[str, Any] = {
+_RC: dict[str, Any] = {
     "font.family": "DejaVu Sans",  # ships with matplotlib
     "font.size": 10.5,
     "axes.titlesize": 12,
@@ -51,6 +52,14 @@ RC: dict[str, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
 }
+
+
+def styled() -> AbstractContextManager[None]:
+    """The style as a context: nothing of it outlives the figure."""
+    import matplotlib as mpl
+
+    settings: Any = _RC
+    return mpl.rc_context(settings)
 
 
 def new_figure(width_in: float, height_in: float, dpi: int = DPI) -> Figure:

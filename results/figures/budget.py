@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.backlash import Backlash
 from results.quantities import quantity
-from results.style import ACCENT, INK, MUTED, PALETTE, RC, new_figure, save_png
+from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,9 +22,7 @@ SOURCES = {
 
 def write_budget(path: Path, backlash: Backlash) -> None:
     """Write the chart: a waterfall of the terms with the total's 1σ bar, and 1σ by source."""
-    import matplotlib as mpl
-
-    with mpl.rc_context(RC):
+    with styled():
         figure = new_figure(8.0, 4.3)
         terms = figure.add_axes((0.205, 0.14, 0.46, 0.74))
         sources = figure.add_axes((0.835, 0.38, 0.135, 0.50))
@@ -65,7 +63,7 @@ def _waterfall(axes: Axes, backlash: Backlash) -> None:
     )
     names = [quantity(f"backlash_arcsec.{t}").name for t in (*TERMS, "total")]
     axes.set_yticks(range(len(names)), [n.replace(", total", "") for n in names])
-    axes.get_yticklabels()[-1].set_weight("bold")
+    axes.get_yticklabels()[-1].set_fontweight("bold")
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fea.types import Stiffness
 from results.quantities import grouped, quantity
-from results.style import ACCENT, INK, PALETTE, RC, new_figure, save_png
+from results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,10 +21,8 @@ def write_convergence(path: Path, stiffnesses: Mapping[str, Stiffness]) -> None:
     ----------
     stiffnesses : by key of the table of quantities, e.g. ``K_b_Nm_per_rad``, in drawing order.
     """
-    import matplotlib as mpl
-
     drawn = {key: s for key, s in stiffnesses.items() if s.levels}
-    with mpl.rc_context(RC):
+    with styled():
         figure = new_figure(8.0, 3.4)
         width = 0.97 / max(1, len(drawn))
         for i, (key, stiffness) in enumerate(drawn.items()):

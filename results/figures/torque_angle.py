@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.backlash import Backlash
 from results.quantities import quantity
-from results.style import ACCENT, INK, MUTED, PALETTE, RC, new_figure, save_png
+from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,9 +33,7 @@ def write_torque_angle(
     torque_Nm : T_L.
     backlash : its terms set the gap and the 1σ band; its total is the lost motion drawn.
     """
-    import matplotlib as mpl
-
-    with mpl.rc_context(RC):
+    with styled():
         figure = new_figure(8.0, 4.6)
         axes = figure.add_axes((0.095, 0.125, 0.875, 0.775))
         torque = np.linspace(1e-6, _REACH, 60) * torque_Nm

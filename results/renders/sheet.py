@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from results.renders.scene import Shot
-from results.style import ACCENT, COLOUR_MAP, INK, MUTED, RC, new_figure, save_png
+from results.style import ACCENT, COLOUR_MAP, INK, MUTED, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,9 +65,7 @@ class Sheet:
 
 def write_sheet(path: Path, main: Shot, inset: Shot, sheet: Sheet) -> None:
     """Write the sheet as a PNG of 1600 x 1200."""
-    import matplotlib as mpl
-
-    with mpl.rc_context(RC):
+    with styled():
         figure = new_figure(WIDTH / _DPI, HEIGHT / _DPI, _DPI)
         _image(figure, main, _MAIN_AT)
         _image(figure, inset, _INSET_AT)

@@ -75,7 +75,7 @@ def surface(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
 
     used, local = np.unique(facets, return_inverse=True)
     triangles = local.reshape(facets.shape)[:, _FOUR].reshape(-1, 3)
-    mesh = pv.PolyData.from_regular_faces(points[used], triangles)
+    mesh = pv.PolyData.from_regular_faces(points[used], triangles.astype(int))
     mesh.point_data["node"] = used
     return mesh.compute_normals(
         cell_normals=False, split_vertices=True, feature_angle=CREASE_DEG, consistent_normals=False

@@ -80,7 +80,9 @@ def whole_part(
             -mesh.sector_deg,
         ),
     )
-    nodes, cells, moved, patches, starts = [], [], [], [], []
+    nodes: list[np.ndarray] = []
+    moved: list[np.ndarray] = []
+    cells, patches, starts = [], [], []
     for k in range(pairs):
         turn = 2 * mesh.sector_deg * k
         rotation = _about_z(turn)

@@ -34,9 +34,9 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         ],
         [
             "Wave generator",
-            f"A given ellipse, w₀ cos 2φ with w₀ = {design.gear.centre_distance_mm:.3g} mm, that the seat follows "
-            "without friction and without lifting off. In load case “lobes” the seat is held "
-            "radially both ways, so it cannot lift off either.",
+            f"A given ellipse, w₀ cos 2φ with w₀ = {design.gear.centre_distance_mm:.3g} mm, that "
+            "the seat follows without friction and without lifting off. In load case “lobes” the "
+            "seat is held radially both ways, so it cannot lift off either.",
         ],
         ["Bearing play", _play(content)],
         [
@@ -66,7 +66,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
 
 
 def fatigue(content: ReportContent) -> str:
-    """One sentence that sets the wave generator's stress against the stated fatigue limit; or ""."""
+    """The wave generator's stress against the stated fatigue limit; "" without a limit."""
     limit = content.design.material.flexspline.fatigue_limit_MPa
     peak = content.wave_generator_peak
     if limit is None or peak is None:

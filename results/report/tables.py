@@ -36,7 +36,7 @@ def answers(content: ReportContent) -> list[Row]:
 
 
 def stiffnesses(content: ReportContent) -> dict[str, Stiffness]:
-    """The stiffnesses that were solved, by key of the table of quantities, in the report's order."""
+    """The stiffnesses that were solved, by quantity key, in the report's order."""
     every = {
         "K_b_Nm_per_rad": content.K_b,
         "K_b_lobes_Nm_per_rad": content.K_b_lobes,
