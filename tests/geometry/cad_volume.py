@@ -15,7 +15,7 @@ VOLUME = 1e-7
 
 
 def assert_volume(design: Design, part: str) -> None:
-    """CAD volume = Pappus on the profile less the holes, which no case here puts beside a fillet."""
+    """CAD volume = Pappus on the profile less the holes."""
     owner = design.shaft if part == "shaft" else design.flexspline
     holes = 0.0
     if owner.bolt_count:

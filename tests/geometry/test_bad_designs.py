@@ -6,6 +6,7 @@ hat-25: Ri = 28.8, Rw = 29.3, L = 28, ring from 16 to 27, flange r = 39 to 48, d
 keyed-shaft: segments of 4, 12, 20 mm, r = 10, 9, 8, bore r = 3, keyway 5 x 3 x 16.
 """
 
+# ruff: noqa: E501  (one row per bad design reads better than four lines each)
 from __future__ import annotations
 
 import os
@@ -13,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-
 from changed_design import changed_text
+
 from geometry.errors import DesignError, DesignFileError
 from geometry.load import LARGEST_BYTES, load_design
 

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
-
 from cad_volume import assert_volume
 from changed_design import changed_design, shaft_of
+from hypothesis import HealthCheck, assume, given, settings
+from random_parts import Segments, cups, hats, shafts
+
 from geometry.cad import build_solid
 from geometry.design import Design
 from geometry.errors import DesignError
 from geometry.meridian import meridian
 from geometry.tagged import tagged_surface
-from random_parts import Segments, cups, hats, shafts
 
 SHORT = settings(max_examples=15, deadline=None, derandomize=True)
 LONG = settings(
     max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much]
 )
 AREA = 1e-6
-"""Relative: the kernel integrates areas to about 1e-8; a lost face would be a hundredth at least."""
+"""Relative: the kernel integrates areas to about 1e-8; a lost face is a hundredth at least."""
 
 
 def flexspline_builds(example: str, changes: dict[str, str]) -> None:

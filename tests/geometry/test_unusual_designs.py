@@ -1,13 +1,13 @@
-"""Unusual but possible designs are accepted, and the CAD kernel builds them with the right volume."""
+"""Unusual but possible designs are accepted, and the CAD kernel builds them as they should be."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-
-from changed_design import changed_design, changed_text, shaft_of
 from cad_volume import assert_volume
+from changed_design import changed_design, changed_text, shaft_of
+
 from geometry.cad import build_solid
 from geometry.design import Design
 from geometry.load import load_design

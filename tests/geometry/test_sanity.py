@@ -1,0 +1,41 @@
+"""Warnings carry the numbers that explain them; usual designs have none."""
+
+from __future__ import annotations
+
+import pytest
+from changed_design import EXAMPLES, changed_design
+
+from geometry.load import load_design
+from geometry.sanity import ring_bending_stress_MPa, warnings
+
+CASES = {
+    # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
+    "flexspline.ring_thickness_mm": ("0.7", ("19.75", "19.9", "0.15 mm apart", "0.03 mm")),
+    "flexspline.wall_thickness_mm": ("0.15", ("0.15 / 38.4 = 0.00391", "0.005 to 0.025")),
+    "flexspline.length_mm": ("60.0", ("60 / 38.4 = 1.56", "0.2 to 1.4")),
+    "flexspline.outer_fillet_mm": ("2.6", ("outer_fillet_mm = 2.6", "half of 0.4 mm")),
+    "flexspline.boss_thickness_mm": ("25.0", ("boss_thickness_mm = 25", "z = 22 mm")),
+    "flexspline.bolt_circle_diameter_mm": ("14.0", ("= 14", "shaft", "= 13")),
+    "material.flexspline.fatigue_limit_MPa": ("90.0", ("98 MPa", "= 90")),
+    "uncertainty.radial_clearance_um": ("7.0", ("12 ± 7", "24.12 µm")),
+}
+
+
+@pytest.mark.parametrize("key", CASES)
+def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
+    value, says = CASES[key]
+    lines = warnings(changed_design("xb1-40", {key: value}))
+    assert len(lines) == 1
+    for words in says:
+        assert words in lines[0]
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.stem)
+def test_examples_have_no_warning(path) -> None:
+    assert warnings(load_design(path)) == ()
+
+
+def test_ring_bending_stress_by_hand() -> None:
+    # 206e3/0.91 · 0.275 · 3 · 0.2 / 19.475²
+    stress = ring_bending_stress_MPa(load_design(EXAMPLES / "xb1-40.toml"))
+    assert stress == pytest.approx(98.48, abs=0.01)  # to the digits worked out

@@ -1,0 +1,70 @@
+"""The commented templates load, mention every key of the schema, and their comments are its own."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+
+import pytest
+
+from geometry.design import Design
+from geometry.load import design_from
+from geometry.sanity import warnings
+from geometry.schema import json_schema, resolved
+from geometry.template import template
+
+KINDS = ("cup", "hat")
+UNIT = re.compile(r"_(mm|um|GPa|MPa|Nm|deg|pct)$")
+
+
+def leaves(node: dict, kind: str) -> set[str]:
+    """Every key below a node of the schema."""
+    node = resolved(node, kind)
+    if node.get("type") == "array":
+        return leaves(node["items"], kind)
+    found = set(node.get("properties", {}))
+    return found.union(*(leaves(n, kind) for n in node.get("properties", {}).values()))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_template_loads_without_a_warning(kind: str) -> None:
+    design = design_from(tomllib.loads(template(kind)))
+    assert design.flexspline.kind == kind
+    assert warnings(design) == ()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_template_loads_with_its_optional_keys_too(kind: str) -> None:
+    text = re.sub(r"(?m)^# (?=\[|\w+ = )", "", template(kind))
+    design = design_from(tomllib.loads(text))
+    assert design.shaft.keyway
+    assert design.material.shaft
+    assert design.solver.edge_length_mm
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_template_comments_every_key_of_the_schema(kind: str) -> None:
+    keys = leaves(json_schema(), kind)
+    assert {"wall_thickness_mm", "depth_mm", "edge_length_mm", "youngs_modulus_GPa"} < keys
+    for key in keys - {"flexspline", "shaft", "material", "gear", "bearing", "load", "uncertainty"}:
+        if key in ("solver", "segment", "keyway"):
+            assert re.search(rf"(?m)^(# )?\[+(shaft\.)?{key}\]+ +# \w", template(kind)), key
+        else:
+            assert re.search(rf"(?m)^(# )?{key} = .* # \S", template(kind)), key
+
+
+def test_schema_describes_every_key_with_its_unit() -> None:
+    for name, table in json_schema()["$defs"].items():
+        for key, node in table["properties"].items():
+            unit = UNIT.search(key)
+            if unit:
+                spelled = {"um": "µm", "Nm": "N·m", "pct": "%"}.get(unit[1], unit[1])
+                assert node["description"].startswith(spelled), f"{name}.{key}"
+
+
+def test_schema_is_json_and_forbids_unknown_keys() -> None:
+    schema = json.loads(json.dumps(json_schema()))
+    assert schema["additionalProperties"] is False
+    assert all(t["additionalProperties"] is False for t in schema["$defs"].values())
+    assert set(schema["properties"]) == set(Design.model_fields)
