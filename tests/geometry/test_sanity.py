@@ -30,9 +30,9 @@ def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
         assert words in lines[0]
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.stem)
-def test_examples_have_no_warning(path) -> None:
-    assert warnings(load_design(path)) == ()
+@pytest.mark.parametrize("example", ["xb1-40", "hat-25", "keyed-shaft"])
+def test_examples_have_no_warning(example: str) -> None:
+    assert warnings(changed_design(example, {})) == ()
 
 
 def test_ring_bending_stress_by_hand() -> None:
