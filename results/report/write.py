@@ -15,6 +15,9 @@ from results.report import limits, tables
 from results.report.content import ReportContent
 
 TEMPLATE = "report.typ"
+ROOMY = 1200
+"""Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
+they follow each other and the report stays within six pages."""
 
 
 class ReportError(RuntimeError):
@@ -53,7 +56,10 @@ def write_report(path: Path, content: ReportContent) -> None:
 def payload(content: ReportContent) -> dict[str, Any]:
     """The content as JSON values: finished text in the order in which the template sets it."""
     design = content.design
+    names = [design.name, design.material.flexspline.name, design.shaft_material.name]
+    free = [*names, *content.warnings, *(content.stage_seconds or {})]
     return {
+        "roomy": sum(map(len, free)) <= ROOMY,
         "name": design.name,
         "version": content.version,
         "issued": content.issued,

@@ -1,0 +1,119 @@
+"""The PDF: its numbers, its length, and that names are data."""
+
+import re
+
+import pytest
+from hand_made_gear import BACKLASH, content, design
+from PIL import Image
+from pypdf import PdfReader
+
+from results.quantities import THIN
+from results.report.content import Pictures
+from results.report.write import ReportError, write_report
+
+NASTY = [
+    '#read("/etc/passwd")',
+    "*bold* _it_ $x^2$ `raw`",
+    '"); #panic("x") //',
+    "\\u{41} <label> @ref ~ -- ' ] [ } {",
+    "#import \"@preview/x:1.0.0\"",
+]  # fmt: skip
+
+
+def text_of(path):
+    # the page's own line breaks and the invisible break points in long words are no content
+    pages = [page.extract_text() for page in PdfReader(path).pages]
+    return re.sub(r"\s+", " ", " ".join(pages).replace("\u200b", "")), len(pages)
+
+
+def drawn_pictures(folder):
+    paths = {}
+    for name in Pictures.__dataclass_fields__:
+        paths[name] = folder / f"any name of {name}.png"
+        Image.new("RGB", (1600, 1200), (200, 210, 220)).save(paths[name])
+    return Pictures(**paths)
+
+
+def test_report_says_the_numbers(tmp_path):
+    write_report(tmp_path / "r.pdf", content(pictures=drawn_pictures(tmp_path)))
+    text, pages = text_of(tmp_path / "r.pdf")
+    assert 3 <= pages <= 6
+    for number in ("84.6", "12.9", "31 655", "31 607 to 31 703", "24 310", "35 290", "16 687",
+                   "451", "3.22", "5.8", "6.5", "32.9", "39.3", "24.12"):  # fmt: skip
+        assert number.replace(" ", THIN) in text or number in text, number
+    for words in ("uniform", "lobes", "N·m/rad", "Hand-made cup", "estimate, not a guarantee",
+                  "hold without exception", "Page 1 of", "90 % of the stated fatigue limit",
+                  "the seat's edges", "numpy 2.0.0", "mesh of the flexspline 5.3 s"):  # fmt: skip
+        assert words in text, words
+    assert len(PdfReader(tmp_path / "r.pdf").pages[0].extract_text()) > 1000
+
+
+def test_report_without_pictures_and_rim_loads(tmp_path):
+    bare = content(
+        K_b_lobes=None, flexspline_peak=None, wave_generator_peak=None, versions=None,
+        stage_seconds=None,
+    )  # fmt: skip
+    write_report(tmp_path / "r.pdf", bare)
+    text, pages = text_of(tmp_path / "r.pdf")
+    assert 3 <= pages <= 6
+    assert "two lobes" not in text
+    assert "fatigue limit of" not in text
+    assert "None" not in text
+
+
+def test_longest_report_stays_within_six_pages(tmp_path):
+    warnings = tuple(f"warning {i} " + "with many words " * 10 for i in range(20))
+    write_report(
+        tmp_path / "r.pdf",
+        content(
+            design=design(name="N" * 200, material="M" * 200),
+            warnings=warnings,
+            pictures=drawn_pictures(tmp_path),
+            stage_seconds={f"a stage with a long name, number {i}": 1.0 for i in range(25)},
+        ),
+    )
+    text, pages = text_of(tmp_path / "r.pdf")
+    assert 3 <= pages <= 6
+    assert "Read the 20 warnings" in text
+    assert "warning 19" in text
+    assert "N" * 200 in text.replace(" ", "")
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_names_print_as_their_letters(tmp_path, name):
+    write_report(
+        tmp_path / "r.pdf",
+        content(design=design(name=name, material=name), warnings=(name,)),
+    )
+    text, _ = text_of(tmp_path / "r.pdf")
+    # page header, title, material, warning: letters only, as typesetting may move spaces
+    assert text.replace(" ", "").count(name.replace(" ", "")) >= 4
+    assert "root:" not in text
+
+
+def test_same_content_gives_the_same_bytes(tmp_path):
+    for name in ("a.pdf", "b.pdf"):
+        write_report(tmp_path / name, content(pictures=drawn_pictures(tmp_path)))
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+
+
+def test_series_bounds_use_the_k_b_of_the_sum():
+    low, high = content().K_series_bounds_Nm_per_rad
+    assert low == pytest.approx(1 / (1 / 31607.0 + 1 / 35263.0))
+    assert high == pytest.approx(1 / (1 / 31703.0 + 1 / 35317.0))
+
+
+def test_failure_leaves_the_old_report(tmp_path):
+    (tmp_path / "r.pdf").write_bytes(b"old")
+    broken = tmp_path / "broken.png"
+    broken.write_bytes(b"no picture")
+    with pytest.raises(ReportError, match="image"):
+        write_report(tmp_path / "r.pdf", content(pictures=Pictures(budget=broken)))
+    assert (tmp_path / "r.pdf").read_bytes() == b"old"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["broken.png", "r.pdf"]
+
+
+def test_budget_shares_are_of_the_total(tmp_path):
+    write_report(tmp_path / "r.pdf", content())
+    text, _ = text_of(tmp_path / "r.pdf")
+    assert f"{100 * BACKLASH.bearing_play_arcsec / BACKLASH.total_arcsec:.0f} %" in text
