@@ -59,7 +59,7 @@ class Model:
         return 360.0 / self.mesh.sector_deg
 
 
-class _Supports:
+class Supports:
     """Prescribed components; what is set later wins."""
 
     def __init__(self, model: Model) -> None:
@@ -104,7 +104,7 @@ def torsion(model: Model, driven: str) -> Solved:
     ------
     SolveError : residual, or energy and reaction disagree beyond BALANCE_LIMIT.
     """
-    supports = _Supports(model)
+    supports = Supports(model)
     supports.symmetry(antisymmetric=True)
     nodes = model.mesh.nodes_on(driven)
     for component in (RADIAL, AXIAL):
@@ -131,7 +131,7 @@ def lobes(model: Model, supported: bool) -> Solved:
 
     The field is for a torque of 1 N·m on the whole part; K = T²/(2·strain energy).
     """
-    supports = _Supports(model)
+    supports = Supports(model)
     supports.symmetry(antisymmetric=True)
     if supported:
         supports.set(model.mesh.nodes_on("seat"), RADIAL)
@@ -161,7 +161,7 @@ def _lobe_load(model: Model) -> tuple[np.ndarray, float]:
 
 def ellipse(model: Model, w0_mm: float) -> Solved:
     """`mount` held, `seat` given the radial displacement w0·cos 2φ, its other components free."""
-    supports = _Supports(model)
+    supports = Supports(model)
     supports.symmetry(antisymmetric=False)
     nodes = model.mesh.nodes_on("seat")
     phi = np.arctan2(model.mesh.nodes[nodes, 1], model.mesh.nodes[nodes, 0])
