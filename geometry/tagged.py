@@ -139,7 +139,7 @@ def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside_point(face: cq.Face) -> np.ndarray:
-    """A point (1, 3) off the face's edges, exactly on its surface though not always in its bounds."""
+    """A point (1, 3) off the face's edges, on its surface though not always in its bounds."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.TopLoc import TopLoc_Location
@@ -156,9 +156,8 @@ def _surface_of(vertices: np.ndarray, inside: np.ndarray, surfaces: list[Surface
 
     A flat disc is triangulated with all its vertices on the rim, which lies on the cylinder too.
     """
-    near = [
-        i for i, s in enumerate(surfaces) if np.abs(s.project(vertices) - vertices).max() < ON_SURFACE
-    ]
+    far = [np.abs(s.project(vertices) - vertices).max() for s in surfaces]
+    near = [i for i, d in enumerate(far) if d < ON_SURFACE]
     if not near:
         where = np.round(vertices.mean(axis=0), 3).tolist()
         raise GeometryError(f"a CAD face around {where} mm lies on no surface of the design")

@@ -91,6 +91,15 @@ def test_play_spread_is_linear_far_from_the_limit(c_um: float) -> None:
     assert beyond == 0.0
 
 
+def test_nominal_play_spread_as_the_theory_page_states_it() -> None:
+    """0.2 % below the linear rule, 6e-7 of the probability beyond c_max: to the digit printed."""
+    design = design_with()
+    std, beyond = play_spread(design.gear, design.bearing, 2.5)
+    linear = 2.5e-3 * involute_clearance_slope(0.012, A, ALPHA)
+    assert 1 - std / linear == pytest.approx(0.002, abs=0.0005)
+    assert beyond == pytest.approx(6e-7, abs=0.5e-7)
+
+
 def test_play_spread_at_the_limit_is_not_certainty() -> None:
     """There the slope is 0: a linear rule would say that play cannot matter."""
     design = design_with(bearing={"radial_clearance_um": C_MAX_UM})
