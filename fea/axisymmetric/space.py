@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,63 @@ class Space:
         m = len(self.dofs)
         left, right = scaled.reshape(m, 6, -1), self.gradients.reshape(m, 6, -1)
         return left @ right.transpose(0, 2, 1)
+
+
+def isoparametric(mesh: MeridianMesh, degree: int) -> Space:
+    """P2 with fillets followed by curved edges: edge middles on the arc, geometry as the fields.
+
+    Raises
+    ------
+    MeshingError
+        If a curved edge folds its triangle.
+    """
+    from skfem import ElementTriP2
+    from skfem.quadrature import get_quadrature
+
+    straight = quadratic(mesh, mesh.points, 1)
+    places = straight.places.copy()
+    places[straight.rim[:, 2]] = edge_middles(
+        mesh.outline, mesh.points, mesh.edges, mesh.edge_segment
+    )
+    at, weights = get_quadrature(ElementTriP2, degree)
+    values, slopes = reference_shape(at)
+    gradients, jacobian, rz = mapped(places[straight.dofs], values, slopes)
+    # scikit-fem sorts corners by number, so either sign may come, but one per triangle
+    folded = (jacobian * jacobian[:, :1] <= 0).any(axis=1)
+    if folded.any():
+        raise MeshingError(f"{int(folded.sum())} curved triangles fold over")
+    return Space(
+        straight.dofs,
+        straight.count,
+        places,
+        values,
+        gradients,
+        np.abs(jacobian) * weights,
+        rz,
+        straight.rim,
+    )
+
+
+def reference_shape(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """P2 values (6, q) and slopes (6, q, 2) at points (2, q) of the reference triangle."""
+    from skfem import ElementTriP2
+
+    parts = [ElementTriP2().lbasis(at, i) for i in range(6)]
+    values = np.stack([np.broadcast_to(v, at.shape[1]) for v, _ in parts])
+    slopes = np.stack([np.stack([np.broadcast_to(c, at.shape[1]) for c in g], 1) for _, g in parts])
+    return values, slopes
+
+
+def mapped(
+    nodes: np.ndarray, values: np.ndarray, slopes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients (m, 6, q, 2), Jacobians (m, q) and points (m, q, 2) of six-node triangles."""
+    jacobian = np.einsum("mid,iqe->mqde", nodes, slopes)
+    (a, b), (c, d) = np.moveaxis(jacobian, (2, 3), (0, 1))
+    det = a * d - b * c
+    inverse = np.stack([np.stack([d, -b], -1), np.stack([-c, a], -1)], -2) / det[..., None, None]
+    gradients = np.einsum("iqe,mqed->miqd", slopes, inverse)
+    return gradients, det, np.einsum("mid,iq->mqd", nodes, values)
 
 
 def quadratic(mesh: MeridianMesh, points: np.ndarray, degree: int) -> Space:

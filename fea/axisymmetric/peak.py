@@ -1,0 +1,127 @@
+"""The largest von Mises stress among the points that count, looked for between nodes as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.axisymmetric.harmonics import HarmonicModel
+from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.recovery import mises_parts
+from fea.axisymmetric.space import reference_shape
+
+STEPS = 8
+"""Stress is looked at on a lattice of so many steps along each side of a triangle."""
+
+
+class StressError(RuntimeError):
+    """No stress can be reported."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest von Mises stress that counts.
+
+    Attributes
+    ----------
+    mises_MPa : its value.
+    rz : its place on the meridian [mm].
+    at_sine : whether it stands where sin² nφ = 1 rather than cos² nφ = 1.
+    counted : (m,) mask of triangles with a point that counts.
+    local_mises : (m,) largest value that counts in each triangle, 0 if none [MPa].
+    """
+
+    mises_MPa: float
+    rz: tuple[float, float]
+    at_sine: bool
+    counted: np.ndarray
+    local_mises: np.ndarray
+
+
+def peak_stress(model: HarmonicModel, nodal: np.ndarray, clearance_mm: float) -> Peak:
+    """Search all angles and all points at least `clearance_mm` from sharp corners and patch edges.
+
+    The squared stress is A cos² nφ + B sin² nφ, so the largest over φ is the larger of A and B.
+    Beside the lattice, the points of the outline at exactly the clearance are looked at: there
+    the stress is often largest.
+
+    Raises
+    ------
+    StressError
+        If no point is that far away.
+    """
+    s, singular = model.space, _singular(model.mesh)
+    values, _ = reference_shape(_lattice())
+    places = np.einsum("mid,iq->mqd", s.places[s.dofs], values)
+    stress = np.einsum("mic,iq->mqc", nodal[s.dofs], values)
+    # a point at the clearance but for rounding is at the clearance
+    counts = _distance(places, singular) >= clearance_mm * (1 - 1e-9)
+    if not counts.any():
+        raise StressError(f"no point of the part is {clearance_mm:g} mm away from its sharp edges")
+    direct, shear = mises_parts(stress)
+    square = np.where(counts, np.maximum(direct, shear), 0.0)
+    at = np.unravel_index(square.argmax(), square.shape)
+    best, place, at_sine = square[at], places[at], bool(shear[at] > direct[at])
+    for rim_place, rim_stress in _at_clearance(model, nodal, singular, clearance_mm):
+        direct, shear = mises_parts(rim_stress)
+        if max(direct, shear) > best:
+            best, place, at_sine = max(direct, shear), rim_place, bool(shear > direct)
+    return Peak(
+        float(np.sqrt(best)),
+        (float(place[0]), float(place[1])),
+        at_sine,
+        np.asarray(counts.any(axis=1)),
+        np.sqrt(square.max(axis=1)),
+    )
+
+
+def coarse_at_clearance(mesh: MeridianMesh, clearance_mm: float) -> np.ndarray:
+    """Mask (m,) of triangles too large to keep the singular stresses within the clearance.
+
+    A triangle that reached from the singular point past the clearance would carry its false peak
+    along; so those near by may be no larger than half of it.
+    """
+    corner = mesh.points[mesh.triangles]
+    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+    near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * clearance_mm
+    return near & (longest > clearance_mm / 2)
+
+
+def _singular(mesh: MeridianMesh) -> np.ndarray:
+    return np.array([*mesh.outline.sharp_corners, *mesh.outline.patch_edges])
+
+
+def _lattice() -> np.ndarray:
+    """Points (2, q) of the reference triangle."""
+    i, j = np.meshgrid(np.arange(STEPS + 1), np.arange(STEPS + 1), indexing="ij")
+    inside = i + j <= STEPS
+    return np.stack([i[inside], j[inside]]) / STEPS
+
+
+def _distance(places: np.ndarray, singular: np.ndarray) -> np.ndarray:
+    """To the nearest of the singular points."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(singular).query(places)[0]
+
+
+def _at_clearance(
+    model: HarmonicModel, nodal: np.ndarray, singular: np.ndarray, clearance_mm: float
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Places and stresses where the outline leaves the excluded neighbourhoods."""
+    s = model.space
+    t = np.linspace(0, 1, STEPS + 1)
+    shape = _edge_shape(t)
+    beyond = _distance(np.einsum("qi,kid->kqd", shape, s.places[s.rim]), singular) - clearance_mm
+    edge, step = np.nonzero(beyond[:, 1:] * beyond[:, :-1] < 0)
+    before, after = beyond[edge, step], beyond[edge, step + 1]
+    crossing = _edge_shape((step + before / (before - after)) / STEPS)
+    places = np.einsum("ki,kid->kd", crossing, s.places[s.rim[edge]])
+    stresses = np.einsum("ki,kic->kc", crossing, nodal[s.rim[edge]])
+    return list(zip(places, stresses, strict=True))
+
+
+def _edge_shape(t: np.ndarray) -> np.ndarray:
+    """Quadratic shape functions of start, end and middle at t in [0, 1]: (q, 3)."""
+    return np.column_stack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)])

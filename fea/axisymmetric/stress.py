@@ -1,0 +1,192 @@
+"""Peak von Mises stress under the wave generator's ellipse and under torque, on the meridian.
+
+At sharp corners and patch edges the linear solution is singular and no stress converges; points
+nearer to them than one wall thickness do not count (the contract's rule). Fillets count in full.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Amplitudes, Fixed, HarmonicModel, Wave
+from fea.axisymmetric.peak import Peak, coarse_at_clearance, peak_stress
+from fea.axisymmetric.recovery import Recovered, mises_parts, recovered
+from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
+from fea.axisymmetric.triangulate import triangulate
+from fea.types import NMM_PER_NM, Elastic, StressPeak
+from geometry.meridian import Meridian
+
+BULK = 0.5
+LOCAL = 0.5
+"""Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
+QUIET_ROUNDS = 2
+"""So many refinements in a row must leave the peak unchanged within the tolerance."""
+
+
+@dataclass(frozen=True)
+class StressLevel:
+    """One mesh of the sequence and its peak."""
+
+    elements: int
+    unknowns: int
+    mises_MPa: float
+    energy_error: float
+    """Estimated relative error of the strain energy."""
+
+
+@dataclass(frozen=True)
+class RevolvedField:
+    """A solved harmonic on the finest mesh, its peak stress and how it got there.
+
+    u_r = U cos nφ, u_θ = V sin nφ, u_z = W cos nφ; torsion is n = 0 with V alone. Stresses rr, θθ,
+    zz and rz vary as cos nφ, rθ and θz as sin nφ (torsion: constant).
+
+    Attributes
+    ----------
+    places : (count, 2) P2 nodes (r, z) [mm].
+    triangles : (m, 6) their numbers: corners, then the middles of 01, 12, 02; any sense.
+    displacement : (count, 3) amplitudes U, V, W [mm].
+    stress : (count, 6) smoothed amplitudes rr, θθ, zz, rz, rθ, θz [MPa].
+    peak : the largest von Mises stress that counts, Cartesian place at angle `peak_phi`.
+    peak_rz : the same place on the meridian [mm].
+    peak_phi : its angle [rad], the first of those with the same stress.
+    peak_change : relative change of the peak over the last refinements, the estimate of its error.
+    levels : the meshes.
+    """
+
+    n: int
+    places: np.ndarray
+    triangles: np.ndarray
+    displacement: np.ndarray
+    stress: np.ndarray
+    peak: StressPeak
+    peak_rz: tuple[float, float]
+    peak_phi: float
+    peak_change: float
+    levels: tuple[StressLevel, ...]
+
+    def mises(self, phi: float) -> np.ndarray:
+        """von Mises stress (count,) at the nodes at an angle [MPa]."""
+        direct, shear = mises_parts(self.stress)
+        if self.n == 0:
+            return np.sqrt(direct + shear)
+        return np.sqrt(direct * np.cos(self.n * phi) ** 2 + shear * np.sin(self.n * phi) ** 2)
+
+
+def ellipse_stress(
+    outline: Meridian, material: Elastic, w0_mm: float, wall_mm: float, tolerance: float
+) -> RevolvedField:
+    """Peak stress with `mount` held and `seat` moved radially by w0 cos 2φ, otherwise free.
+
+    `tolerance`: the peak may change by no more than this fraction over two refinements.
+
+    Raises
+    ------
+    MeshingError, HarmonicError, StressError, ToleranceError
+    """
+
+    def solve(model: HarmonicModel) -> Amplitudes:
+        fixed = [Fixed(model.on("seat"), RADIAL, w0_mm), *model.held("mount")]
+        return model.solve(Wave(2), fixed, np.zeros(3 * model.space.count))
+
+    return _converged(outline, material, Wave(2), solve, wall_mm, tolerance)
+
+
+def torsion_stress(
+    outline: Meridian,
+    material: Elastic,
+    driven: str,
+    torque_Nm: float,
+    wall_mm: float,
+    tolerance: float,
+) -> RevolvedField:
+    """Peak stress with `mount` held and `driven` turned rigidly by a torque.
+
+    Tolerance and errors are those of `ellipse_stress`.
+    """
+
+    def solve(model: HarmonicModel) -> Amplitudes:
+        on = model.on(driven)
+        fixed = [Fixed(on, TANGENTIAL, model.space.places[on, 0]), *model.held("mount")]
+        unit = model.solve(Wave(0, torsion=True), fixed, np.zeros(3 * model.space.count))
+        angle = torque_Nm * NMM_PER_NM / unit.twice_energy
+        return Amplitudes(
+            unit.values * angle, unit.twice_energy * angle**2, 0.0, unit.residual, unit.unknowns
+        )
+
+    return _converged(outline, material, Wave(0, torsion=True), solve, wall_mm, tolerance)
+
+
+def _converged(
+    outline: Meridian,
+    material: Elastic,
+    wave: Wave,
+    solve: Callable[[HarmonicModel], Amplitudes],
+    wall_mm: float,
+    tolerance: float,
+) -> RevolvedField:
+    """Refine where the energy is wrong, and where a stress that counts is."""
+    mesh = triangulate(outline)
+    while (coarse := coarse_at_clearance(mesh, wall_mm)).any():
+        mesh = refined(mesh, coarse)
+    levels: list[StressLevel] = []
+    while True:
+        model = HarmonicModel(mesh, material)
+        solved = solve(model)
+        found = recovered(model, wave, solved.values)
+        peak = peak_stress(model, found.nodal, wall_mm)
+        energy_error = float(found.error.sum() / found.energy.sum())
+        levels.append(
+            StressLevel(len(mesh.triangles), solved.unknowns, peak.mises_MPa, energy_error)
+        )
+        change = _change(levels)
+        if change < tolerance and energy_error < tolerance:
+            return _field(model, wave, solved, found, peak, change, wall_mm, levels)
+        if len(mesh.triangles) > MOST_TRIANGLES:
+            raise ToleranceError(tolerance, change, len(mesh.triangles))
+        wrong = peak.counted & (found.misfit > LOCAL * tolerance * peak.mises_MPa)
+        # no smaller than needed where the peak is not: those far below it may be a few percent off
+        near = peak.local_mises > peak.mises_MPa / 2
+        mesh = refined(mesh, bulk(found.error, BULK) | (wrong & near))
+
+
+def _change(levels: list[StressLevel]) -> float:
+    if len(levels) <= QUIET_ROUNDS:
+        return np.inf
+    last = [level.mises_MPa for level in levels[-1 - QUIET_ROUNDS :]]
+    return max(last) / min(last) - 1
+
+
+def _field(
+    model: HarmonicModel,
+    wave: Wave,
+    solved: Amplitudes,
+    found: Recovered,
+    peak: Peak,
+    change: float,
+    wall_mm: float,
+    levels: list[StressLevel],
+) -> RevolvedField:
+    phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
+    r, z = peak.rz
+    excluded = (
+        f"points nearer than {wall_mm:g} mm to a sharp edge or a patch edge, where the linear "
+        "solution is singular and no stress converges"
+    )
+    return RevolvedField(
+        n=wave.n,
+        places=model.space.places,
+        triangles=model.space.dofs,
+        displacement=solved.values.reshape(-1, 3),
+        stress=found.nodal,
+        peak=StressPeak(peak.mises_MPa, (r * cos(phi), r * sin(phi), z), excluded),
+        peak_rz=peak.rz,
+        peak_phi=phi,
+        peak_change=change,
+        levels=tuple(levels),
+    )
