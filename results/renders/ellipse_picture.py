@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.types import SolidField
 from results.renders.scene import Shot, View, shoot
-from results.renders.sheet import INSET, MAIN, Sheet, write_sheet
+from results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
 from results.renders.shown import (
     Seen,
     goes_beyond,
@@ -23,8 +23,9 @@ from results.renders.surface import crease_edges, lines, skin
 from results.renders.whole import whole_part
 from results.style import ACCENT
 
-_VIEW = View(-68.0, 34.0)
-"""Along the minor axis more than the major, so that the ellipse's long side lies across."""
+_VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))
+"""Along the minor axis more than the major, so that the ellipse's long side lies across. The first
+that shows the peak is drawn; the last looks into a hat from its flange."""
 _ALONG_AXIS = View(-90.0, 89.999)
 _STILL = 1e-2
 """Edges that move by less than this part of the size coincide with the deformed ones: not drawn."""
@@ -43,9 +44,9 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
     size = float(np.ptp(whole.nodes[:, 0]))
     factor = magnification(float(np.linalg.norm(field.displacement, axis=1).max()), size)
     shift = factor * whole.displacement
-    main = Seen(whole.nodes + shift, shown, _VIEW)
     inset = Seen(whole.nodes + shift, shown, _ALONG_AXIS)
     edges = crease_edges(whole.nodes, shown.facets)
+    main, mark = _facing_peak(field, whole.nodes, inset)
     moving = np.linalg.norm(shift, axis=1)[edges].max(axis=1) > _STILL * size
     before = lines(whole.nodes, edges[moving])
     beyond = goes_beyond(field.peak, shown, whole.mises)
@@ -67,6 +68,18 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
                 + stress_note(beyond)
             ),
             bar=stress_bar(field.peak, beyond),
-            mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),
+            mark=mark,
         ),
     )
+
+
+def _facing_peak(field: SolidField, nodes: np.ndarray, inset: Seen) -> tuple[Seen, Mark]:
+    """The first of the views that shows the peak, or the first of all, and the mark in it."""
+    found: list[tuple[Seen, Mark]] = []
+    for view in _VIEWS:
+        seen = Seen(inset.points, inset.shown, view)
+        mark = peak_mark(field.peak, field.mesh.sector_deg, nodes, seen, inset)
+        if mark.shown_by == "main":
+            return seen, mark
+        found.append((seen, mark))
+    return found[0]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -33,11 +33,11 @@ _TITLE, _SUBTITLE, _TEXT, _NOTE = 50, 38, 44, 34
 
 @dataclass(frozen=True)
 class Mark:
-    """A point of the drawn part [mm], what is written about it, and whether the inset shows it."""
+    """A point of the drawn part [mm], what is written about it, and which view shows it."""
 
     at_mm: np.ndarray
     text: str
-    in_inset: bool
+    shown_by: Literal["main", "inset", "none"]
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    axes = figure.add_axes(_box(1408, 170, 46, 750))
+    axes = figure.add_axes(_box(1392, 170, 46, 750))
     scale = figure.colorbar(
         ScalarMappable(Normalize(0.0, bar.high), COLOUR_MAP),
         cax=axes,
@@ -136,8 +136,10 @@ def _bar(figure: Figure, bar: Bar) -> None:
     scale.set_ticks([*inside, bar.high], labels=[*words, bar.high_text])
     scale.outline.set_linewidth(0.8)
     axes.minorticks_off()
-    axes.tick_params(labelsize=_pt(_TEXT), width=1.5, length=8, pad=8)
-    _say(figure, (1478, 970), bar.label, _TEXT, INK, ha="center")
+    longest = max(map(len, [*words, bar.high_text]))
+    size = _TEXT * min(1.0, 5 / longest)  # five figures fill the margin
+    axes.tick_params(labelsize=_pt(size), width=1.5, length=8, pad=8)
+    _say(figure, (1476, 970), bar.label, _TEXT, INK, ha="center")
 
 
 def _ticks(high: float) -> tuple[list[float], list[str]]:
@@ -145,7 +147,7 @@ def _ticks(high: float) -> tuple[list[float], list[str]]:
     from matplotlib.ticker import MaxNLocator
 
     steps = MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]).tick_values(0.0, high)
-    inside = [float(s) for s in steps if 0 <= s < 0.93 * high]
+    inside = [float(s) for s in steps if 0 <= s < 0.9 * high]
     places = max(len(f"{s:.6g}".partition(".")[2]) for s in inside)
     return inside, [f"{s:.{places}f}" if s else "0" for s in inside]
 
@@ -160,7 +162,8 @@ def _overlay(figure: Figure) -> Axes:
 
 
 def _mark(figure: Figure, main: Shot, inset: Shot, mark: Mark) -> None:
-    shot, at, size = (inset, _INSET_AT, 18) if mark.in_inset else (main, _MAIN_AT, 26)
+    in_inset = mark.shown_by == "inset"
+    shot, at, size = (inset, _INSET_AT, 18) if in_inset else (main, _MAIN_AT, 26)
     column, row = shot.pixel(mark.at_mm)
     x, y = at[0] + column, at[1] + shot.image.shape[0] - row
     axes = _overlay(figure)

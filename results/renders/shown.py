@@ -104,9 +104,9 @@ def peak_mark(
         facing = sorted(np.array(copies)[on_skin], key=lambda n: -float(seen.points[n] @ eye))
         for node in facing:
             if _is_visible(drawn, seen.points[node], eye):
-                return Mark(seen.points[node], text, seen is inset)
+                return Mark(seen.points[node], text, "main" if seen is main else "inset")
     nearest = max(copies, key=lambda n: float(main.points[n] @ main.view.axes[2]))
-    return Mark(main.points[nearest], f"{text}\n(hidden)", False)
+    return Mark(main.points[nearest], f"{text}\n(hidden)", "none")
 
 
 def magnification(largest_mm: float, size_mm: float) -> float:

@@ -15,11 +15,10 @@ from results.report.write import write_report
 def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]) -> None:
     """`report.pdf` of `flexspline run`; `pictures` as `results.pictures` names them."""
     found, fields, design = result.stiffnesses, result.fields, result.design
-    assert found.K_b is not None
     content = ReportContent(
         design=design,
         version=program_version(),
-        K_b=found.K_b,
+        K_b=found.flexspline,
         K_e=found.shaft,
         K_series_Nm_per_rad=found.series_Nm_per_rad(design),
         backlash=result.backlash,

@@ -58,8 +58,9 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         found.append(
             [
                 "Peak stress",
-                "A linear solution is singular at sharp edges and patch edges; no number there "
-                "converges. Left out of the peaks: " + "; ".join(sorted(stated)) + ".",
+                "Left out of the peaks: "
+                + "; ".join(sorted(stated))
+                + ". No number there converges. Fillets count in full.",
             ]
         )
     return found
@@ -72,10 +73,11 @@ def fatigue(content: ReportContent) -> str:
     if limit is None or peak is None:
         return ""
     stress = quantity("wave_generator_peak_mises_MPa")
+    beyond = " It is above that limit." if peak.mises_MPa > limit else ""
     return (
         f"The wave generator's ellipse alternates twice per turn: its peak of "
         f"{stress.with_unit(peak.mises_MPa)} is {100 * peak.mises_MPa / limit:.0f} % of the stated "
-        f"fatigue limit of {limit:g} MPa. Surface, size and mean stress are not considered."
+        f"fatigue limit of {limit:g} MPa.{beyond} Surface, size and mean stress are not considered."
     )
 
 

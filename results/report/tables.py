@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fea.types import Stiffness
-from geometry.design import Cup, Design
+from geometry.design import Cup, Design, Material
 from results.quantities import Quantity, grouped, quantity
 from results.report.content import ReportContent
 
@@ -73,6 +73,7 @@ def solves(content: ReportContent) -> list[Row]:
                 "elements": quantity("solver.elements").text(last.elements),
                 "dofs": quantity("solver.dofs").text(last.dofs),
                 "half_width": f"±{half:.2g} %",
+                "wide": "yes" if half > content.design.solver.tolerance_pct else "",
                 "residual": _power(last.residual),
                 "energy": _power(abs(last.K_reaction_Nm_per_rad / last.K_Nm_per_rad - 1)),
                 "method": s.method[:1].upper() + s.method[1:].rstrip("."),
@@ -102,8 +103,7 @@ def design_facts(design: Design) -> list[list[str]]:
             f"{', …' if len(segments) > 6 else ''} mm; {_holes(design.shaft.bolt_count)}"
             f"{'; keyway' if design.shaft.keyway else ''}",
         ],
-        ["Material, flexspline", _material(design, "flexspline")],
-        ["Material, shaft", _material(design, "shaft")],
+        *_materials(design),
         [
             "Gear",
             f"module {gear.module_mm:g} mm, {gear.teeth_flexspline}/{gear.teeth_circular_spline} "
@@ -164,7 +164,16 @@ def _holes(count: int) -> str:
     return f"{count} bolt holes" if count else "no bolt holes"
 
 
-def _material(design: Design, part: str) -> str:
-    m = design.shaft_material if part == "shaft" else design.material.flexspline
+def _materials(design: Design) -> list[list[str]]:
+    flexspline, shaft = design.material.flexspline, design.shaft_material
+    if flexspline == shaft:
+        return [["Material, both parts", _material(flexspline)]]
+    return [
+        ["Material, flexspline", _material(flexspline)],
+        ["Material, shaft", _material(shaft)],
+    ]
+
+
+def _material(m: Material) -> str:
     limit = f", fatigue limit {m.fatigue_limit_MPa:g} MPa" if m.fatigue_limit_MPa else ""
     return f"{m.name}: E = {m.youngs_modulus_GPa:g} GPa, ν = {m.poissons_ratio:g}{limit}"

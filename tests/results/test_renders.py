@@ -90,7 +90,7 @@ def test_peak_is_marked_at_a_copy_that_faces_the_eye():
     mark = peak_mark(made.peak, mesh.sector_deg, whole.nodes, seen, seen)
     assert np.hypot(*mark.at_mm[:2]) == pytest.approx(OUTER, abs=1e-9)
     assert mark.at_mm[2] == pytest.approx(6.0, abs=1e-9)
-    assert "hidden" not in mark.text
+    assert mark.shown_by == "main"
     assert "1.90" in mark.text
     # a point of the outer surface is seen only from its own side
     assert mark.at_mm[:2] @ eye.axes[2][:2] > 0
@@ -102,6 +102,7 @@ def test_peak_that_no_view_shows_says_so():
     whole = whole_part(mesh, made.displacement, made.mises, "antisymmetric")
     above = Seen(whole.nodes, skin(whole), View(0.0, 5.0))  # the tube's inner floor edge: hidden
     mark = peak_mark(made.peak, mesh.sector_deg, whole.nodes, above, above)
+    assert mark.shown_by == "none"
     assert "hidden" in mark.text
 
 
