@@ -1,0 +1,1 @@
+"""Finite elements: axisymmetric bounds and solid models."""

@@ -1,0 +1,1 @@
+"""The design and its shape: schema, checks, profiles, CAD solids, symmetry."""

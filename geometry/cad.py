@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sin
+from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,6 @@ def build_solid(design: Design, part: str, sector_deg: float = WHOLE) -> cq.Soli
     ------
     GeometryError : the kernel left no single valid solid.
     """
-    import cadquery as cq
 
     body: cq.Shape = _revolve(meridian(design, part), sector_deg)
     tools = [*bolt_cylinders(design, part), *_keyway_boxes(design, part)]
@@ -41,23 +40,16 @@ def bolt_cylinders(design: Design, part: str) -> list[cq.Solid]:
     """The bolt holes as solids, the first at angle 0."""
     import cadquery as cq
 
-    owner = design.shaft if part == "shaft" else design.flexspline
-    if not owner.bolt_count:
+    bolts = (design.shaft if part == "shaft" else design.flexspline).bolts
+    if bolts is None:
         return []
-    assert owner.bolt_circle_diameter_mm and owner.bolt_hole_diameter_mm  # geometry.checks
-    radius, hole = owner.bolt_circle_diameter_mm / 2, owner.bolt_hole_diameter_mm / 2
     below, top = bolt_depth(design, part)
     return [
         cq.Solid.makeCylinder(
-            hole, top + below, cq.Vector(radius * cos(a), radius * sin(a), -below), cq.Vector(0, 0, 1)
+            bolts.hole_radius, top + below, cq.Vector(x, y, -below), cq.Vector(0, 0, 1)
         )
-        for a in bolt_angles(owner.bolt_count)
+        for x, y in bolts.centres
     ]
-
-
-def bolt_angles(count: int) -> list[float]:
-    """Angles of the hole axes about z [rad]."""
-    return [2 * pi * k / count for k in range(count)]
 
 
 def bolt_depth(design: Design, part: str) -> tuple[float, float]:
@@ -114,7 +106,6 @@ def _in_plane(p: tuple[float, ...]) -> cq.Vector:
 def partition_faces(solid: cq.Solid, outline: Meridian, sector_deg: float) -> list[cq.Face]:
     """The cuts through the material at patch edges, as faces trimmed to the solid."""
     import cadquery as cq
-
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
     from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 

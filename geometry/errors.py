@@ -35,7 +35,11 @@ class DesignFileError(DesignError):
         self.args = (f"{one_line(str(path))}: {one_line(reason)}",)
 
 
-class GeometryError(RuntimeError):
+class ComputationError(RuntimeError):
+    """A computation failed for a stated reason; the base of every such error of every room."""
+
+
+class GeometryError(ComputationError):
     """The CAD kernel did not produce the solid that the design describes."""
 
 

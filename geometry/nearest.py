@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 PAIRS_AT_ONCE = 4_000_000
@@ -21,7 +23,9 @@ def nearest_triangles(
     faces more than 60° away counts only where there is no other. Points with no triangle within
     `reach` [mm] get index -1 and an infinite distance.
     """
-    import trimesh
+    from trimesh.triangles import closest_point as closest
+
+    closest_point: Callable[[np.ndarray, np.ndarray], np.ndarray] = closest
 
     corners = vertices[triangles]
     low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
@@ -36,7 +40,7 @@ def nearest_triangles(
         for axis in range(3):
             inside &= (p[:, axis, None] >= low[:, axis]) & (p[:, axis, None] <= high[:, axis])
         i, t = np.nonzero(inside)
-        distance = np.linalg.norm(trimesh.triangles.closest_point(corners[t], p[i]) - p[i], axis=1)
+        distance = np.linalg.norm(closest_point(corners[t], p[i]) - p[i], axis=1)
         agree = np.einsum("ij,ij->i", normals[start + i], facing[t])
         # along shared edges distances are equal: the better normal decides
         score = distance + 1e-6 * (1 - agree) + np.where(agree > 0.5, 0.0, 1e3 * reach)

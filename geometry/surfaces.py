@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 
-from geometry.cad import bolt_angles
 from geometry.design import Design
 from geometry.meridian import Meridian, Segment
 
@@ -60,6 +59,8 @@ class HoleWall:
 
 @dataclass(frozen=True)
 class Plane:
+    """A plane through `point` with unit `normal`."""
+
     point: tuple[float, float, float]
     normal: tuple[float, float, float]
     patch: str = ""
@@ -80,20 +81,13 @@ def sector_planes(sector_deg: float) -> list[Surface]:
     ]
 
 
-def part_surfaces(
-    design: Design, part: str, outline: Meridian, sector_deg: float
-) -> list[Surface]:
+def part_surfaces(design: Design, part: str, outline: Meridian, sector_deg: float) -> list[Surface]:
     """Every surface that a face of the part may lie on; earlier ones win where two coincide."""
     found: list[Surface] = sector_planes(sector_deg)
     found += [Swept(s) for s in outline.segments if not s.on_axis]
-    owner = design.shaft if part == "shaft" else design.flexspline
-    if owner.bolt_count:
-        assert owner.bolt_circle_diameter_mm and owner.bolt_hole_diameter_mm
-        r = owner.bolt_circle_diameter_mm / 2
-        found += [
-            HoleWall((r * cos(a), r * sin(a)), owner.bolt_hole_diameter_mm / 2)
-            for a in bolt_angles(owner.bolt_count)
-        ]
+    bolts = (design.shaft if part == "shaft" else design.flexspline).bolts
+    if bolts is not None:
+        found += [HoleWall(centre, bolts.hole_radius) for centre in bolts.centres]
     if part == "shaft":
         found.append(Plane((0, 0, design.shaft.segment[0].length_mm), (0, 0, 1)))
         if design.shaft.keyway:

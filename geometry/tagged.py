@@ -92,7 +92,9 @@ def tagged_surface(
         count += len(v)
     vertices, faces = _merged(np.concatenate(points), np.concatenate(triangles))
     surface_of = np.concatenate(owner)
-    solid_faces = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    solid_faces = (
+        (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    )
     faces, surface_of = faces[solid_faces], surface_of[solid_faces]
     _check_watertight(vertices, faces, part)
     cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg), chord_error)

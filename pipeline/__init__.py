@@ -1,0 +1,1 @@
+"""The chain of stages, its cache, and the backlash sum."""

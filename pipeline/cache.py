@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 T = TypeVar("T")
-FORMAT = 1
+FORMAT = 2
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
@@ -33,7 +33,9 @@ class Cache:
 
     def get(self, stage: str, inputs: Mapping[str, Any], make: Callable[[], T]) -> tuple[T, bool]:
         """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored."""
-        path = self.folder / stage / f"{content_key({'format': FORMAT, 'stage': stage, **inputs})}.npz"
+        path = (
+            self.folder / stage / f"{content_key({'format': FORMAT, 'stage': stage, **inputs})}.npz"
+        )
         found = self._read(path)
         if found is not _MISSING:
             return found, True
@@ -62,7 +64,7 @@ class Cache:
             handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
             try:
                 with os.fdopen(handle, "wb") as out:
-                    np.savez(out, json=np.frombuffer(text, np.uint8), **arrays)
+                    np.savez(out, **arrays, json=np.frombuffer(text, np.uint8))  # type: ignore[arg-type]
                 os.replace(name, path)
             finally:
                 Path(name).unlink(missing_ok=True)

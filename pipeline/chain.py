@@ -50,6 +50,13 @@ class Stiffnesses:
         return chosen
 
     @property
+    def flexspline(self) -> Stiffness:
+        """K_b of the case "uniform", which somebody must have asked for."""
+        if self.K_b is None:
+            raise LookupError("K_b was not solved")
+        return self.K_b
+
+    @property
     def shaft(self) -> Stiffness:
         """K_e, which somebody must have asked for."""
         if self.K_e is None:
@@ -110,9 +117,7 @@ def run(shop: Workshop) -> RunResult:
             "wave_generator": rim.wave_generator,
         }
     total = backlash_of(design, found)
-    return RunResult(
-        design, warnings(design), found, fields, total, dict(shop.progress.seconds)
-    )
+    return RunResult(design, warnings(design), found, fields, total, dict(shop.progress.seconds))
 
 
 def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
@@ -147,9 +152,7 @@ def rim_loads(shop: Workshop, flexspline: PartModel) -> RimLoads:
         twisted = flexspline.twisted()
         sector = sector_of(shop.design, "flexspline", "ellipse")
         with shop.progress.stage("wave generator and lobes"):
-            model = Model.of(
-                unfolded(twisted.meshed.mesh, sector.degrees), flexspline.material
-            )
+            model = Model.of(unfolded(twisted.meshed.mesh, sector.degrees), flexspline.material)
             shop.progress.note(f"  {len(model.mesh.cells)} elements, {sector.label} of the part")
             field = stress_field(
                 model.mesh,
@@ -172,5 +175,3 @@ def rim_loads(shop: Workshop, flexspline: PartModel) -> RimLoads:
 def _edges(part: PartModel, meshed: MeshedPart) -> SharpEdges:
     wall = part.shop.design.flexspline.wall_thickness_mm
     return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, wall)
-
-

@@ -189,4 +189,3 @@ class PartModel:
             return TwistedPart(found.stiffness, meshed, found.solved.displacement)
 
         return self.shop.cache.get("torsion", self.torsion_key, make)[0]
-

@@ -28,7 +28,9 @@ app = typer.Typer(
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Where files go; default beside the input, NAME.out/"),
+    typer.Option(
+        "--out", metavar="DIR", help="Where files go; default beside the input, NAME.out/"
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 
@@ -45,7 +47,7 @@ def _tell(line: str) -> None:
 @contextmanager
 def _answered(path: Path | None = None) -> Iterator[None]:
     """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
-    from geometry.errors import DesignError, GeometryError
+    from geometry.errors import ComputationError, DesignError
 
     where = f"{path}: " if path else ""
     try:
@@ -54,26 +56,16 @@ def _answered(path: Path | None = None) -> Iterator[None]:
         _tell(f"flexspline: {where}{error}")
         raise typer.Exit(2) from None
     except KeyboardInterrupt:
-        _tell("flexspline: interrupted; finished stages are kept, the same command goes on from there")
+        _tell(
+            "flexspline: interrupted; finished stages are kept, the same command goes on from there"
+        )
         raise typer.Exit(130) from None
-    except (GeometryError, *_computation_errors()) as error:
+    except ComputationError as error:
         _tell(f"flexspline: {where}{error}")
         raise typer.Exit(1) from None
     except OSError as error:
         _tell(f"flexspline: {error.filename or where}: {error.strerror or error}")
         raise typer.Exit(1) from None
-
-
-def _computation_errors() -> tuple[type[Exception], ...]:
-    """Errors of the fea room, if it has been loaded: it is heavy, and not every command needs it."""
-    found: list[type[Exception]] = []
-    for module, name in (
-        ("fea.solid.errors", "SolidError"),
-        ("fea.axisymmetric.torsion", "ToleranceError"),
-    ):
-        if module in sys.modules:
-            found.append(getattr(sys.modules[module], name))
-    return tuple(found)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,6 @@ def table(record: dict[str, Any], folder: Path) -> str:
             shown = f"{entry.range_text(*value)} {entry.unit}"
         else:
             shown = f"{entry.text(value)} {entry.unit}"
-        lines.append(f"  {entry.name:<82} {shown}")
+        lines.append(f"  {entry.name:<64} {shown}".rstrip())
     lines.append(f"files in {folder}")
     return "\n".join(lines)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from fea.types import SolidField
 from geometry.cad import build_solid, write_step, write_stl
 from pipeline.chain import Workshop, rim_loads, torque_field
-from results.renders.whole import whole_part
+from results.renders.whole import Parity, whole_part
 
 STL_CHORD_ERROR_MM = 0.01
 
@@ -24,22 +25,18 @@ def write_exports(shop: Workshop, folder: Path) -> list[Path]:
     for name in ("flexspline", "shaft"):
         with shop.progress.stage(f"CAD of the whole {name}"):
             solid = build_solid(shop.design, name)
-            done.append(_whole(folder / f"{name}.step", lambda p, s=solid: write_step(s, p)))
-            done.append(
-                _whole(
-                    folder / f"{name}.stl",
-                    lambda p, s=solid: write_stl(s, p, STL_CHORD_ERROR_MM),
-                )
-            )
+            done.append(_whole(folder / f"{name}.step", partial(write_step, solid)))
+            stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
+            done.append(_whole(folder / f"{name}.stl", stl))
     flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
-    fields = {
-        "flexspline_torque": torque_field(flexspline),
-        "shaft_torque": torque_field(shaft),
-        "wave_generator": rim_loads(shop, flexspline).wave_generator,
-    }
-    for name, field in fields.items():
+    fields: tuple[tuple[str, SolidField, Parity], ...] = (
+        ("flexspline_torque", torque_field(flexspline), "antisymmetric"),
+        ("shaft_torque", torque_field(shaft), "antisymmetric"),
+        ("wave_generator", rim_loads(shop, flexspline).wave_generator, "symmetric"),
+    )
+    for name, field, parity in fields:
         with shop.progress.stage(f"VTU {name}"):
-            done.append(_whole(folder / f"{name}.vtu", lambda p, f=field: _write_vtu(f, p)))
+            done.append(_whole(folder / f"{name}.vtu", partial(_write_vtu, field, parity)))
     return done
 
 
@@ -53,12 +50,11 @@ def _whole(path: Path, write: Callable[[Path], object]) -> Path:
     return path
 
 
-def _write_vtu(field: SolidField, path: Path) -> None:
+def _write_vtu(field: SolidField, parity: Parity, path: Path) -> None:
     """The whole part, the sector reflected and turned, as quadratic tetrahedra."""
     import pyvista as pv
 
-    mirror = "symmetric" if field.load_case.startswith("wave generator") else "antisymmetric"
-    whole = whole_part(field.mesh, field.displacement, field.mises, mirror)
+    whole = whole_part(field.mesh, field.displacement, field.mises, parity)
     grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: whole.cells}, whole.nodes)
     grid.point_data["displacement_mm"] = whole.displacement
     grid.point_data["von_mises_MPa"] = whole.mises

@@ -17,7 +17,7 @@ from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 1
+DRAWING = 2
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 
 
@@ -52,7 +52,7 @@ def _pictures(
     w0 = wave_generator_amplitude(design)
     sums = {"backlash": asdict(result.backlash), **torque}
     K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad
-    bounded = {"K_b_Nm_per_rad": found.K_b, "K_e_Nm_per_rad": found.shaft}
+    bounded = {"K_b_Nm_per_rad": found.flexspline, "K_e_Nm_per_rad": found.shaft}
 
     def part(name: str) -> Mapping[str, Any]:
         return shop.part(name).torsion_key

@@ -26,6 +26,7 @@ def program_version() -> str:
 
 
 def heading(design: Design) -> Record:
+    """Which design, which program."""
     return {"design": design.name, "version": program_version()}
 
 
@@ -42,7 +43,9 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
             ]
     if found.K_b is not None and found.K_e is not None:
         record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
-    solver = {name: _solver(k) for name, k in (("flexspline", found.K_b), ("shaft", found.K_e)) if k}
+    solver = {
+        name: _solver(k) for name, k in (("flexspline", found.K_b), ("shaft", found.K_e)) if k
+    }
     # the contract's flat figures are the flexspline's, or the shaft's where that alone was solved
     record["solver"] = {**next(iter(solver.values())), "wall_s": round(wall_s, 3), "parts": solver}
     return record

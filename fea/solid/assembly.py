@@ -60,9 +60,7 @@ def stiffness_matrix(mesh: TetMesh, material: Elastic, frames: NodeFrames) -> cs
         for k in range(9):
             blocks[:, k] += np.bincount(where, local[:, k], minlength=len(pairs))
     indptr = np.searchsorted(pairs // n, np.arange(n + 1))
-    return bsr_matrix(
-        (blocks.reshape(-1, 3, 3), pairs % n, indptr), shape=(3 * n, 3 * n)
-    ).tocsr()
+    return bsr_matrix((blocks.reshape(-1, 3, 3), pairs % n, indptr), shape=(3 * n, 3 * n)).tocsr()
 
 
 def _element_blocks(

@@ -34,7 +34,9 @@ class Gradients:
     weights: np.ndarray
 
 
-def gradients(nodes: np.ndarray, cells: np.ndarray, points: np.ndarray, weights: np.ndarray) -> Gradients:
+def gradients(
+    nodes: np.ndarray, cells: np.ndarray, points: np.ndarray, weights: np.ndarray
+) -> Gradients:
     """Gradients of the ten basis functions of curved elements at reference points (q, 3)."""
     local = reference_gradients(points)  # (q, 10, 3)
     jacobian = np.einsum("mix,qij->mqxj", nodes[cells], local)  # dx/dξ
@@ -49,7 +51,8 @@ def _inverse3(j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     a, b, c = j[..., 0, :], j[..., 1, :], j[..., 2, :]
     inverse = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
     det = np.einsum("...i,...i->...", a, inverse[..., 0])
-    return inverse / det[..., None, None], det
+    safe = np.where(det == 0, 1.0, det)  # a folded element is found by its determinant
+    return inverse / safe[..., None, None], det
 
 
 def reference_gradients(points: np.ndarray) -> np.ndarray:
@@ -86,10 +89,14 @@ NODES = np.array(
 """Reference coordinates of the ten nodes."""
 
 
-def smallest_jacobian(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Smallest det J over nodes and the degree-4 quadrature points, per element (m,)."""
+def jacobian_ratio(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Smallest over largest det J at the nodes and quadrature points, per element (m,).
+
+    1 for straight edges, 0 or less where curving has folded the element.
+    """
     points = np.vstack([NODES, tet_rule(4)[0]])
-    return gradients(nodes, cells, points, np.ones(len(points))).weights.min(axis=1)
+    det = gradients(nodes, cells, points, np.ones(len(points))).weights
+    return det.min(axis=1) / np.abs(det).max(axis=1)
 
 
 def element_volumes(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:

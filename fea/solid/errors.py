@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from geometry.errors import ComputationError
 
-class SolidError(RuntimeError):
+
+class SolidError(ComputationError):
     """A solid model could not be built or solved."""
 
 

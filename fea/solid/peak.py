@@ -46,9 +46,7 @@ def stress_field(
     return SolidField(mesh, load_case, displacement, von_mises(stress), peak)
 
 
-def _peak(
-    mesh: TetMesh, stress: np.ndarray, edges: SharpEdges
-) -> StressPeak:
+def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:
     from scipy.spatial import cKDTree
 
     values = _facet_lattice()

@@ -39,7 +39,10 @@ def graded_background(
     low, high = box[0] - grading.far, box[1] + grading.far
     counts = np.maximum(2, np.ceil((high - low) / grading.far).astype(int) + 1)
     grid = np.stack(
-        np.meshgrid(*(np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)), indexing="ij"),
+        np.meshgrid(
+            *(np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)),
+            indexing="ij",
+        ),
         axis=-1,
     ).reshape(-1, 3)
     inner = ((grid > low) & (grid < high)).all(axis=1)

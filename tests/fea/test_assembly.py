@@ -6,13 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
+from structured import sector_mesh
 
 from fea.solid.assembly import NodeFrames, stiffness_matrix
 from fea.solid.cases import Model, torsion
 from fea.solid.elements import NODES, quadratic_mesh, reference_values
 from fea.solid.unfold import folded, unfolded
 from fea.types import Elastic
-from structured import sector_mesh
 
 STEEL = Elastic(206e3, 0.3)
 
@@ -36,14 +36,14 @@ def test_matrix_equals_scikit_fems_on_curved_elements() -> None:
     mesh = small()
     eye = np.zeros((len(mesh.nodes), 3, 3)) + np.eye(3)
     ours = stiffness_matrix(mesh, STEEL, NodeFrames(eye, np.zeros(len(mesh.nodes))))
-    basis = Basis(
-        quadratic_mesh(mesh.nodes, mesh.cells), ElementVector(ElementTetP2()), intorder=4
-    )
+    basis = Basis(quadratic_mesh(mesh.nodes, mesh.cells), ElementVector(ElementTetP2()), intorder=4)
 
     @BilinearForm
     def elasticity(u, v, _):
         strain = sym_grad(u)
-        return 2 * STEEL.mu * ddot(strain, sym_grad(v)) + STEEL.lam * trace(strain) * trace(sym_grad(v))
+        return 2 * STEEL.mu * ddot(strain, sym_grad(v)) + STEEL.lam * trace(strain) * trace(
+            sym_grad(v)
+        )
 
     theirs = elasticity.assemble(basis)
     # scikit-fem numbers corners' unknowns first, then edges', each node's three in a row: as we do

@@ -1,4 +1,4 @@
-"""Solid K against two-sided axisymmetric bounds (Michell 1899) on hole-free parts of many proportions.
+"""Solid K against two-sided axisymmetric bounds (Michell 1899) on hole-free parts.
 
 The references come from another discretisation, another formulation and another mesher.
 """

@@ -1,7 +1,8 @@
-"""Solid elements against closed forms: Timoshenko and Goodier, Theory of Elasticity, 3rd ed. (1970).
+"""Solid elements against closed forms: Timoshenko and Goodier, Theory of Elasticity, 3rd ed., 1970.
 
-Torsion of tubes §109 (K = GJ/L), circular disc in its plane §43 (shear of an annulus), thick cylinder
-§28 (Lamé), thin ring: Timoshenko, Strength of Materials II §17. Meshes are structured and hand-made.
+Torsion of tubes §109 (K = GJ/L), circular disc in its plane §43 (shear of an annulus), thick
+cylinder §28 (Lamé), thin ring: Timoshenko, Strength of Materials II §17. The meshes are structured
+and hand-made.
 """
 
 from __future__ import annotations
@@ -10,12 +11,12 @@ from math import pi
 
 import numpy as np
 import pytest
+from structured import sector_mesh
 
 from fea.solid.assembly import NodeFrames
 from fea.solid.cases import AXIAL, RADIAL, TANGENTIAL, Model, Supports, ellipse, torsion
 from fea.solid.stress import nodal_stress, von_mises
 from fea.types import Elastic
-from structured import sector_mesh
 
 STEEL = Elastic(206e3, 0.3)
 NMM_PER_NM = 1000.0
@@ -36,7 +37,7 @@ def tube(ri: float, ro: float, length: float, n: int, arcs: int = 6, shake: floa
 
 
 def test_tube_in_torsion() -> None:
-    """K = G·π(ro⁴ − ri⁴)/(2L); the field is quadratic, so only the curved boundary is approximated."""
+    """K = G·π(ro⁴ − ri⁴)/(2L); the field is quadratic: only the curved boundary is approximated."""
     ri, ro, length = 18.0, 20.0, 25.0
     exact = STEEL.mu * pi * (ro**4 - ri**4) / 2 / length / NMM_PER_NM
     errors = []
@@ -109,7 +110,9 @@ def test_lame_cylinder() -> None:
     # interpolation of B/r by quadratics: h³u‴/64 = 6(h/r)³/64 = 5e-5 of u at the bore
     assert found == pytest.approx(A * radius + B / radius, rel=1e-4)
     stress = nodal_stress(mesh, model.frames.to_cartesian(solved.unknowns.reshape(-1, 3)), STEEL)
-    hoop = np.einsum("na,nab,nb->n", *(model.frames.axes[:, :, 1], stress, model.frames.axes[:, :, 1]))
+    hoop = np.einsum(
+        "na,nab,nb->n", *(model.frames.axes[:, :, 1], stress, model.frames.axes[:, :, 1])
+    )
     exact = 2 * STEEL.lam * A + 2 * STEEL.mu * (A + B / radius**2)
     # stress is one order less accurate than displacement, and one-sided at the bore
     assert np.abs(hoop - exact).max() < 0.01 * exact.max()
@@ -157,7 +160,7 @@ def test_ellipse_case_is_symmetric_about_both_axes() -> None:
 
 
 def test_patch_test_on_a_distorted_mesh() -> None:
-    """A linear displacement on the boundary is reproduced inside (Irons' patch test), to rounding."""
+    """Irons' patch test: linear displacements on the boundary are reproduced inside, to rounding."""
     mesh = tube(10.0, 14.0, 4.0, 2, shake=0.3)
     straight = mesh.nodes.copy()
     for i, (a, b) in enumerate(((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))):

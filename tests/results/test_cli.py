@@ -1,0 +1,207 @@
+"""The command as a user meets it: exit statuses, one-line refusals, JSON, reuse of finished stages."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CUP = ROOT / "examples" / "xb1-40.toml"
+
+
+def flexspline(*words: object, cache: Path | None = None) -> subprocess.CompletedProcess[str]:
+    env = os.environ | ({"FLEXSPLINE_CACHE": str(cache)} if cache else {})
+    return subprocess.run(
+        [sys.executable, "-m", "results.cli", *map(str, words)],
+        capture_output=True, text=True, check=False, env=env,
+    )  # fmt: skip
+
+
+def copy_of(source: Path, folder: Path, *changes: tuple[str, str]) -> Path:
+    text = source.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = folder / "design.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, dict]:
+    """A finished run of the cup: its folder, its cache, its JSON."""
+    folder, cache = tmp_path_factory.mktemp("out"), tmp_path_factory.mktemp("cache")
+    done = flexspline("run", CUP, "--out", folder, "--json", cache=cache)
+    assert done.returncode == 0, done.stderr
+    return folder, cache, json.loads(done.stdout)
+
+
+def test_run_prints_the_contracts_keys_and_nothing_else(finished) -> None:
+    folder, _, result = finished
+    assert result == json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    for key in (
+        "K_b_Nm_per_rad", "K_b_lobes_Nm_per_rad", "K_b_lobes_unsupported_Nm_per_rad",
+        "K_e_Nm_per_rad", "K_series_Nm_per_rad", "wave_generator_peak_mises_MPa",
+        "torque_peak_mises_MPa",
+    ):  # fmt: skip
+        assert result[key] > 0
+    for key in ("K_b", "K_e"):
+        low, high = result[f"{key}_bounds_Nm_per_rad"]
+        assert low < result[f"{key}_Nm_per_rad"] < high
+    terms = result["backlash_arcsec"]
+    assert set(terms) == {
+        "shaft", "flexspline", "flank_clearance", "bearing_play", "total", "std",
+    }  # fmt: skip
+    four = (terms[k] for k in ("shaft", "flexspline", "flank_clearance", "bearing_play"))
+    assert terms["total"] == pytest.approx(sum(four), rel=1e-12)
+    assert {"model", "elements", "dofs", "wall_s", "symmetry"} <= set(result["solver"])
+    assert result["solver"]["symmetry"] == "1/12"
+
+
+def test_series_stiffness_is_near_the_articles(finished) -> None:
+    """The example's shaft was chosen for the source's 1.8e4 N·m/rad; within 2 %."""
+    assert finished[2]["K_series_Nm_per_rad"] == pytest.approx(1.8e4, rel=0.02)
+
+
+def test_second_run_reuses_everything(finished, tmp_path: Path) -> None:
+    _, cache, first = finished
+    again = flexspline("run", CUP, "--out", tmp_path, "--json", cache=cache)
+    second = json.loads(again.stdout)
+    assert "mesh of" not in again.stderr
+    for key, value in first.items():
+        if key not in ("solver", "stage_s"):
+            assert second[key] == value, key
+
+
+def test_changed_clearance_does_not_mesh_again(finished, tmp_path: Path) -> None:
+    _, cache, first = finished
+    design = copy_of(CUP, tmp_path, ("flank_clearance_um = 3.0", "flank_clearance_um = 3.5"))
+    done = flexspline("backlash", design, "--json", cache=cache)
+    assert "mesh of" not in done.stderr
+    assert "CAD" not in done.stderr
+    second = json.loads(done.stdout)
+    assert second["K_b_Nm_per_rad"] == first["K_b_Nm_per_rad"]
+    assert second["backlash_arcsec"]["flank_clearance"] == pytest.approx(
+        first["backlash_arcsec"]["flank_clearance"] * 3.5 / 3, rel=1e-12
+    )
+
+
+def test_damaged_cache_entries_are_discarded_and_said(finished, tmp_path: Path) -> None:
+    _, cache, first = finished
+    import shutil
+
+    broken = tmp_path / "cache"
+    shutil.copytree(cache, broken)
+    for entry in (broken / "torsion").glob("*.npz"):
+        data = bytearray(entry.read_bytes())
+        data[len(data) // 2] ^= 0xFF
+        entry.write_bytes(bytes(data))
+    done = flexspline("stiffness", CUP, "--out", tmp_path, "--json", cache=broken)
+    assert done.returncode == 0
+    assert done.stderr.count("discarded a damaged cache entry") == 2
+    # the meshes themselves are whole: the same mesh gives the same K
+    K = json.loads(done.stdout)["K_b_Nm_per_rad"]
+    assert pytest.approx(first["K_b_Nm_per_rad"], rel=1e-9) == K
+
+
+def test_export_writes_cad_and_fields(finished, tmp_path: Path) -> None:
+    _, cache, _ = finished
+    done = flexspline("export", CUP, "--out", tmp_path, "--json", cache=cache)
+    names = {Path(f).name for f in json.loads(done.stdout)["files"]}
+    assert names == {
+        "flexspline.step", "flexspline.stl", "shaft.step", "shaft.stl",
+        "flexspline_torque.vtu", "shaft_torque.vtu", "wave_generator.vtu",
+    }  # fmt: skip
+    import pyvista as pv
+
+    grid = pv.read(tmp_path / "wave_generator.vtu")
+    # the whole part: the quarter's elements four times
+    assert grid.n_cells % 4 == 0
+    w0 = 0.2  # m (z2 - z1)/2
+    assert abs(grid["displacement_mm"]).max() >= w0 * 0.999
+    assert grid["von_mises_MPa"].max() > 0
+
+
+def test_backlash_with_given_stiffness_needs_no_fea(tmp_path: Path) -> None:
+    done = flexspline(
+        "backlash", CUP, "--Kb", 36000, "--Ke", 36000, "--out", tmp_path, "--json",
+        cache=tmp_path / "cache",
+    )  # fmt: skip
+    result = json.loads(done.stdout)
+    # model page: 2T/K at 1.8e4 is 11.46 arcsec
+    wind_up = result["backlash_arcsec"]["shaft"] + result["backlash_arcsec"]["flexspline"]
+    assert wind_up == pytest.approx(11.46, abs=0.005)
+    assert "K_b_Nm_per_rad" not in result  # not computed, so absent
+    assert not (tmp_path / "cache").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "needle"),
+    [
+        (["run", "no-such-file.toml"], "no-such-file.toml"),
+        (["backlash", CUP, "--Kb", "-1"], "--Kb"),
+        (["backlash", CUP, "--Kb", "nan"], "--Kb"),
+        (["init", "bowl"], "bowl"),
+        (["stiffness", CUP, "--out", CUP], "--out"),
+    ],
+)
+def test_wrong_words_get_one_line_and_status_2(words: list, needle: str) -> None:
+    done = flexspline(*words)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert needle in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_wrong_design_writes_nothing(tmp_path: Path) -> None:
+    design = copy_of(CUP, tmp_path, ("bore_diameter_mm = 8.0", "bore_diameter_mm = 18.5"))
+    done = flexspline("run", design)
+    assert done.returncode == 2
+    assert "flexspline.bore_diameter_mm = 18.5" in done.stderr
+    assert list(tmp_path.iterdir()) == [design]
+
+
+def test_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
+    env = os.environ | {"FLEXSPLINE_CACHE": str(tmp_path / "cache")}
+    process = subprocess.Popen(
+        [sys.executable, "-m", "results.cli", "run", str(CUP), "--out", str(tmp_path / "out")],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env,
+    )  # fmt: skip
+    for line in process.stderr:
+        if "mesh of the flexspline" in line:
+            break
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in rest
+    assert "Traceback" not in rest
+    assert not (tmp_path / "out").exists()
+    assert not list(tmp_path.rglob("*.part"))
+
+
+@pytest.mark.parametrize("kind", ["cup", "hat"])
+def test_init_prints_a_design_that_loads(kind: str, tmp_path: Path) -> None:
+    text = flexspline("init", kind).stdout
+    assert tomllib.loads(text)["flexspline"]["kind"] == kind
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    done = flexspline("backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--json")
+    assert done.returncode == 0
+    assert (tmp_path / "mine.out" / "result.json").exists()
+
+
+def test_schema_is_json_schema() -> None:
+    schema = json.loads(flexspline("schema").stdout)
+    assert {"flexspline", "shaft", "material", "gear", "bearing", "load"} <= set(
+        schema["properties"]
+    )

@@ -1,0 +1,64 @@
+"""The house: imports go one way, heavy libraries stay in their rooms and load late."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("geometry", "fea", "pipeline", "results")
+ONLY_IN = {
+    "cadquery": "geometry", "OCP": "geometry", "trimesh": "geometry",
+    "pytetwild": "fea", "skfem": "fea", "pypardiso": "fea",
+    "optuna": "pipeline", "dask": "pipeline", "distributed": "pipeline",
+    "pyvista": "results", "matplotlib": "results", "typst": "results", "typer": "results",
+}  # fmt: skip
+FILES = sorted(p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
+
+
+def imports(path: Path) -> Iterator[tuple[str, bool]]:
+    """Top-level package of every import in a file, and whether it is for type checking only."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    guarded = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+        for inner in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name.partition(".")[0], id(node) in guarded
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module.partition(".")[0], id(node) in guarded
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_keep_to_the_house(path: Path) -> None:
+    room = path.relative_to(ROOT).parts[0]
+    for name, _ in imports(path):
+        if name in ROOMS:
+            assert ROOMS.index(name) <= ROOMS.index(room), f"{room} must not know {name}"
+        assert ONLY_IN.get(name, room) == room, f"{name} belongs in {ONLY_IN.get(name)}"
+        assert name != "tests"
+
+
+def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.py"
+    bad.write_text("def f():\n    from results.cli import main\n    import cadquery\n")
+    assert [name for name, _ in imports(bad)] == ["results", "cadquery"]
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = (
+        "import sys, results.cli\n"
+        "heavy = {'numpy','scipy','pydantic','cadquery','trimesh','skfem','pyvista','matplotlib'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"

@@ -1,0 +1,75 @@
+"""Documents run: docstring examples, the README's commands, the example designs."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from geometry.load import load_design
+from geometry.sanity import warnings
+
+ROOT = Path(__file__).parents[1]
+MODULES = sorted(
+    str(p.relative_to(ROOT).with_suffix("")).replace("/", ".")
+    for room in ("geometry", "fea", "pipeline", "results")
+    for p in (ROOT / room).rglob("*.py")
+    if ">>>" in p.read_text(encoding="utf-8")
+)
+DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_docstring_examples(name: str) -> None:
+    outcome = doctest.testmod(importlib.import_module(name))
+    assert outcome.attempted
+    assert not outcome.failed
+
+
+def test_readme_opens_with_two_commands_in_order() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
+    assert len(blocks) == 2
+    assert "flexspline run examples/" in blocks[0]
+    assert "pytest" in blocks[1]
+    assert re.search(r"!\[.*\]\((.*?)\)", text).start() < text.index("```sh")
+    for target in re.findall(r"\]\(([^)#]+)\)", text):
+        assert (ROOT / target).exists(), target
+
+
+def test_readme_names_every_command() -> None:
+    from results.cli import app
+
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for command in app.registered_commands:
+        assert f"`flexspline {command.callback.__name__}" in text
+
+
+@pytest.mark.parametrize("path", DESIGNS, ids=lambda p: p.stem)
+def test_example_runs(path: Path, tmp_path: Path) -> None:
+    """The whole main job on every example; they are the size of real work."""
+    out = subprocess.run(
+        [sys.executable, "-m", "results.cli", "run", str(path), "--out", str(tmp_path), "--json"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert out.returncode == 0, out.stderr
+    result = json.loads(out.stdout)
+    design = load_design(path)
+    assert not warnings(design)
+    low, high = result["K_b_bounds_Nm_per_rad"]
+    assert low <= result["K_b_Nm_per_rad"] <= high
+    assert (high - low) / 2 <= design.solver.tolerance_pct / 100 * result["K_b_Nm_per_rad"] * 1.001
+    # the rim supported at the lobes is softer than the ring turned whole, and stiffer than free
+    assert (
+        result["K_b_Nm_per_rad"]
+        > result["K_b_lobes_Nm_per_rad"]
+        > result["K_b_lobes_unsupported_Nm_per_rad"]
+    )
+    assert (tmp_path / "report.pdf").stat().st_size > 10_000
+    assert len(list(tmp_path.glob("*.png"))) == 8
