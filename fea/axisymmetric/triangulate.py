@@ -11,6 +11,8 @@ from __future__ import annotations
 from math import ceil, pi, sin
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles, signed_areas
@@ -41,7 +43,7 @@ def triangulate(outline: Meridian) -> MeridianMesh:
             break
         crowded = _encroached(points, edges)
         if not crowded.any():
-            triangles = _inside(points, edges, Delaunay(points).simplices)
+            triangles = _inside(points, edges)
             added, crowded = _improvements(points, edges, triangles)
             if not len(added) and not crowded.any():
                 return _checked(outline, points, triangles, edges, segment)
@@ -92,17 +94,25 @@ def _halved(
     )
 
 
-def _inside(points: np.ndarray, edges: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Triangles whose centroid lies within the outline (ray crossing), counter-clockwise."""
-    c = points[triangles].mean(axis=1)
-    a, b = points[edges[:, 0]], points[edges[:, 1]]
-    straddles = (a[:, 1] > c[:, 1, None]) != (b[:, 1] > c[:, 1, None])
-    rise = np.where(a[:, 1] == b[:, 1], 1.0, b[:, 1] - a[:, 1])
-    at = a[:, 0] + (c[:, 1, None] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
-    kept = triangles[(straddles & (at > c[:, 0, None])).sum(axis=1) % 2 == 1]
-    flipped = signed_areas(points, kept) < 0
-    kept[flipped] = kept[flipped][:, ::-1]
-    return kept
+def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Delaunay triangles (m, 3) on the outline's left, counter-clockwise.
+
+    Boundary edges cut the triangulation into regions; a region lies inside if a triangle of it has
+    a boundary edge running in the outline's direction.
+    """
+    whole = Delaunay(points)
+    triangles, across = whole.simplices.astype(np.int64), whole.neighbors
+    flipped = signed_areas(points, triangles) < 0
+    triangles[flipped] = triangles[flipped][:, ::-1]
+    across[flipped] = across[flipped][:, ::-1]
+    n = len(points)
+    side = triangles[:, [1, 2, 0]] * n + triangles[:, [2, 0, 1]]  # opposite each corner
+    forward = np.isin(side, edges[:, 0] * n + edges[:, 1])
+    backward = np.isin(side, edges[:, 1] * n + edges[:, 0])
+    own, corner = np.nonzero((across >= 0) & ~forward & ~backward)
+    links = coo_matrix((np.ones(len(own)), (own, across[own, corner])), shape=2 * (len(side),))
+    _, region = connected_components(links, directed=False)
+    return triangles[np.isin(region, region[forward.any(axis=1)])]
 
 
 def _improvements(
@@ -119,10 +129,13 @@ def _improvements(
     order = np.argsort(-radius[bad])
     centre = _circumcentres(corner[bad])[order]
     reach = radius[bad][order]
-    apart = np.linalg.norm(centre[:, None] - points[edges].mean(axis=1), axis=2)
-    enters = apart < _lengths(points, edges) / 2 * (1 - TOUCH)
-    free = ~enters.any(axis=1)
-    return _independent(centre[free], reach[free]), enters.any(axis=0)
+    tree = cKDTree(centre)
+    half = _lengths(points, edges) / 2 * (1 - TOUCH)
+    entered = tree.query_ball_point(points[edges].mean(axis=1), half)
+    free = np.ones(len(centre), bool)
+    free[np.array([i for found in entered for i in found], int)] = False
+    halve = np.array([len(found) > 0 for found in entered])
+    return _independent(centre[free], reach[free]), halve
 
 
 def _circumcentres(corner: np.ndarray) -> np.ndarray:
@@ -135,10 +148,12 @@ def _circumcentres(corner: np.ndarray) -> np.ndarray:
 
 def _independent(centre: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Centres, largest circle first, none within reach of one taken before."""
-    taken: list[int] = []
-    for i in range(len(centre)):
-        if not taken or (np.linalg.norm(centre[taken] - centre[i], axis=1) > reach[i]).all():
-            taken.append(i)
+    if not len(centre):
+        return centre
+    near = cKDTree(centre).query_ball_point(centre, reach)
+    taken = np.zeros(len(centre), bool)
+    for i, others in enumerate(near):
+        taken[i] = not taken[others].any()
     return centre[taken]
 
 
