@@ -1,0 +1,104 @@
+"""Fourier harmonics against a quarter of the same cup in tetrahedra: lobes and ellipse.
+
+Other discretisation, other mesher, other assembly; the hole-free cup is short and thick so that
+fifteen thousand tetrahedra resolve it.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fea.axisymmetric.lobes import lobe_stiffness
+from fea.axisymmetric.stress import ellipse_stress
+from fea.solid.cases import Model, ellipse, lobes
+from fea.solid.defaults import first_spec
+from fea.solid.mesh import mesh_surface
+from fea.solid.peak import SharpEdges, stress_field
+from fea.solid.sizing import Grading
+from fea.solid.stress import energy_error
+from fea.types import Elastic
+from geometry.design import Design
+from geometry.load import design_from
+from geometry.meridian import meridian
+from geometry.tagged import tagged_surface
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+WALL, W0 = 0.9, 0.2
+
+pytestmark = pytest.mark.long
+
+
+@cache
+def design() -> Design:
+    data = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    data["flexspline"] |= {
+        "bolt_count": 0,
+        "length_mm": 18.0,
+        "wall_thickness_mm": WALL,
+        "ring_thickness_mm": 1.2,
+        "diaphragm_thickness_mm": 1.2,
+        "ring_width_mm": 6.0,
+    }
+    return design_from(data)
+
+
+@cache
+def quarter() -> Model:
+    surface = tagged_surface(design(), "flexspline", 90.0, 0.03, edge_spacing=0.1)
+    spec = replace(first_spec(design(), "flexspline"), grading=Grading(0.3, 1.2, 1.0))
+    return Model.of(mesh_surface(surface, spec), Elastic.of(design().material.flexspline))
+
+
+@pytest.mark.parametrize("supported", [True, False])
+def test_lobe_stiffness(supported):
+    model = quarter()
+    outline = meridian(design(), "flexspline")
+    exact = lobe_stiffness(outline, model.material, supported, 0.002)
+    solved = lobes(model, supported)
+    error = energy_error(model.mesh, solved.displacement, model.material).relative
+    assert solved.K_energy > exact.lower_Nm_per_rad  # a load stores too little energy: from above
+    # about 0.3 % is estimated on this mesh, and such estimates run 1 to 3 times low
+    assert solved.K_energy == pytest.approx(exact.K_Nm_per_rad, rel=3 * error)
+
+
+def test_ellipse_displacement_and_peak():
+    model = quarter()
+    outline = meridian(design(), "flexspline")
+    exact = ellipse_stress(outline, model.material, W0, WALL, 0.005)
+    u = ellipse(model, W0).displacement
+    nodes = model.mesh.nodes
+    phi = np.arctan2(nodes[:, 1], nodes[:, 0])
+    rim = np.abs(nodes[:, 2] - 18.0) < 1e-6
+    cylinder = np.column_stack(
+        [
+            u[:, 0] * np.cos(phi) + u[:, 1] * np.sin(phi),
+            u[:, 1] * np.cos(phi) - u[:, 0] * np.sin(phi),
+            u[:, 2],
+        ]
+    )
+    places = exact.places
+    amplitudes = exact.displacement[np.abs(places[:, 1] - 18.0) < 1e-9].mean(axis=0)
+    wave = np.column_stack([np.cos(2 * phi), np.sin(2 * phi), np.cos(2 * phi)])
+    # projected on its wave, the rim's mean motion: amplitudes vary by 1 % across the ring
+    found = (cylinder * wave)[rim].sum(axis=0) / (wave[rim] ** 2).sum(axis=0)
+    assert found == pytest.approx(amplitudes, rel=0.01)
+    turns = np.linspace(0, np.pi / 2, 800)
+    edges = np.array(
+        [
+            (r * np.cos(a), r * np.sin(a), z)
+            for r, z in [*outline.sharp_corners, *outline.patch_edges]
+            for a in turns
+        ]
+    )
+    peak = stress_field(model.mesh, u, model.material, "", SharpEdges(edges, 90.0, WALL)).peak
+    # the solid's stresses are averaged at nodes of 0.3 to 1.2 mm elements: 3 % at best
+    assert peak.mises_MPa == pytest.approx(exact.peak.mises_MPa, rel=0.03)
+    # the same ring around the part
+    assert np.hypot(*peak.at_mm[:2]) == pytest.approx(exact.peak_rz[0], abs=0.05)
+    assert peak.at_mm[2] == pytest.approx(exact.peak_rz[1], abs=0.05)
