@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
-from fea.solid.cases import Model, ellipse
-from fea.solid.lobes import lobe_stiffness
-from fea.solid.peak import SharpEdges, stress_field
-from fea.solid.unfold import unfolded
+from fea.axisymmetric.stress import torsion_stress
+from fea.solid.peak import stress_field
 from fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
 from geometry.design import Design
+from geometry.meridian import meridian
 from geometry.sanity import warnings
-from geometry.symmetry import sector_of
 from pipeline.backlash import Backlash, backlash
-from pipeline.parts import MeshedPart, PartModel, TwistedPart, Workshop
-
-
-@dataclass(frozen=True)
-class RimLoads:
-    """What the wave generator and the lobes do to the flexspline's rim, on one model."""
-
-    wave_generator: SolidField
-    K_b_lobes: Stiffness
-    K_b_lobes_unsupported: Stiffness
-
+from pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
+from pipeline.rim import (
+    STRESS_TOLERANCE,
+    RimAnswers,
+    SolidRim,
+    rim_answers,
+    sharp_edges,
+    wave_generator_field,
+)  # fmt: skip
 
 CACHED_TYPES: tuple[type, ...] = (
-    MeshLevel, MeshedPart, RimLoads, SolidField, Stiffness, StressPeak, TetMesh, TwistedPart,
+    MeshLevel, MeshedPart, RimAnswers, SolidField, SolidRim, Stiffness, StressPeak, TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
 
@@ -41,6 +36,8 @@ class Stiffnesses:
     K_e: Stiffness | None
     K_b_lobes: Stiffness | None = None
     K_b_lobes_unsupported: Stiffness | None = None
+    K_b_lobes_contact: Stiffness | None = None
+    wave_generator_peak: StressPeak | None = None
 
     def in_sum(self, design: Design) -> Stiffness:
         """The K_b that enters the backlash sum, by `solver.load_case`."""
@@ -84,38 +81,40 @@ class RunResult:
 
 
 def stiffnesses(shop: Workshop, flexspline: bool = True, shaft: bool = True) -> Stiffnesses:
-    """K_b and K_e, those that are asked for, and the lobes' K_b where the design sums with it.
+    """All that `flexspline stiffness` answers, for the parts that are asked for.
 
     Raises
     ------
-    DesignError, GeometryError, SolidError
+    DesignError, ComputationError
     """
     rim_part, shaft_part = shop.part("flexspline"), shop.part("shaft")
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         _ = wanted and part.axisymmetric  # refuse before the long work
     K_b = rim_part.stiffness() if flexspline else None
     K_e = shaft_part.stiffness() if shaft else None
-    if not flexspline or shop.design.solver.load_case == "uniform":
+    if not flexspline:
         return Stiffnesses(K_b, K_e)
-    rim = rim_loads(shop, rim_part)
-    return Stiffnesses(K_b, K_e, rim.K_b_lobes, rim.K_b_lobes_unsupported)
+    rim = rim_answers(rim_part)
+    return Stiffnesses(
+        K_b,
+        K_e,
+        rim.K_b_lobes,
+        rim.K_b_lobes_unsupported,
+        rim.K_b_lobes_contact,
+        rim.wave_generator_peak,
+    )
 
 
 def run(shop: Workshop) -> RunResult:
     """The main job: all stiffnesses, the three stress fields, and the backlash sum."""
     design = shop.design
     flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
-    _ = flexspline.axisymmetric, shaft.axisymmetric
-    rim = rim_loads(shop, flexspline)
-    found = Stiffnesses(
-        flexspline.stiffness(), shaft.stiffness(), rim.K_b_lobes, rim.K_b_lobes_unsupported
-    )
-    with shop.progress.stage("stress under torque"):
-        fields = {
-            "flexspline_torque": torque_field(flexspline),
-            "shaft_torque": torque_field(shaft),
-            "wave_generator": rim.wave_generator,
-        }
+    found = stiffnesses(shop)
+    fields = {
+        "flexspline_torque": torque_field(flexspline),
+        "shaft_torque": torque_field(shaft),
+        "wave_generator": wave_generator_field(flexspline),
+    }
     total = backlash_of(design, found)
     return RunResult(design, warnings(design), found, fields, total, dict(shop.progress.seconds))
 
@@ -126,52 +125,26 @@ def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
 
 
 def torque_field(part: PartModel) -> SolidField:
-    """Displacement and stress under the design's torque T_L."""
+    """Displacement and stress under the design's torque T_L; the peak from the model that answers."""
+    design = part.shop.design
+    torque = design.load.torque_Nm
     twisted = part.twisted()
-    angle = part.shop.design.load.torque_Nm / twisted.stiffness.upper_Nm_per_rad
-    return stress_field(
-        twisted.meshed.mesh,
-        twisted.displacement * angle,
-        part.material,
-        f"{part.name} under T_L = {part.shop.design.load.torque_Nm:g} N·m",
-        _edges(part, twisted.meshed),
-    )
-
-
-def wave_generator_amplitude(design: Design) -> float:
-    """w0 = m(z2 − z1)/2 [mm] (contract)."""
-    gear = design.gear
-    return gear.module_mm * (gear.teeth_circular_spline - gear.teeth_flexspline) / 2
-
-
-def rim_loads(shop: Workshop, flexspline: PartModel) -> RimLoads:
-    """The ellipse's stress and the lobes' K_b, on the torsion mesh reflected to a larger sector."""
-    w0 = wave_generator_amplitude(shop.design)
-
-    def make() -> RimLoads:
-        twisted = flexspline.twisted()
-        sector = sector_of(shop.design, "flexspline", "ellipse")
-        with shop.progress.stage("wave generator and lobes"):
-            model = Model.of(unfolded(twisted.meshed.mesh, sector.degrees), flexspline.material)
-            shop.progress.note(f"  {len(model.mesh.cells)} elements, {sector.label} of the part")
-            field = stress_field(
-                model.mesh,
-                ellipse(model, w0).displacement,
-                flexspline.material,
-                f"wave generator, w0 = {w0:g} mm",
-                _edges(flexspline, twisted.meshed),
-            )
-            scale = twisted.stiffness.error_scale
-            return RimLoads(
-                field,
-                lobe_stiffness(model, True, scale, sector.label),
-                lobe_stiffness(model, False, scale, sector.label),
-            )
-
-    inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0}
-    return shop.cache.get("rim", inputs, make)[0]
-
-
-def _edges(part: PartModel, meshed: MeshedPart) -> SharpEdges:
-    wall = part.shop.design.flexspline.wall_thickness_mm
-    return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, wall)
+    with part.shop.progress.stage(f"stress of the {part.name} under torque"):
+        field = stress_field(
+            twisted.meshed.mesh,
+            twisted.displacement * (torque / twisted.stiffness.upper_Nm_per_rad),
+            part.material,
+            f"{part.name} under T_L = {torque:g} N·m",
+            sharp_edges(part, twisted.meshed),
+        )
+        if not part.axisymmetric:
+            return field
+        exact = torsion_stress(
+            meridian(design, part.name),
+            part.material,
+            DRIVEN[part.name],
+            torque,
+            design.flexspline.wall_thickness_mm,
+            STRESS_TOLERANCE,
+        )
+    return replace(field, peak=exact.peak)

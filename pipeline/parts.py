@@ -89,15 +89,18 @@ class PartModel:
         return {"part": self.name, "shape": own.model_dump(mode="json")}
 
     @property
-    def torsion_key(self) -> Mapping[str, Any]:
-        """What the solid solution depends on."""
-        design = self.shop.design
+    def revolved_key(self) -> Mapping[str, Any]:
+        """What the axisymmetric solutions depend on."""
         return {
             **self.geometry_key,
             "material": asdict(self.material),
-            "tolerance_pct": design.solver.tolerance_pct,
-            "spec": asdict(first_spec(design, self.name)),
+            "tolerance_pct": self.shop.design.solver.tolerance_pct,
         }
+
+    @property
+    def torsion_key(self) -> Mapping[str, Any]:
+        """What the solid solution depends on."""
+        return {**self.revolved_key, "spec": asdict(first_spec(self.shop.design, self.name))}
 
     @cached_property
     def _surface(self) -> TaggedSurface:
@@ -156,12 +159,7 @@ class PartModel:
                 outline = meridian(design, self.name)
                 return torsional_stiffness(outline, self.material, DRIVEN[self.name], tolerance)
 
-        inputs = {
-            **self.geometry_key,
-            "material": asdict(self.material),
-            "tolerance_pct": design.solver.tolerance_pct,
-        }
-        return self.shop.cache.get("axisymmetric", inputs, make)[0]
+        return self.shop.cache.get("axisymmetric", self.revolved_key, make)[0]
 
     def twisted(self) -> TwistedPart:
         """The solid model turned by 1 rad, refined until the tolerance is met."""

@@ -12,7 +12,9 @@ import numpy as np
 
 from pipeline.backlash import angle_rad
 from pipeline.cache import Cache
-from pipeline.chain import RunResult, Workshop, wave_generator_amplitude
+from pipeline.chain import RunResult
+from pipeline.parts import Workshop
+from pipeline.rim import wave_generator_amplitude
 from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600

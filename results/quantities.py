@@ -126,6 +126,23 @@ QUANTITIES: tuple[Quantity, ...] = (
         digits=4,
     ),
     Quantity(
+        "K_b_lobes_contact_Nm_per_rad",
+        "K_b_lobes_contact_Nm_per_rad",
+        _STIFFNESS,
+        "Flexspline stiffness, torque at the two lobes, rim may lift off",
+        "K_b,contact",
+        digits=4,
+    ),
+    Quantity(
+        "K_b_lobes_contact_bounds_Nm_per_rad",
+        "K_b_lobes_contact_bounds_Nm_per_rad",
+        _STIFFNESS,
+        "Bounds of the flexspline stiffness, lobes, rim may lift off",
+        "K_b,contact",
+        kind="bounds",
+        digits=4,
+    ),
+    Quantity(
         "K_b_lobes_unsupported_Nm_per_rad",
         "K_b_lobes_unsupported_Nm_per_rad",
         _STIFFNESS,

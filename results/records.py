@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from fea.types import SolidField, Stiffness
+from fea.types import SolidField, Stiffness, StressPeak
 from geometry.design import Design
 from pipeline.backlash import Backlash
 from pipeline.chain import RunResult, Stiffnesses
@@ -33,7 +33,7 @@ def heading(design: Design) -> Record:
 def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Record:
     """K of every load case that was solved, with bounds, and how it was solved."""
     record: Record = {}
-    for name in ("K_b", "K_b_lobes", "K_b_lobes_unsupported", "K_e"):
+    for name in ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e"):
         stiffness: Stiffness | None = getattr(found, name)
         if stiffness is not None:
             record[f"{name}_Nm_per_rad"] = stiffness.K_Nm_per_rad
@@ -41,6 +41,9 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
                 stiffness.lower_Nm_per_rad,
                 stiffness.upper_Nm_per_rad,
             ]
+    if found.wave_generator_peak is not None:
+        record |= _peak("wave_generator_peak", found.wave_generator_peak)
+        record["stress_excluded"] = found.wave_generator_peak.excluded
     if found.K_b is not None and found.K_e is not None:
         record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
     solver = {
@@ -75,19 +78,15 @@ def backlash_record(total: Backlash) -> Record:
 
 
 def stress_record(fields: Mapping[str, SolidField]) -> Record:
-    """The peaks that count, where they are, and what was left out."""
-    keys = {
-        "wave_generator": "wave_generator_peak",
-        "flexspline_torque": "torque_peak",
-        "shaft_torque": "shaft_torque_peak",
+    """The peaks under torque."""
+    return {
+        **_peak("torque_peak", fields["flexspline_torque"].peak),
+        **_peak("shaft_torque_peak", fields["shaft_torque"].peak),
     }
-    record: Record = {}
-    for name, key in keys.items():
-        peak = fields[name].peak
-        record[f"{key}_mises_MPa"] = peak.mises_MPa
-        record[f"{key}_at_mm"] = list(peak.at_mm)
-    record["stress_excluded"] = fields["wave_generator"].peak.excluded
-    return record
+
+
+def _peak(key: str, peak: StressPeak) -> Record:
+    return {f"{key}_mises_MPa": peak.mises_MPa, f"{key}_at_mm": list(peak.at_mm)}
 
 
 def run_record(result: RunResult, wall_s: float) -> Record:

@@ -22,6 +22,7 @@ from scipy.sparse import csc_matrix
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.space import Space, isoparametric, relative_residual, solved, summed
 from fea.types import Elastic
+from geometry.errors import ComputationError
 from geometry.meridian import SAME
 
 DEGREE = 6
@@ -70,7 +71,7 @@ class Fixed:
     value: np.ndarray | float = 0.0
 
 
-class HarmonicError(RuntimeError):
+class HarmonicError(ComputationError):
     """A harmonic could not be solved; the message carries the numbers."""
 
 
@@ -158,7 +159,7 @@ class HarmonicModel:
             If the solve loses energy: the body is not held.
         """
         matrix = self.stiffness(wave)
-        at, u = self._prescribed(wave, fixed)
+        at, u = self.prescribed(wave, fixed)
         free = np.setdiff1d(np.arange(len(u)), at, assume_unique=True)
         right = (load - matrix @ u)[free]
         inside = matrix[free][:, free]
@@ -176,7 +177,7 @@ class HarmonicModel:
         residual = relative_residual(inside, u[free], right)
         return Amplitudes(u, twice_energy, float(u @ load), residual, len(free))
 
-    def _prescribed(self, wave: Wave, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
+    def prescribed(self, wave: Wave, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
         """Indices of prescribed unknowns, and all unknowns with their values there, else 0."""
         count = self.space.count
         axis = np.flatnonzero(self.space.places[:, 0] < SAME)

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.errors import ComputationError
 from geometry.meridian import SAME, Meridian
 
 
-class MeshingError(RuntimeError):
+class MeshingError(ComputationError):
     """The meridian could not be meshed; the message carries the numbers."""
 
 

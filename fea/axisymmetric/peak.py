@@ -10,12 +10,13 @@ from fea.axisymmetric.harmonics import HarmonicModel
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.recovery import mises_parts
 from fea.axisymmetric.space import reference_shape
+from geometry.errors import ComputationError
 
 STEPS = 8
 """Stress is looked at on a lattice of so many steps along each side of a triangle."""
 
 
-class StressError(RuntimeError):
+class StressError(ComputationError):
     """No stress can be reported."""
 
 

@@ -10,6 +10,7 @@ from fea.axisymmetric.patches import sorted_boundary
 from fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
+from geometry.errors import ComputationError
 from geometry.meridian import Meridian
 
 BULK = 0.75
@@ -17,7 +18,7 @@ BULK = 0.75
 MOST_TRIANGLES = 400_000
 
 
-class ToleranceError(RuntimeError):
+class ToleranceError(ComputationError):
     """The wanted tolerance was not met; carries how far the bounds came.
 
     Attributes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -54,14 +55,13 @@ def solve(matrix: csr_matrix, load: np.ndarray, fixed: np.ndarray, values: np.nd
 
 
 def _direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
-    pardiso = _pardiso()
-    if pardiso is None:
+    solver = _pardiso()
+    if solver is None:
         from scipy.sparse.linalg import splu
 
         return splu(
             matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}
         ).solve(right)
-    solver = pardiso(mtype=2)  # real, symmetric, positive definite: upper triangle only
     try:
         upper = triu(matrix, format="csr")
         upper.sort_indices()
@@ -70,10 +70,11 @@ def _direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
         solver.free_memory(everything=True)
 
 
+@cache
 def _pardiso() -> Any:
-    """pypardiso's solver class, or None where MKL does not exist (Arm)."""
+    """pypardiso's solver, or None where MKL does not exist (Arm); finding MKL takes 0.2 s."""
     try:
         from pypardiso import PyPardisoSolver
     except (ImportError, OSError):
         return None
-    return PyPardisoSolver
+    return PyPardisoSolver(mtype=2)  # real, symmetric, positive definite: upper triangle only

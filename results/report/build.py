@@ -33,6 +33,7 @@ def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]
             convergence=pictures["convergence"],
         ),
         K_b_lobes=found.K_b_lobes,
+        K_b_lobes_contact=found.K_b_lobes_contact,
         K_b_lobes_unsupported=found.K_b_lobes_unsupported,
         flexspline_peak=fields["flexspline_torque"].peak,
         shaft_peak=fields["shaft_torque"].peak,

@@ -34,7 +34,8 @@ class ReportContent:
     version : of this program.
     K_b, K_e : flexspline (load case "uniform") and shaft.
     K_series_Nm_per_rad : of the K_b that enters the sum and K_e.
-    K_b_lobes, K_b_lobes_unsupported : the other load cases, None where they were not solved.
+    K_b_lobes, K_b_lobes_contact, K_b_lobes_unsupported : the other load cases, None where not
+        solved.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
@@ -50,6 +51,7 @@ class ReportContent:
     backlash: Backlash
     pictures: Pictures = Pictures()
     K_b_lobes: Stiffness | None = None
+    K_b_lobes_contact: Stiffness | None = None
     K_b_lobes_unsupported: Stiffness | None = None
     flexspline_peak: StressPeak | None = None
     shaft_peak: StressPeak | None = None

@@ -25,6 +25,7 @@ def answers(content: ReportContent) -> list[Row]:
     notes = {
         "K_b_Nm_per_rad": "ring turned rigidly, mount held",
         "K_b_lobes_Nm_per_rad": "cos² traction within ±30° of the major axis, seat held radially",
+        "K_b_lobes_contact_Nm_per_rad": "same traction, the rim rests on the seat and may lift off",
         "K_b_lobes_unsupported_Nm_per_rad": "same traction, nothing on the seat",
         "K_e_Nm_per_rad": "grip turned rigidly, mount held",
     }
@@ -40,6 +41,7 @@ def stiffnesses(content: ReportContent) -> dict[str, Stiffness]:
     every = {
         "K_b_Nm_per_rad": content.K_b,
         "K_b_lobes_Nm_per_rad": content.K_b_lobes,
+        "K_b_lobes_contact_Nm_per_rad": content.K_b_lobes_contact,
         "K_b_lobes_unsupported_Nm_per_rad": content.K_b_lobes_unsupported,
         "K_e_Nm_per_rad": content.K_e,
     }

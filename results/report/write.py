@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from geometry.errors import ComputationError
 from results.atomic import write_bytes
 from results.report import limits, tables
 from results.report.content import ReportContent
@@ -20,7 +21,7 @@ ROOMY = 1200
 they follow each other and the report stays within six pages."""
 
 
-class ReportError(RuntimeError):
+class ReportError(ComputationError):
     """The report could not be set; carries typst's message."""
 
 
