@@ -193,14 +193,22 @@ def _backlash_record(job: _Job, kb: float | None, ke: float | None) -> dict[str,
 
 
 @app.command()
-def export(design: DesignFile, out: Out = None, json: Json = False) -> None:
+def export(
+    design: DesignFile,
+    out: Out = None,
+    deck: Annotated[
+        bool, typer.Option("--deck", help="Also the torsion case as CalculiX/Abaqus decks (.inp).")
+    ] = False,
+    json: Json = False,
+) -> None:
     """STEP and STL of both parts, and the solved fields as VTU."""
     with _answered(design):
         job = _job(design, out)
-        from results.export import write_exports
+        from results.export import write_decks, write_exports
         from results.records import as_json, heading
 
         files = write_exports(job.shop, job.folder)
+        files += write_decks(job.shop, job.folder) if deck else []
         record = {**heading(job.design), "files": [str(f) for f in files]}
         print(as_json(record) if json else "\n".join(record["files"]))
 

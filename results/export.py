@@ -8,9 +8,13 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from fea.solid.deck import torsion_deck
 from fea.types import SolidField
 from geometry.cad import build_solid, write_step, write_stl
-from pipeline.chain import Workshop, rim_loads, torque_field
+from pipeline.chain import torque_field
+from pipeline.parts import DRIVEN, Workshop
+from pipeline.rim import wave_generator_field
+from results.atomic import write_bytes
 from results.renders.whole import Parity, whole_part
 
 STL_CHORD_ERROR_MM = 0.01
@@ -32,11 +36,26 @@ def write_exports(shop: Workshop, folder: Path) -> list[Path]:
     fields: tuple[tuple[str, SolidField, Parity], ...] = (
         ("flexspline_torque", torque_field(flexspline), "antisymmetric"),
         ("shaft_torque", torque_field(shaft), "antisymmetric"),
-        ("wave_generator", rim_loads(shop, flexspline).wave_generator, "symmetric"),
+        ("wave_generator", wave_generator_field(flexspline), "symmetric"),
     )
     for name, field, parity in fields:
         with shop.progress.stage(f"VTU {name}"):
             done.append(_whole(folder / f"{name}.vtu", partial(_write_vtu, field, parity)))
+    return done
+
+
+def write_decks(shop: Workshop, folder: Path) -> list[Path]:
+    """The torsion case of both parts as CalculiX/Abaqus decks, on the meshes that gave K."""
+    done = []
+    for name, driven in DRIVEN.items():
+        part = shop.part(name)
+        twisted = part.twisted()
+        with shop.progress.stage(f"deck of the {name}"):
+            on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad
+            title = f"{shop.design.name}: {name} under torsion"
+            text = torsion_deck(twisted.meshed.mesh, part.material, driven, on_this_mesh, title)
+            done.append(folder / f"{name}_torsion.inp")
+            write_bytes(done[-1], text.encode())
     return done
 
 
