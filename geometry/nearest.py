@@ -8,6 +8,8 @@ import numpy as np
 
 PAIRS_AT_ONCE = 4_000_000
 """Bounds the memory of the box test."""
+FACING = 0.5
+"""Least cosine between the normals of a facet and of the CAD triangle that it lies on."""
 
 
 def nearest_triangles(
@@ -17,11 +19,11 @@ def nearest_triangles(
     triangles: np.ndarray,
     reach: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Index (k,) of the triangle nearest to each point, and its distance (k,) [mm].
+    """Index (k,) of the triangle nearest to each point, and whether its normal agrees (k,).
 
     `points` and unit `normals` are (k, 3), `vertices` (n, 3), `triangles` (m, 3). A triangle that
     faces more than 60° away counts only where there is no other. Points with no triangle within
-    `reach` [mm] get index -1 and an infinite distance.
+    `reach` [mm] get index -1.
     """
     from trimesh.triangles import closest_point as closest
 
@@ -33,7 +35,7 @@ def nearest_triangles(
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
     step = max(1, PAIRS_AT_ONCE // len(triangles))
     found = np.full(len(points), -1)
-    away = np.full(len(points), np.inf)
+    agrees = np.zeros(len(points), bool)
     for start in range(0, len(points), step):
         p = points[start : start + step]
         inside = np.ones((len(p), len(triangles)), bool)
@@ -43,9 +45,9 @@ def nearest_triangles(
         distance = np.linalg.norm(closest_point(corners[t], p[i]) - p[i], axis=1)
         agree = np.einsum("ij,ij->i", normals[start + i], facing[t])
         # along shared edges distances are equal: the better normal decides
-        score = distance + 1e-6 * (1 - agree) + np.where(agree > 0.5, 0.0, 1e3 * reach)
+        score = distance + 1e-6 * (1 - agree) + np.where(agree > FACING, 0.0, 1e3 * reach)
         order = np.lexsort((score, i))
         rows, first = np.unique(i[order], return_index=True)
         found[start + rows] = t[order][first]
-        away[start + rows] = distance[order][first]
-    return found, np.where(away <= reach, away, np.inf)
+        agrees[start + rows] = agree[order][first] > FACING
+    return found, agrees

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fea.solid.mesh import MeshSpec
+from fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from fea.solid.sizing import Grading
 from geometry.design import Design
 
@@ -25,10 +25,11 @@ def first_spec(design: Design, part: str) -> MeshSpec:
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
         on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
         far = min(5 * wall, f.length_mm / 6, outer / 3)
-        near, envelope = min(wall, far / 2), wall / 20
+        near, envelope = min(wall, far / 2, outer / 50), wall / 20
     if design.solver.edge_length_mm is not None:
         far = design.solver.edge_length_mm
         near = min(near, far)
+    envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(
         grading=Grading(near, far, growth=1.0),
         envelope=envelope,

@@ -14,11 +14,17 @@ from fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
 from fea.solid.unroll import Cartesian, Space, Unrolled
 from fea.types import TetMesh
 from geometry.nearest import nearest_triangles
+from geometry.surfaces import sector_planes
 from geometry.tagged import TaggedSurface
 
 AREA_TOLERANCE = 0.02
 """A patch whose mesh area is farther than this from its CAD area is refused."""
+ASTRAY_SHARE = 0.002
 VOLUME_TOLERANCE = 0.01
+OFF_PLANE = 1e-6
+"""Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
+ENVELOPES_PER_EDGE = 6
+"""The envelope stays this much below the smallest edge: above it the mesher's surface has cracked."""
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element
 in ten thousand below it, with ten times the true stress at its nodes."""
@@ -100,9 +106,10 @@ def _tag(
     """Surface index of every boundary facet, in meshing space where both are planar."""
     corners = points[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    areas = np.linalg.norm(normals, axis=1)
+    normals /= np.maximum(areas, 1e-300)[:, None]
     centres = corners.mean(axis=1)
-    triangle = np.full(len(faces), -1)
+    triangle, agrees = np.full(len(faces), -1), np.zeros(len(faces), bool)
     for reach in (
         spec.snap_limit,
         5 * spec.snap_limit,
@@ -110,13 +117,14 @@ def _tag(
         lost = np.flatnonzero(triangle < 0)
         if not len(lost):
             break
-        triangle[lost], _ = nearest_triangles(
+        triangle[lost], agrees[lost] = nearest_triangles(
             centres[lost], normals[lost], boundary, surface.triangles, reach
         )
-    if (triangle < 0).any():
+    # a few facets across sharp edges face between their surfaces; a crack along a cut would be many
+    astray = areas[(triangle < 0) | ~agrees].sum() / areas.sum()
+    if astray > ASTRAY_SHARE or (triangle < 0).any():
         raise MeshQualityError(
-            f"{int((triangle < 0).sum())} boundary facets lie more than {reach:.3g} mm"
-            " off the CAD surface"
+            f"{astray:.2%} of the mesh's boundary lies on no CAD surface, allowed {ASTRAY_SHARE:.2%}"
         )
     return surface.surface_of[triangle]
 
@@ -131,8 +139,8 @@ def _quadratic(
     spec: MeshSpec,
 ) -> TetMesh:
     """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
-    raw = space.back(points)
     n = len(points)
+    raw = _in_planes(space.back(points), faces, facet_surface, surface)
     corners = snap_to_surfaces(raw, faces, facet_surface, surface.surfaces, spec.snap_limit)
     corners = _undo_inverted(raw, corners, tets)
     edges, cells, facets = _with_middles(corners, tets, faces)
@@ -148,6 +156,18 @@ def _quadratic(
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
     _check(mesh, surface)
     return mesh
+
+
+def _in_planes(
+    points: np.ndarray, faces: np.ndarray, facet_surface: np.ndarray, surface: TaggedSurface
+) -> np.ndarray:
+    """Nodes of the symmetry planes put into them, whatever else may be undone later."""
+    out = points.copy()
+    for plane in sector_planes(surface.sector_deg):
+        mine = [i for i, s in enumerate(surface.surfaces) if s.patch == plane.patch]
+        nodes = np.unique(faces[np.isin(facet_surface, mine)])
+        out[nodes] = plane.project(out[nodes])
+    return out
 
 
 def _undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np.ndarray:
@@ -192,7 +212,13 @@ def _straighten_bent(nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray) ->
 
 
 def _check(mesh: TetMesh, surface: TaggedSurface) -> None:
-    """Compare volume and patch areas with the CAD's."""
+    """Compare volume and patch areas with the CAD's, and symmetry planes with themselves."""
+    size = np.ptp(mesh.nodes, axis=0).max()
+    for plane in sector_planes(mesh.sector_deg):
+        nodes = mesh.nodes[mesh.nodes_on(plane.patch)]
+        off = np.abs(plane.project(nodes) - nodes).max()
+        if off > OFF_PLANE * size:
+            raise MeshQualityError(f"a node of {plane.patch} lies {off:.3g} mm off the plane")
     volume = element_volumes(mesh.nodes, mesh.cells).sum()
     if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
         raise MeshQualityError(
