@@ -1,4 +1,4 @@
-"""Hand-made meshes for closed forms: a box in (r, φ, z) cut into tetrahedra and bent into a sector."""
+"""Hand-made meshes for known answers: a box cut into tetrahedra and bent by any smooth map."""
 
 from __future__ import annotations
 
@@ -13,23 +13,44 @@ from fea.types import TetMesh
 from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 Where = Callable[[np.ndarray], np.ndarray]
+Mapping3 = Callable[[np.ndarray], np.ndarray]
 
 
 def sector_mesh(
     r: np.ndarray, phi: np.ndarray, z: np.ndarray, patches: Mapping[str, Where], shake: float = 0.0
 ) -> TetMesh:
-    """Curved quadratic tetrahedra of a cylinder's sector; patches by predicates on (r, φ, z) (k, 3).
+    """A cylinder's sector about z; patches by predicates on (r, φ, z) (k, 3)."""
+    rules: dict[str, Where] = {
+        SYMMETRY_START: lambda c: np.isclose(c[:, 1], phi[0]),
+        SYMMETRY_END: lambda c: np.isclose(c[:, 1], phi[-1]),
+        **patches,
+    }
+    return bent_box(r, phi, z, from_cylindrical, rules, shake, degrees(phi[-1] - phi[0]))
 
-    `shake` moves inner corners at random by that share of a cell.
+
+def from_cylindrical(c: np.ndarray) -> np.ndarray:
+    """(r, φ, z) to (x, y, z), both (n, 3)."""
+    return np.column_stack([c[:, 0] * np.cos(c[:, 1]), c[:, 0] * np.sin(c[:, 1]), c[:, 2]])
+
+
+def bent_box(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, mapping: Mapping3, patches: Mapping[str, Where],
+    shake: float = 0.0, sector_deg: float = 360.0,
+) -> TetMesh:  # fmt: skip
+    """Curved quadratic tetrahedra: the grid a × b × c seen through `mapping` (n, 3) → (n, 3).
+
+    `mapping` is smooth and keeps orientation. Patches are predicates on facet centres (k, 3) of the
+    straight box; where several hold, the last does. `shake` moves inner corners at random by that
+    share of a cell.
     """
     from skfem import MeshTet
 
-    box = MeshTet.init_tensor(r, phi, z)
+    box = MeshTet.init_tensor(a, b, c)
     points, tets = box.p.T.copy(), box.t.T
     if shake:
         low, high = points.min(axis=0), points.max(axis=0)
         inside = ((points > low) & (points < high)).all(axis=1)
-        cell = np.array([np.diff(a).min() for a in (r, phi, z)])
+        cell = np.array([np.diff(axis).min() for axis in (a, b, c)])
         rng = np.random.default_rng(1)
         points[inside] += rng.uniform(-shake, shake, (inside.sum(), 3)) * cell
     linear = linear_mesh(points, tets)
@@ -37,27 +58,19 @@ def sector_mesh(
     linear = linear_mesh(points, tets)
     edges = linear.edges.T
     n = len(points)
-    bent = np.vstack([points, points[edges].mean(axis=1)])
+    straight = np.vstack([points, points[edges].mean(axis=1)])
     faces = boundary_faces(tets)
     lookup = {tuple(sorted(e)): n + i for i, e in enumerate(edges.tolist())}
     sides = ((0, 1), (1, 2), (2, 0))
-    middles = [[lookup[tuple(sorted((f[a], f[b])))] for a, b in sides] for f in faces.tolist()]
+    middles = [[lookup[tuple(sorted((f[i], f[j])))] for i, j in sides] for f in faces.tolist()]
     facets = np.hstack([faces, np.array(middles)])
-    rules: dict[str, Where] = {
-        SYMMETRY_START: lambda c: np.isclose(c[:, 1], phi[0]),
-        SYMMETRY_END: lambda c: np.isclose(c[:, 1], phi[-1]),
-        **patches,
-    }
-    names = ("", *rules)
+    names = ("", *patches)
     patch = np.zeros(len(facets), int)
     centres = points[faces].mean(axis=1)
-    for i, rule in enumerate(rules.values()):
+    for i, rule in enumerate(patches.values()):
         patch[rule(centres)] = i + 1
-    x = np.column_stack(
-        [bent[:, 0] * np.cos(bent[:, 1]), bent[:, 0] * np.sin(bent[:, 1]), bent[:, 2]]
-    )
     cells = np.hstack([tets, linear.t2e.T + n])
-    return TetMesh(x, cells, facets, patch, names, degrees(phi[-1] - phi[0]))
+    return TetMesh(mapping(straight), cells, facets, patch, names, sector_deg)
 
 
 def _positive(points: np.ndarray, tets: np.ndarray) -> np.ndarray:

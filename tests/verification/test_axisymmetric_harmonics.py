@@ -40,7 +40,7 @@ def stored(model: HarmonicModel, wave: Wave, field: np.ndarray) -> float:
     return float(field.ravel() @ (model.stiffness(wave) @ field.ravel()))
 
 
-def test_lame_thick_cylinder():
+def test_lame_thick_cylinder(record):
     """Lamé 1852, plane strain: u(r) = (1+ν)/E · p a²/(b²-a²) · ((1-2ν) r + b²/r)."""
     a, b, p = 5.0, 10.0, 30.0
     factor = 1.3 / 200e3 * p * a**2 / (b**2 - a**2)
@@ -52,12 +52,15 @@ def test_lame_thick_cylinder():
         exact = factor * (0.4 * a + b**2 / a)
         energy = p * exact * 2 * pi * a * 4.0
         errors.append(1 - found.twice_energy / energy)
+    rate = np.log2(errors[-2] / errors[-1])
+    record("Lamé cylinder, energy found over exact", "Lamé 1852", 1.0, 1 - errors[-1], digits=6)
+    record("Lamé cylinder, rate of convergence", "theory: 4 in the limit", (3.5, np.inf), rate)
     assert all(e > 0 for e in errors)  # a load stores too little in too few unknowns
     assert errors[-1] < 1e-5
-    assert np.log2(errors[-2] / errors[-1]) > 3.5  # P2 on a smooth case: 4 in the limit
+    assert rate > 3.5  # P2 on a smooth case: 4 in the limit
 
 
-def test_lame_hoop_stress_at_the_bore():
+def test_lame_hoop_stress_at_the_bore(record):
     """Lamé 1852: σθ(a) = p (a² + b²)/(b² - a²)."""
     errors = []
     for refinements in (2, 3, 4):
@@ -66,6 +69,8 @@ def test_lame_hoop_stress_at_the_bore():
         found = model.solve(Wave(0), ends, model.pressed("seat", RADIAL, Wave(0)))
         hoop = recovered(model, Wave(0), found.values).nodal[model.on("seat"), 1]
         errors.append(np.abs(hoop / (125 / 75) - 1).max())
+    worst = hoop[np.abs(hoop - 125 / 75).argmax()]
+    record("Lamé cylinder, hoop stress over pressure at the bore", "Lamé 1852", 125 / 75, worst)
     # P2 stresses are second order: 4 fold per halving; their averaging at nodes is no worse
     assert np.log2(errors[-2] / errors[-1]) > 1.8
     assert errors[-1] < 2e-3
@@ -88,7 +93,7 @@ def test_rigid_motions_carry_no_energy(wave):
     assert abs(stored(model, wave, field)) < 1e-10 * stored(model, wave, bent)
 
 
-def test_strains_of_a_harmonic_against_cartesian_gradients():
+def test_strains_of_a_harmonic_against_cartesian_gradients(record):
     """The energy of a known field, integrated in x, y, z with strains from differences, n = 3."""
     n = 3
     model = model_of(block(2.0, 3.0, 1.0), 1)
@@ -118,11 +123,14 @@ def test_strains_of_a_harmonic_against_cartesian_gradients():
     trace = np.trace(strain)
     density = STEEL.lam * trace**2 + 2 * STEEL.mu * (strain**2).sum(axis=(0, 1))
     found = stored(model, Wave(n), field)
+    exact = float((density * volume).sum())
+    source = "x, y, z gradients by differences"
+    record("Energy of a known field, n = 3", source, exact, found, "N·mm", digits=6)
     # central differences leave step² = 1e-8, Gauss quadrature of 1/r less
-    assert found == pytest.approx(float((density * volume).sum()), rel=1e-6)
+    assert found == pytest.approx(exact, rel=1e-6)
 
 
-def test_ring_bent_to_an_ellipse():
+def test_ring_bent_to_an_ellipse(record):
     """Model page: σ ≈ E/(1-ν²)·(t/2)·3w0/R² for a wide ring under w0 cos 2φ.
 
     The thin-ring formula leaves out terms of order t/R = 1/50, and the seat is half a wall inside
@@ -140,7 +148,9 @@ def test_ring_bent_to_an_ellipse():
     hoop = recovered(model, Wave(2), found.values).nodal[:, 1]
     outside = hoop[model.space.places[:, 0] > radius + wall / 2 - 1e-9]
     expected = 200e3 / (1 - 0.3**2) * wall / 2 * 3 * w0 / radius**2
-    assert np.abs(outside).mean() == pytest.approx(expected, rel=0.03)
+    mean = np.abs(outside).mean()
+    record("Ring bent to an ellipse, stress", "Timoshenko II §17, thin ring", expected, mean, "MPa")
+    assert mean == pytest.approx(expected, rel=0.03)
 
 
 def test_lobe_coefficients_against_quadrature_and_parseval():
@@ -166,7 +176,7 @@ def test_truncation_bound_holds():
         assert many.work == pytest.approx(2 * sum(many.energies), rel=1e-8)  # Clapeyron
 
 
-def test_model_page_cup_under_lobes():
+def test_model_page_cup_under_lobes(record):
     """Model page: 45 to 60 kN·m/rad turned evenly, published 26.6 under lobes, alone below 3.
 
     A seat that may not lift off is stiffer than contact, no seat softer: the published figure of a
@@ -176,6 +186,14 @@ def test_model_page_cup_under_lobes():
     even = torsional_stiffness(shape, STEEL, "mesh", 1e-3)
     supported = lobe_stiffness(shape, STEEL, True, 3e-3)
     alone = lobe_stiffness(shape, STEEL, False, 3e-3)
+    shell = "published shell model 26 600"
+    held, free = supported.K_Nm_per_rad, alone.K_Nm_per_rad
+    record(
+        "Cup under lobes, seat supported, K_b", shell, (26.6e3, np.inf), held, "N·m/rad", digits=3
+    )
+    record(
+        "Cup under lobes, unsupported, K_b", "below 3000", (-np.inf, 3e3), free, "N·m/rad", digits=3
+    )
     assert alone.upper_Nm_per_rad < 3e3
     assert alone.upper_Nm_per_rad < 26.6e3 < supported.lower_Nm_per_rad
     assert supported.upper_Nm_per_rad < even.lower_Nm_per_rad
@@ -208,10 +226,18 @@ def test_lobe_bounds_contain_a_ten_times_finer_solution(shape):
 
 
 @pytest.mark.long
-@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=SLOW)
-@given(SHELLS)
-def test_lobe_bounds_contain_a_ten_times_finer_solution_in_100_designs(shape):
-    assert_lobes(shape)
+def test_lobe_bounds_contain_a_ten_times_finer_solution_in_100_designs(record):
+    held = 0
+
+    @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=SLOW)
+    @given(SHELLS)
+    def every(shape):
+        nonlocal held
+        assert_lobes(shape)
+        held += 1
+
+    every()
+    record("Random designs whose lobe bounds hold a 10 times finer K", "definition", 100, held)
 
 
 def test_an_unheld_body_is_refused():

@@ -32,24 +32,28 @@ CUP = Cup(
 """The example design XB1-40 without its bolt holes."""
 
 
-def test_coulomb_stress_of_a_tube():
+def test_coulomb_stress_of_a_tube(record):
     """Coulomb 1784: τ = T b/J at the outside; von Mises √3 τ, the same all along."""
     found = torsion_stress(tube(5, 8, 30), STEEL, "grip", 2.0, 1.0, 1e-3)
     polar = pi * (8**4 - 5**4) / 2
-    assert found.peak.mises_MPa == pytest.approx(3**0.5 * 2000 * 8 / polar, rel=1e-3)
+    exact, top = 3**0.5 * 2000 * 8 / polar, found.peak.mises_MPa
+    record("Tube in torsion, von Mises stress", "Coulomb 1784", exact, top, "MPa")
+    assert top == pytest.approx(exact, rel=1e-3)
     assert found.peak_rz[0] == pytest.approx(8)
     assert found.displacement[:, 1].max() * polar * STEEL.mu == pytest.approx(
         2000 * 30 * 8, rel=1e-9
     )
 
 
-def test_shear_stress_of_an_annular_plate():
+def test_shear_stress_of_an_annular_plate(record):
     """Equilibrium alone: τ = T/(2π r² h), largest at the bore.
 
     Corners are excluded to 1 mm; amid the 4 mm thick plate points of the bore itself count.
     """
     found = torsion_stress(annular_plate(10, 20, 4), STEEL, "grip", 2.0, 1.0, 1e-3)
-    assert found.peak.mises_MPa == pytest.approx(3**0.5 * 2000 / (2 * pi * 10**2 * 4), rel=1e-3)
+    exact, top = 3**0.5 * 2000 / (2 * pi * 10**2 * 4), found.peak.mises_MPa
+    record("Annular plate, von Mises stress at the bore", "equilibrium", exact, top, "MPa")
+    assert top == pytest.approx(exact, rel=1e-3)
     assert found.peak_rz[0] == pytest.approx(10)
 
 
@@ -74,7 +78,7 @@ def shoulder(small: float, large: float, fillet: float) -> Meridian:
 @pytest.mark.parametrize(
     ("small", "large", "fillet"), [(10, 13, 1.0), (10, 15, 1.0), (10, 20, 2.5), (10, 20, 4.0)]
 )
-def test_peterson_shoulder_fillet(small, large, fillet):
+def test_peterson_shoulder_fillet(small, large, fillet, record):
     """Pilkey, Peterson's Stress Concentration Factors, chart 3.12 (its fit for 0.25 ≤ h/r ≤ 4).
 
     The fit follows measured and computed points to about 5 %, so no closer agreement is asked for.
@@ -90,7 +94,10 @@ def test_peterson_shoulder_fillet(small, large, fillet):
     expected = sum(c * (2 * h / large) ** i for i, c in enumerate(fit))
     found = torsion_stress(shoulder(small, large, fillet), STEEL, "grip", 1.0, 0.5, 0.005)
     nominal = 16 * NMM_PER_NM / (pi * small**3)
-    assert found.peak.mises_MPa / 3**0.5 / nominal == pytest.approx(expected, rel=0.05)
+    factor = found.peak.mises_MPa / 3**0.5 / nominal
+    case = f"Shoulder fillet {small}/{large}, r = {fillet:g} mm, stress concentration"
+    record(case, "Peterson, chart 3.12", expected, factor, digits=3)
+    assert factor == pytest.approx(expected, rel=0.05)
     # where the fillet begins to leave the thin shaft
     step = 1.5 * large
     assert step < found.peak_rz[1] < step + fillet
@@ -125,7 +132,7 @@ def test_ellipse_is_linear_in_its_amplitude_and_meets_its_supports():
     assert one.displacement[mount] == pytest.approx(0)
 
 
-def test_ellipse_bends_the_ring_by_the_ring_formula():
+def test_ellipse_bends_the_ring_by_the_ring_formula(record):
     """Model page: σ ≈ E/(1-ν²)·(t/2)·3w0/R², the bending part of the hoop stress amid the ring.
 
     The bending part is half the difference of outer and inner surface; the membrane part comes from
@@ -140,7 +147,9 @@ def test_ellipse_bends_the_ring_by_the_ring_formula():
         on = on[np.argsort(z[on])]
         hoop.append(np.interp(26.0, z[on], found.stress[on, 1]))
     expected = 206e3 / (1 - 0.3**2) * 0.55 / 2 * 3 * w0 / (19.2 + 0.55 / 2) ** 2
-    assert (hoop[1] - hoop[0]) / 2 == pytest.approx(expected, rel=0.03)
+    bending, source = (hoop[1] - hoop[0]) / 2, "Timoshenko II §17, thin ring"
+    record("Cup on the ellipse, bending stress amid the ring", source, expected, bending, "MPa")
+    assert bending == pytest.approx(expected, rel=0.03)
 
 
 def test_von_mises_over_the_angle_peaks_where_reported():

@@ -35,29 +35,33 @@ def assert_encloses(found, exact: float, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize(("inner", "outer"), [(19.8, 20.2), (5.0, 20.0), (0.0, 8.5)])
-def test_coulomb_tube_and_solid_shaft(inner, outer):
+def test_coulomb_tube_and_solid_shaft(inner, outer, record):
     """Coulomb 1784: K = G J/L, J = π(b⁴ - a⁴)/2. ψ is linear in z, so the upper bound is exact."""
     exact = STEEL.mu * pi * (outer**4 - inner**4) / 2 / 30 / NMM_PER_NM
     found = torsional_stiffness(tube(inner, outer, 30), STEEL, "grip", 1e-4)
+    record(f"Tube {inner:g}/{outer:g} mm, K", "Coulomb 1784", exact, found.K_Nm_per_rad, "N·m/rad")
     assert_encloses(found, exact, 1e-4)
     assert found.upper_Nm_per_rad == pytest.approx(exact, rel=ROUNDING)
 
 
-def test_thin_tube_formula():
+def test_thin_tube_formula(record):
     """Model page: 2πG R³t/L; the next term of J is (t/2R)² = 1e-4 of it at R = 20, t = 0.4."""
     found = torsional_stiffness(tube(19.8, 20.2, 30), STEEL, "grip", 1e-5)
     thin = 2 * pi * STEEL.mu * 20**3 * 0.4 / 30 / NMM_PER_NM
+    record("Thin tube, K", "2πGR³t/L (Bredt)", thin, found.K_Nm_per_rad, "N·m/rad")
     assert found.K_Nm_per_rad == pytest.approx(thin * (1 + 0.01**2), rel=1e-5)
 
 
-def test_annular_plate_in_shear():
+def test_annular_plate_in_shear(record):
     """Model page: K = 4πG h/(1/r² - 1/R²). φ is linear in z: the lower bound is all but exact."""
     exact = 4 * pi * STEEL.mu * 2 / (1 / 11**2 - 1 / 20**2) / NMM_PER_NM
     found = torsional_stiffness(annular_plate(11, 20, 2), STEEL, "grip", 1e-5)
+    source = "Timoshenko and Goodier §43"
+    record("Annular plate in shear, K", source, exact, found.K_Nm_per_rad, "N·m/rad")
     assert_encloses(found, exact, 1e-5)
 
 
-def test_reissner_sagoci_disc_on_half_space():
+def test_reissner_sagoci_disc_on_half_space(record):
     """Reissner and Sagoci, J. Appl. Phys. 15 (1944) 652: a bonded rigid disc, K = 16/3 G a³.
 
     A block of 25 a stands for the half space; its far field is a torsion dipole whose share of the
@@ -65,10 +69,13 @@ def test_reissner_sagoci_disc_on_half_space():
     """
     block = outline((0, 0, "mount"), (25, 0, None), (25, 25, None), (1, 25, "grip"), (0, 25, None))
     found = torsional_stiffness(block, STEEL, "grip", 1e-4)
-    assert found.K_Nm_per_rad == pytest.approx(16 / 3 * STEEL.mu / NMM_PER_NM, rel=3e-4)
+    exact = 16 / 3 * STEEL.mu / NMM_PER_NM
+    source = "Reissner and Sagoci 1944"
+    record("Rigid disc on a half space, K", source, exact, found.K_Nm_per_rad, "N·m/rad")
+    assert found.K_Nm_per_rad == pytest.approx(exact, rel=3e-4)
 
 
-def test_stepped_shaft_between_elementary_bounds():
+def test_stepped_shaft_between_elementary_bounds(record):
     """Rigid planes at the step only stiffen (series of G J/L); less overhang only softens."""
     step = outline(
         (0, 0, "mount"),
@@ -81,21 +88,27 @@ def test_stepped_shaft_between_elementary_bounds():
     polar = pi / 2 * np.array([10.0, 6.0]) ** 4 * STEEL.mu / NMM_PER_NM
     series = 1 / (20 / polar[0] + 30 / polar[1])
     found = torsional_stiffness(step, STEEL, "grip", 1e-3)
+    case, elementary = "Stepped shaft, K", (polar[1] / 50, series)
+    record(case, "rigid and free planes at the step", elementary, found.K_Nm_per_rad, "N·m/rad")
     assert found.upper_Nm_per_rad < series
     assert found.lower_Nm_per_rad > polar[1] / 50
     # the step's extra length of the thinner shaft stays below a quarter of its diameter
     # (Peterson's and Griffel's charts of stepped shafts: 0 to 0.11 d for a sharp corner)
     extra = (polar[1] / found.K_Nm_per_rad) - 30 - 20 * polar[1] / polar[0]
+    case = "Stepped shaft, extra length over diameter"
+    record(case, "Griffel's and Peterson's charts", (0.0, 0.25), extra / 12, digits=2)
     assert 0 < extra < 0.25 * 12
 
 
-def test_model_page_cup():
+def test_model_page_cup(record):
     """Model page: about 45 to 60 kN·m/rad; thin tube and plate in series give 44.7.
 
     The series counts the whole length as tube; in the solid the plate and the driven ring take
     10 mm of it, so K lies above the series.
     """
     found = torsional_stiffness(cup_meridian(MODEL_CUP), STEEL, "mesh", 1e-3)
+    case, source = "Cup turned evenly, K_b", "tube and plate in series, and above"
+    record(case, source, (44.7e3, 60e3), found.K_Nm_per_rad, "N·m/rad")
     assert 44.7e3 < found.lower_Nm_per_rad < found.upper_Nm_per_rad < 60e3
 
 
@@ -120,14 +133,16 @@ def test_bounds_are_nested_under_refinement():
     assert (lower < upper).all()
 
 
-def test_prager_synge_identity():
+def test_prager_synge_identity(record):
     """Prager and Synge 1947: the constitutive misfit's energy is upper - lower, so it may steer."""
     mesh = triangulate(annular_plate(3, 20, 4))
     found = bracket(mesh, sorted_boundary(mesh.outline, "grip"))
-    assert found.share.sum() == pytest.approx(found.upper - found.lower, rel=1e-6)
+    gap, misfit = found.upper - found.lower, found.share.sum()
+    record("Misfit energy over the bounds' distance", "Prager and Synge 1947", 1.0, misfit / gap)
+    assert misfit == pytest.approx(gap, rel=1e-6)
 
 
-def test_rate_of_convergence():
+def test_rate_of_convergence(record):
     """P2 on a smooth solution: the energy's error falls as h⁴, 16 fold per halving."""
     mesh = triangulate(annular_plate(5, 20, 6))
     exact = 4 * pi * 6 / (1 / 5**2 - 1 / 20**2)
@@ -136,7 +151,9 @@ def test_rate_of_convergence():
     for _ in range(4):
         error.append(bracket(mesh, boundary).upper - exact)
         mesh = everywhere(mesh)
-    assert np.log2(error[-2] / error[-1]) > 3.7  # 4 in the limit
+    rate = np.log2(error[-2] / error[-1])
+    record("Rate of convergence of K", "theory: 4 in the limit", (3.7, np.inf), rate, digits=2)
+    assert rate > 3.7
 
 
 def assert_contains_finer(shape: Meridian, driven: str) -> None:
@@ -166,10 +183,18 @@ def test_bounds_contain_a_ten_times_finer_solution(part):
 
 
 @pytest.mark.long
-@settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=SLOW)
-@given(ANY_PART)
-def test_bounds_contain_a_ten_times_finer_solution_in_200_designs(part):
-    assert_contains_finer(*part)
+def test_bounds_contain_a_ten_times_finer_solution_in_200_designs(record):
+    held = 0
+
+    @settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=SLOW)
+    @given(ANY_PART)
+    def every(part):
+        nonlocal held
+        assert_contains_finer(*part)
+        held += 1
+
+    every()
+    record("Random designs whose bounds hold a 10 times finer K", "theorem", 200, held)
 
 
 def test_grip_across_a_step_and_a_closed_cavity():

@@ -27,6 +27,7 @@ A = M * (Z2 - Z1) / 2
 C_MAX = 2 * A * (1 - cos(ALPHA))
 PRINTED = 0.05 + 1e-9
 """The tables print one decimal: half of the last one."""
+ARTICLE, MODEL_PAGE = "the article's print", "recomputed by hand"
 MEASURED = Path(__file__).parents[2] / "examples/measured/size-40-end-points.csv"
 
 
@@ -58,7 +59,9 @@ def unit_readings() -> dict[str, tuple[float, float]]:
     ("stiffness", "printed", "exact"),
     [(1.0e4, 20.6, 20.63), (1.8e4, 11.5, 11.46), (3.0e4, 6.9, 6.88)],
 )
-def test_table_2_compliance(stiffness: float, printed: float, exact: float) -> None:
+def test_table_2_compliance(stiffness: float, printed: float, exact: float, record) -> None:
+    case = f"Table 2, wind-up at {stiffness:.0f} N·m/rad"
+    record(case, ARTICLE, printed, compliance(stiffness), "″", digits=3)
     assert compliance(stiffness) == pytest.approx(printed, abs=PRINTED)
     assert compliance(stiffness) == pytest.approx(exact, abs=0.005)  # two decimals
 
@@ -67,7 +70,8 @@ def test_table_2_compliance(stiffness: float, printed: float, exact: float) -> N
     ("j", "printed", "exact"),
     [(1, 11.0, 10.98), (2, 22.0, 21.95), (3, 32.9, 32.93), (4, 43.9, 43.90), (5, 54.9, 54.88)],
 )
-def test_table_3_flank_clearance(j: float, printed: float, exact: float) -> None:
+def test_table_3_flank_clearance(j: float, printed: float, exact: float, record) -> None:
+    record(f"Table 3, flank clearance {j} µm", ARTICLE, printed, flank(j), "″", digits=3)
     assert flank(j) == pytest.approx(printed, abs=PRINTED)
     assert flank(j) == pytest.approx(exact, abs=0.005)  # two decimals
 
@@ -83,8 +87,9 @@ TABLE_4 = [
 
 @pytest.mark.parametrize(("c", "printed", "exact", "normal", "along", "_"), TABLE_4)
 def test_table_4_bearing_play(
-    c: float, printed: float, exact: float, normal: float, along: float, _: float
+    c: float, printed: float, exact: float, normal: float, along: float, _: float, record
 ) -> None:
+    record(f"Table 4, bearing play {c} µm", ARTICLE, printed, flank(play_um(c)), "″", digits=3)
     assert flank(play_um(c)) == pytest.approx(printed, abs=PRINTED)
     assert flank(play_um(c)) == pytest.approx(exact, abs=0.005)  # two decimals
     assert play_um(c) == pytest.approx(normal, abs=0.005)
@@ -113,7 +118,9 @@ def test_printed_form_is_negative(c: float) -> None:
     assert play_um(c) == pytest.approx(-printed * 1e3, abs=1e-12 * 1e3)
 
 
-def test_domain_ends_at_c_max() -> None:
+def test_domain_ends_at_c_max(record) -> None:
+    limit = play_limit(A, ALPHA) * 1e3
+    record("Largest bearing play the model answers for", MODEL_PAGE, 24.12, limit, "µm")
     assert play_limit(A, ALPHA) * 1e3 == pytest.approx(24.12, abs=0.005)
     # at the end cos α′ rounds to within 1e-16 of 1, α′ to its root
     assert degrees(working_pressure_angle(C_MAX, A, ALPHA)) == pytest.approx(0, abs=1e-5)
@@ -125,7 +132,9 @@ def test_domain_ends_at_c_max() -> None:
     assert "24.12 µm" in str(caught.value)
 
 
-def test_bearing_term_saturates() -> None:
+def test_bearing_term_saturates(record) -> None:
+    largest = flank(play_um(C_MAX * 1e3))
+    record("Bearing term where it saturates", MODEL_PAGE, 61.48, largest, "″")
     assert flank(play_um(C_MAX * 1e3)) == pytest.approx(61.48, abs=0.005)
     assert involute_clearance_slope(C_MAX, A, ALPHA) == pytest.approx(0, abs=1e-7)
 
@@ -162,8 +171,9 @@ def test_without_play_both_widths_leave_no_clearance() -> None:
 
 
 @pytest.mark.parametrize(("c", "linear"), [(5, 1.71), (10, 3.42), (15, 5.13), (20, 6.84)])
-def test_small_displacement_is_larger_and_tangent(c: float, linear: float) -> None:
+def test_small_displacement_is_larger_and_tangent(c: float, linear: float, record) -> None:
     small = small_displacement_clearance(c * 1e-3, ALPHA) * 1e3
+    record(f"Flanks moved apart by {c} µm of play", "c sin α", linear, small, "µm", digits=3)
     assert small == pytest.approx(linear, abs=0.005)
     assert small > play_um(c)
     assert involute_clearance_slope(0, A, ALPHA) == pytest.approx(sin(ALPHA), rel=1e-12)
@@ -175,8 +185,10 @@ def envelope() -> tuple[float, float]:
     return low, high
 
 
-def test_table_5_envelope() -> None:
+def test_table_5_envelope(record) -> None:
     low, high = envelope()
+    record("Table 5, lower end", ARTICLE, 67.1, low, "″", digits=3)
+    record("Table 5, upper end", ARTICLE, 102.3, high, "″")
     assert low == pytest.approx(67.0, abs=PRINTED)  # printed 67.1: its terms were rounded up first
     assert high == pytest.approx(102.3, abs=PRINTED)
 
@@ -188,8 +200,10 @@ def test_table_5_units_2_and_3_are_outside() -> None:
     assert {unit for unit, x in total.items() if not low <= x <= high} == {"2", "3"}
 
 
-def test_table_5_no_clearance_within_tolerance_explains_unit_3() -> None:
+def test_table_5_no_clearance_within_tolerance_explains_unit_3(record) -> None:
     largest = compliance(1.8e4) + flank(4) + flank(play_um(C_MAX * 1e3))
+    case = "Table 5, most that clearances explain of unit 3's 117″"
+    record(case, MODEL_PAGE, 116.8, largest, "″")
     assert largest == pytest.approx(116.8, abs=PRINTED)
     plus, minus = unit_readings()["3"]
     assert largest < plus - minus

@@ -1,0 +1,65 @@
+"""The validation page: every verification test hands in its case, one command writes them down."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from validation_page import TOPICS, Row, has_case, markdown
+
+PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
+ROWS = pytest.StashKey[list[Row]]()
+OUTCOME = pytest.StashKey[str]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--write-validation",
+        action="store_true",
+        help=f"write {PAGE.name} from what the tests find",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[ROWS] = []
+    if config.getoption("--write-validation"):
+        config.option.markexpr = ""  # the long ones too: the page is whole or not written
+
+
+@pytest.fixture
+def record(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """`record(case, source, expected, got, unit="", digits=4)`: a row of the validation page.
+
+    Without --write-validation it fails a test whose case the page has not.
+    """
+    writing = request.config.getoption("--write-validation")
+
+    def add(case: str, source: str, *figures, **more) -> None:
+        row = Row(request.path.stem, case, source, *figures, **more)
+        request.config.stash[ROWS].append(row)
+        known = writing or has_case(PAGE.read_text(encoding="utf-8"), row)
+        assert known, f"{PAGE.name} lacks “{case}”: pytest tests/verification --write-validation"
+
+    return add
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    config = session.config
+    if not config.getoption("--write-validation"):
+        return
+    rows = config.stash[ROWS]
+    modules = {row.module for row in rows}
+    missing = [m for group in TOPICS.values() for m in group if m not in modules]
+    if exitstatus or missing:
+        reason = f"no case from {', '.join(missing)}" if missing else "tests failed"
+        config.stash[OUTCOME] = f"{PAGE.name} not written: {reason}"
+        session.exitstatus = exitstatus or 1
+        return
+    PAGE.write_text(markdown(rows), encoding="utf-8")
+    config.stash[OUTCOME] = f"{PAGE.name} written: {len(rows)} cases"
+
+
+def pytest_terminal_summary(terminalreporter) -> None:
+    if (said := terminalreporter.config.stash.get(OUTCOME, None)) is not None:
+        terminalreporter.write_line(said)

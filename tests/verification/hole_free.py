@@ -1,0 +1,100 @@
+"""Hole-free cups, hats and shafts of different proportions, each solved once in a test run: as a
+solid with its estimated error, and on its meridian between bounds that are theorems."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.mesh import mesh_surface
+from fea.solid.stiffness import solid_stiffness
+from fea.types import Elastic, Stiffness
+from geometry.design import Design
+from geometry.load import design_from
+from geometry.meridian import meridian
+from geometry.symmetry import sector_of
+from geometry.tagged import tagged_surface
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
+TOLERANCE = 0.005
+"""Asked of the solid model: the contract's default."""
+REFERENCE = 5e-5
+"""Width of the two-sided bounds: a hundred times narrower, and eight times below any estimate so far."""
+
+CASES: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "cup": ("xb1-40.toml", "flexspline", {}),
+    "cup, short and thick": (
+        "xb1-40.toml", "flexspline",
+        {"length_mm": 18.0, "wall_thickness_mm": 0.9, "ring_thickness_mm": 1.2,
+         "diaphragm_thickness_mm": 1.2, "ring_width_mm": 6.0},
+    ),
+    "cup, long and thin": (
+        "xb1-40.toml", "flexspline",
+        {"length_mm": 44.0, "wall_thickness_mm": 0.25, "ring_thickness_mm": 0.4,
+         "diaphragm_thickness_mm": 0.4, "boss_diameter_mm": 22.0},
+    ),
+    "cup, ring inboard": ("xb1-40.toml", "flexspline", {"ring_offset_mm": 3.0}),
+    "hat": ("hat-25.toml", "flexspline", {}),
+    "hat, sharp corners": (
+        "hat-25.toml", "flexspline", {"inner_fillet_mm": 0.0, "outer_fillet_mm": 0.0},
+    ),
+    "hat, thick diaphragm": ("hat-25.toml", "flexspline", {"diaphragm_thickness_mm": 1.2}),
+    "shaft, hollow, one step": ("xb1-40.toml", "shaft", {}),
+    "shaft, slender": ("xb1-40.toml", "shaft", {"segment": [
+        {"length_mm": 3.0, "outer_diameter_mm": 24.0, "inner_diameter_mm": 8.0},
+        {"length_mm": 40.0, "outer_diameter_mm": 14.0, "inner_diameter_mm": 8.0}]}),
+    "shaft, solid, two steps": ("xb1-40.toml", "shaft", {"segment": [
+        {"length_mm": 4.0, "outer_diameter_mm": 26.0, "inner_diameter_mm": 0.0},
+        {"length_mm": 10.0, "outer_diameter_mm": 16.0, "inner_diameter_mm": 0.0},
+        {"length_mm": 14.0, "outer_diameter_mm": 12.0, "inner_diameter_mm": 0.0}]}),
+}  # fmt: skip
+
+
+def hole_free(file: str, part: str, changes: dict[str, Any]) -> Design:
+    data = tomllib.loads((EXAMPLES / file).read_text(encoding="utf-8"))
+    data["flexspline"]["bolt_count"] = data["shaft"]["bolt_count"] = 0
+    data["shaft"].pop("keyway", None)
+    data[part] |= changes
+    return design_from(data)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The solid model's answer and the bounds it is judged by."""
+
+    solid: Stiffness
+    exact: Stiffness
+
+    @property
+    def estimated_error(self) -> float:
+        """The estimate of K_h − K on the finest mesh, N·m/rad."""
+        return self.solid.upper_Nm_per_rad - self.solid.K_Nm_per_rad
+
+    @property
+    def true_error(self) -> float:
+        """K_h − K on the finest mesh, N·m/rad, with the bounds' middle for K."""
+        return self.solid.levels[-1].K_Nm_per_rad - self.exact.K_Nm_per_rad
+
+
+@cache
+def solved(name: str) -> Pair:
+    """Both solutions of a case."""
+    file, part, changes = CASES[name]
+    design = hole_free(file, part, changes)
+    material = Elastic.of(design.material.flexspline)
+    spec = first_spec(design, part)
+    sector = sector_of(design, part, "torsion")
+    surface = tagged_surface(
+        design, part, sector.degrees, CHORD_PER_ENVELOPE * spec.envelope, edge_spacing=0.1
+    )
+    found = solid_stiffness(
+        lambda s: mesh_surface(surface, s), spec, material, DRIVEN[part], TOLERANCE, "1/12", print
+    ).stiffness
+    exact = torsional_stiffness(meridian(design, part), material, DRIVEN[part], REFERENCE)
+    return Pair(found, exact)
