@@ -13,6 +13,7 @@ from geometry.check_flexspline import flexspline_faults
 from geometry.check_shaft import shaft_faults
 from geometry.design import Design
 from geometry.errors import DesignError
+from geometry.tooth import tooth_faults
 
 
 def check(design: Design) -> None:
@@ -33,6 +34,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from flexspline_faults(design.flexspline)
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
+    yield from tooth_faults(design)
     yield from _play_faults(design)
     yield from _solver_faults(design)
 

@@ -94,6 +94,13 @@ class _Flexspline(_Bolted):
     outer_fillet_mm: LengthOrZero = Field(
         default=0.0, description="mm, radius of the outside corner of the closed end; 0: sharp"
     )
+    teeth: Literal["none", "drawn"] = Field(
+        default="none",
+        description="none: plain ring; drawn: a ring as stiff as the teeth and the rim under them",
+    )
+    tooth_flank: Literal["involute", "trapezoid"] = Field(
+        default="involute", description="involute or trapezoid, where teeth are drawn"
+    )
 
     @property
     def inner_radius(self) -> float:
