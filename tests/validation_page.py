@@ -14,6 +14,7 @@ TOPICS = {
     ),
     "The rim on the wave generator": ("test_contact_on_the_seat",),
     "Stress on the meridian": ("test_axisymmetric_stress",),
+    "The toothed ring": ("test_toothed_ring",),
     "Solid elements against closed forms": ("test_solid_closed_forms",),
     "Solid elements on published benchmarks": (
         "test_nafems_le1",

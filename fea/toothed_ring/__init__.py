@@ -1,0 +1,1 @@
+"""The toothed ring of a flexspline, and the plain ring that is as stiff."""

@@ -1,0 +1,89 @@
+"""The tooth cell where the answer is known: thick rings, and a rim cut by radial slits.
+
+Timoshenko and Goodier, Theory of Elasticity, 3rd ed., art. 28 (Lamé) and 29 (pure bending of a
+curved bar, Golovin). Slits: the Airy function over a stretched rim and the conjugate of its warping
+obey the equations and the conditions of slow flow across and along thin blades s apart, whose
+effective wall lies beyond the blades' edges by 0.0886 s and s ln 2/π (Bechert and Bartenwerfer, J.
+Fluid Mech. 206, 1989, 105-129; Luchini, Manzo and Pozzi, J. Fluid Mech. 228, 1991, 87-109).
+"""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import numpy as np
+import pytest
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.triangulate import triangulate
+from fea.toothed_ring.cell import CellModel
+from fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
+from geometry.tooth import ToothCell
+
+INNER, OUTER, NU = 5.0, 10.0, 0.3
+TIMOSHENKO = "Timoshenko and Goodier, Theory of Elasticity, art. "
+
+
+def thick_ring(rounds: int) -> CellModel:
+    """A plain ring with b/a = 2 in a cell of 0.3 rad."""
+    cell = ToothCell(INNER, 0.3, ((OUTER, 0.3),))
+    mesh = triangulate(cell.outline)
+    for _ in range(rounds):
+        mesh = refined(mesh, np.ones(len(mesh.triangles), bool))
+    return CellModel(cell, mesh)
+
+
+def golovin() -> float:
+    """M/(E' δ/θ) = N/(8(b² − a²)) with N = (b² − a²)² − 4a²b² ln²(b/a)."""
+    a2, b2 = INNER**2, OUTER**2
+    return ((b2 - a2) ** 2 - 4 * a2 * b2 * log(OUTER / INNER) ** 2) / (8 * (b2 - a2))
+
+
+def lame() -> float:
+    """p/(E' u) inside a cylinder in plane strain, E' = E/(1 − ν²)."""
+    a2, b2 = INNER**2, OUTER**2
+    strain = (1 + NU) * ((1 - 2 * NU) * a2 + b2) / (b2 - a2)
+    return (1 - NU**2) / (strain * INNER)
+
+
+def test_thick_ring_against_closed_forms(record) -> None:
+    found = thick_ring(4)
+    bending, membrane, torsion = found.bending(NU), found.membrane(NU), found.torsion()
+    record("Curved bar in pure bending, b/a = 2", TIMOSHENKO + "29", golovin(), bending, "mm³")
+    record("Cylinder under pressure, b/a = 2", TIMOSHENKO + "28", lame(), membrane, "1/mm")
+    J = pi / 2 * (OUTER**4 - INNER**4)
+    record("Torsion constant of a tube, b/a = 2", "π(b⁴ − a⁴)/2", J, torsion, "mm⁴")
+    # fourth order, 16 elements across: each is below 1e-6
+    assert bending == pytest.approx(golovin(), rel=1e-6)
+    assert membrane == pytest.approx(lame(), rel=1e-6)
+    # no warping, and r³ is integrated exactly
+    assert torsion == pytest.approx(J, rel=1e-12)
+
+
+def test_thick_ring_energy_falls_with_the_fourth_power() -> None:
+    for exact, solve in ((golovin(), CellModel.bending), (lame(), CellModel.membrane)):
+        errors = [solve(thick_ring(rounds), NU) / exact - 1 for rounds in (1, 2, 3)]
+        assert min(errors) > 0
+        # 16 in the limit; 12 leaves room for coarse first meshes
+        assert errors[1] > 12 * errors[2]
+
+
+def slit_rim() -> tuple[EquivalentRing, float]:
+    """2000 slits from a rim of 1 mm outwards, 16 spacings long; and their spacing [mm]."""
+    root, half_pitch = 20.0, pi / 2000
+    cell = ToothCell(root - 1, half_pitch, ((root + 1, half_pitch), (root, half_pitch)))
+    return equivalent_ring(cell, NU), 2 * half_pitch * root
+
+
+def test_slit_rim_against_flow_over_blades(record) -> None:
+    ring, spacing = slit_rim()
+    beyond = [(t - 1) / spacing for t in (ring.bending_mm, ring.membrane_mm, ring.torsion_mm)]
+    along, across = log(2) / pi, 0.0886
+    case, where = "Rim cut by radial slits: effective depth beyond their roots, ", "spacings"
+    record(case + "torsion", "Bechert and Bartenwerfer 1989", along, beyond[2], where)
+    record(case + "hoop tension", "Luchini, Manzo and Pozzi 1991", across, beyond[1], where)
+    # the rim is 1 mm: 1e-4 of it at most are 0.002 spacings; curvature adds 0.3 %, spacing/R
+    assert beyond[2] == pytest.approx(along, abs=0.002 + 0.003 * along)
+    assert beyond[1] == pytest.approx(across, abs=0.002)
+    # bent, the fibres near the slits are stretched almost alike: spacing/thickness is 6 %
+    assert beyond[0] == pytest.approx(across, rel=0.06)
