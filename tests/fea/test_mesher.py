@@ -1,0 +1,125 @@
+"""The mesher as a child that may fail, and the checks between its output and the solve."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
+from fea.solid.errors import MesherError, MeshQualityError
+from fea.solid.mesh import JACOBIAN_RATIO, _check, mesh_surface
+from fea.solid.stiffness import solid_stiffness
+from fea.solid.tetwild import TetwildSettings, tetrahedralize
+from fea.types import Elastic, TetMesh
+from geometry.design import Design
+from geometry.load import design_from
+from geometry.meridian import meridian
+from geometry.symmetry import sector_of
+from geometry.tagged import TaggedSurface, tagged_surface
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+
+
+def design(holes: int) -> Design:
+    data = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    data["flexspline"]["bolt_count"] = holes
+    return design_from(data)
+
+
+def surface_of(given: Design, part: str) -> TaggedSurface:
+    spec, sector = first_spec(given, part), sector_of(given, part, "torsion")
+    return tagged_surface(given, part, sector.degrees, CHORD_PER_ENVELOPE * spec.envelope, 0.1)
+
+
+@pytest.fixture(scope="module")
+def shaft() -> tuple[TaggedSurface, TetMesh]:
+    given = design(6)
+    surface = surface_of(given, "shaft")
+    return surface, mesh_surface(surface, first_spec(given, "shaft"))
+
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+CUBE_FACES = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+     [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+)  # fmt: skip
+
+
+def test_a_mesher_that_hangs_is_stopped_with_advice() -> None:
+    with pytest.raises(MesherError, match=r"did not finish within 0 s .*try a larger") as caught:
+        tetrahedralize(CUBE, CUBE_FACES, TetwildSettings(0.1, 0.001, time_limit_s=0.01))
+    assert caught.value.advice
+
+
+def test_a_mesher_that_crashes_is_an_error_with_its_last_words() -> None:
+    broken = np.array([[0, 1, 99]])  # no such vertex
+    with pytest.raises(MesherError, match="ended with status"):
+        tetrahedralize(CUBE, broken, TetwildSettings(0.1, 0.001, time_limit_s=60))
+
+
+def test_a_cube_is_filled() -> None:
+    points, tets = tetrahedralize(CUBE, CUBE_FACES, TetwildSettings(0.5, 0.001))
+    a, b, c = (points[tets[:, i]] - points[tets[:, 0]] for i in (1, 2, 3))
+    volumes = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
+    assert volumes.min() > 0
+    assert volumes.sum() == pytest.approx(1, abs=0.006)  # six faces within the envelope
+
+
+def test_mesh_agrees_with_the_cad(shaft) -> None:
+    surface, mesh = shaft
+    # nodes lie on the exact surfaces; six-node facets approximate arcs to fourth order
+    assert element_volumes(mesh.nodes, mesh.cells).sum() == pytest.approx(surface.volume, rel=1e-3)
+    for patch in ("mount", "grip"):
+        area = facet_areas(mesh.nodes, mesh.on(patch)).sum()
+        assert area == pytest.approx(surface.patch_areas[patch], rel=1e-3)
+    assert jacobian_ratio(mesh.nodes, mesh.cells).min() >= JACOBIAN_RATIO
+    assert np.array_equal(np.unique(mesh.cells), np.arange(len(mesh.nodes)))  # no orphans
+
+
+def test_a_wrong_patch_is_refused(shaft) -> None:
+    surface, mesh = shaft
+    grip = mesh.patches.index("grip")
+    fewer = mesh.facet_patch.copy()
+    mine = np.flatnonzero(fewer == grip)
+    fewer[mine[: len(mine) // 10]] = 0
+    with pytest.raises(MeshQualityError, match="patch 'grip'"):
+        _check(replace(mesh, facet_patch=fewer), surface)
+
+
+def test_a_bent_symmetry_plane_is_refused(shaft) -> None:
+    surface, mesh = shaft
+    nodes = mesh.nodes.copy()
+    nodes[mesh.nodes_on("symmetry_end")[0]] += 0.001
+    with pytest.raises(MeshQualityError, match="off the plane"):
+        _check(replace(mesh, nodes=nodes), surface)
+
+
+def test_lost_volume_is_refused(shaft) -> None:
+    surface, mesh = shaft
+    with pytest.raises(MeshQualityError, match="mm³"):
+        _check(replace(mesh, cells=mesh.cells[: len(mesh.cells) * 9 // 10]), surface)
+
+
+@pytest.mark.parametrize("holes", [pytest.param(1, marks=pytest.mark.long), 3])
+def test_few_holes_in_the_boss_hardly_matter(holes: int) -> None:
+    """Half and sixth models: the held, thick boss with its holes moves K by less than 0.5 %.
+
+    Without holes K is known between two-sided bounds.
+    """
+    given = design(holes)
+    surface = surface_of(given, "flexspline")
+    steel = Elastic.of(given.material.flexspline)
+    spec = first_spec(given, "flexspline")
+    sector = sector_of(given, "flexspline", "torsion")
+    found = solid_stiffness(
+        lambda s: mesh_surface(surface, s), spec, steel, "mesh", 0.02, sector.label, print
+    ).stiffness
+    bare = torsional_stiffness(meridian(design(0), "flexspline"), steel, "mesh", 1e-3)
+    assert found.lower_Nm_per_rad < bare.upper_Nm_per_rad
+    assert found.K_Nm_per_rad == pytest.approx(bare.K_Nm_per_rad, rel=0.005)
