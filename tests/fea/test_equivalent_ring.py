@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi
+from pathlib import Path
 
 import pytest
 from toothed import toothed
@@ -72,6 +73,14 @@ def test_bending_and_torsion_know_no_material(involute: EquivalentRing) -> None:
     # each within its own mesh error
     assert other.bending_mm == pytest.approx(involute.bending_mm, rel=2 * SMALLEST_CHANGE)
     assert other.torsion_mm == pytest.approx(involute.torsion_mm, rel=1e-9)
+
+
+def test_theory_page_prints_these_thicknesses(involute: EquivalentRing) -> None:
+    """The page against the program, not the program against a source."""
+    page = (Path(__file__).parents[2] / "docs" / "theory.md").read_text(encoding="utf-8")
+    trapezoid = equivalent_ring(tooth_cell(toothed("trapezoid")), 0.3)
+    for flank, ring in (("involute", involute), ("trapezoid", trapezoid)):
+        assert f"| {flank} | " + " | ".join(f"{t:.3f} mm" for t in three(ring)) + " |" in page
 
 
 def test_thickness_is_the_inverse_of_the_closed_forms() -> None:
