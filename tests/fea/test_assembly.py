@@ -11,6 +11,8 @@ from structured import sector_mesh
 from fea.solid.assembly import NodeFrames, stiffness_matrix
 from fea.solid.cases import Model, torsion
 from fea.solid.elements import NODES, quadratic_mesh, reference_values
+from fea.solid.errors import SolveError
+from fea.solid.solver import solve
 from fea.solid.unfold import folded, unfolded
 from fea.types import Elastic
 
@@ -69,3 +71,21 @@ def test_folding_takes_unfolded_nodes_back() -> None:
 def test_unfolding_refuses_a_sector_that_does_not_fit() -> None:
     with pytest.raises(ValueError, match="no multiple"):
         unfolded(small(), 100.0)
+
+
+def test_an_unsupported_body_is_refused_with_a_reason() -> None:
+    mesh = small()
+    model = Model.of(mesh, STEEL)
+    load = np.zeros(model.matrix.shape[0])
+    load[2] = 1.0
+    none = np.empty(0, int)
+    with pytest.raises(SolveError, match="may be unsupported"):
+        solve(model.matrix, load, none, np.empty(0))
+
+
+def test_superlu_stands_in_for_pardiso(monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh = small()
+    with_mkl = torsion(Model.of(mesh, STEEL), "mesh").K_energy
+    monkeypatch.setattr("fea.solid.solver._pardiso", lambda: None)
+    without = torsion(Model.of(mesh, STEEL), "mesh").K_energy
+    assert without == pytest.approx(with_mkl, rel=1e-10)
