@@ -60,7 +60,7 @@ def _direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     solver = _pardiso()
     if solver is None:
         return _superlu(matrix, right)
-    from pypardiso import PyPardisoError
+    from pypardiso.pardiso_wrapper import PyPardisoError
 
     upper = triu(matrix, format="csr")
     upper.sort_indices()
