@@ -1,0 +1,188 @@
+"""docs/benchmarks.md from results.json: `python benchmarks/page.py` writes it anew."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from math import log
+from pathlib import Path
+from typing import Any
+
+from cases import ACCURACIES_PCT, CASES, ROOT
+
+Row = Mapping[str, Any]
+
+
+def page(r: Mapping[str, Any]) -> str:
+    parts = [HEAD, machine(r), references(r)]
+    for case in CASES:
+        parts += [f"## {case.title}", *times(r, case.name)]
+    parts += [demands(r), everything(r), scaling(r["scaling"]), HOW]
+    return "\n\n".join(parts) + "\n"
+
+
+HEAD = """# Speed, side by side
+
+Written by `benchmarks/run.py`; the figures are in `benchmarks/results.json`. Every time is of a whole
+process, from its start to K_b of the load case `uniform`: imports, CAD or STEP reading, meshing and
+solving. Median of five runs, the range in brackets; the programs take turns within each round."""
+
+HOW = """## How it was done
+
+- flexspline: `flexspline backlash DESIGN.toml --Ke 1e5` with an empty cache, which solves for K_b and
+  nothing else, at `tolerance_pct` equal to the accuracy. It is not told the answer: its bound has to
+  meet the tolerance, so it stops later than its true error would need.
+- Peers: the STEP file that `flexspline export` writes, Netgen's mesher, refined along the circles where
+  the stress is singular. NGSolve: curved elements of order 2 or 3, static condensation, its sparse
+  Cholesky, all cores. CalculiX: C3D10 on Netgen's curved second-order mesh, SPOOLES, all cores.
+  Edge lengths, grading and order were searched for each accuracy, and the fastest that reaches it is
+  quoted: a peer is told when to stop, by somebody who knows the answer. None of them gives an
+  error bound of its own.
+- `setting`: order, largest edge / edge at the singular circles, Netgen's grading."""
+
+
+def machine(r: Row) -> str:
+    m = r["machine"]
+    load = r["load_at_timing"][0]
+    return (
+        f"{m['cpu']}, {m['cores']} cores, {m['memory_GB']} GB, {m['system']}; Python {m['python']},"
+        f" flexspline {m['flexspline']} ({m['commit']}), NGSolve {m['NGSolve']}, CalculiX"
+        f" {m['CalculiX']}, pytetwild {m['pytetwild']}, pypardiso {m['pypardiso']}, numpy {m['numpy']},"
+        f" scipy {m['scipy']}. Load average when the timing began: {load:.2f}."
+    )
+
+
+def references(r: Row) -> str:
+    free, six = (r["references"][c.name] for c in CASES)
+    low, high = free["bounds"]
+    return (
+        f"References. Without holes K_b = {free['K']:.1f} N·m/rad, between {low:.2f} and {high:.2f} by"
+        f" bounds that are theorems (NGSolve's limit: {free['ngsolve']:.1f}). With six holes K_b ="
+        f" {six['K']:.1f}: NGSolve's limit is {six['ngsolve']:.1f} before its own error on the hole-free"
+        f" cup is taken off, flexspline's finest is {six['flexspline']:.1f} ±"
+        f" {six['flexspline_bound_pct']:.2f} %; the two are {six['apart_pct']:.3f} % apart."
+    )
+
+
+def fastest(r: Row, case: str, accuracy: float, program: str) -> Row | None:
+    """The quickest of a program's settings that reached the accuracy in all runs."""
+    good = [
+        t for t in r["times"]
+        if (t["case"], t["accuracy_pct"], t["program"]) == (case, accuracy, program)
+        and "failed" not in t and t["worst_error_pct"] <= accuracy
+    ]  # fmt: skip
+    return min(good, key=lambda t: t["wall_s"], default=None)
+
+
+def programs(r: Row, case: str) -> list[str]:
+    seen = dict.fromkeys(t["program"] for t in r["times"] if t["case"] == case)
+    return [p for p in seen if p != "flexspline stiffness"]
+
+
+def times(r: Row, case: str) -> Iterable[str]:
+    for accuracy in ACCURACIES_PCT:
+        rows = [
+            f"### To {accuracy:g} %\n",
+            "| program | time [s] | own bound [%] | true error [%] | unknowns | memory [MB] | setting |",
+            "|---|---|---|---|---|---|---|",
+        ]
+        for program in programs(r, case):
+            t = fastest(r, case, accuracy, program)
+            rows.append(f"| {program} | not reached | | | | | |" if t is None else line(t))
+        yield "\n".join(rows)
+
+
+def line(t: Row) -> str:
+    bound = f"± {t['bound_pct']:.3f}" if "bound_pct" in t else "none"
+    if t.get("model") == "axisymmetric":
+        bound += ", guaranteed"
+    elif "bound_pct" in t:
+        bound += ", estimated"
+    low, high = t["wall_range_s"]
+    setting = t["setting"] or f"tolerance_pct = {t['accuracy_pct']:g}"
+    return (
+        f"| {t['program']} | {t['wall_s']:.2f} ({low:.2f} to {high:.2f}) | {bound}"
+        f" | {t['error_pct']:+.3f} | {t['unknowns']} | {t['peak_MB']} | {setting} |"
+    )
+
+
+def demands(r: Row) -> str:
+    """What was demanded of us, and whether it is met."""
+    free, six = (c.name for c in CASES)
+    rows = ["## What was demanded\n", "| demand | found | met |", "|---|---|---|"]
+    ours = fastest(r, free, 0.1, "flexspline")
+    for name in ("NGSolve, wedge", "NGSolve, full", "CalculiX, full"):
+        peer = fastest(r, free, 0.1, name)
+        rows.append(ratio(f"body of revolution, 0.1 %: 20 × faster than {name}", peer, ours, 20.0))
+    ours = fastest(r, six, 0.5, "flexspline")
+    for name in ("NGSolve, full", "CalculiX, full"):
+        peer = fastest(r, six, 0.5, name)
+        rows.append(ratio(f"six holes, 0.5 %: faster than {name}", peer, ours, 1.0))
+    peer = fastest(r, six, 0.5, "NGSolve, wedge")
+    rows.append(
+        ratio("six holes, 0.5 %: at most 1.5 × the time of NGSolve, wedge", peer, ours, 1 / 1.5)
+    )
+    return "\n".join(rows)
+
+
+def ratio(what: str, peer: Row | None, ours: Row | None, wanted: float) -> str:
+    if ours is None:
+        return f"| {what} | we did not reach it | no |"
+    if peer is None:
+        return f"| {what} | it did not reach the accuracy | yes |"
+    found = peer["wall_s"] / ours["wall_s"]
+    said = f"{found:.1f} × as fast" if found >= 1 else f"{1 / found:.1f} × its time"
+    return f"| {what} | {said} | {'yes' if found >= wanted else 'no'} |"
+
+
+def everything(r: Row) -> str:
+    rows = [
+        "## All load cases of both parts\n",
+        "`flexspline stiffness` at 0.5 %: K_b even, at the lobes with and without the wave generator,"
+        " the ellipse's stress, K_e; what no peer above computes.\n",
+        "| case | time [s] | memory [MB] |",
+        "|---|---|---|",
+    ]
+    for case in CASES:
+        for t in r["times"]:
+            if t["case"] == case.name and t["program"] == "flexspline stiffness":
+                low, high = t.get("wall_range_s", (0, 0))
+                said = t.get("failed") or f"{t['wall_s']:.2f} ({low:.2f} to {high:.2f})"
+                rows.append(f"| {case.title} | {said} | {t['peak_MB']} |")
+    return "\n".join(rows)
+
+
+def scaling(found: list[Row]) -> str:
+    rows = [
+        "## Growth with unknowns\n",
+        "The six-hole cup, quarter and whole, on ever finer meshes; assembly and direct solution, each"
+        " mesh in a process of its own.\n",
+        "| unknowns | assembly [s] | solution [s] | both over n ln n [µs] | memory [MB] |",
+        "|---|---|---|---|---|",
+    ]
+    good = [t for t in found if "failed" not in t]
+    for t in good:
+        n, both = t["unknowns"], t["assembly_s"] + t["solve_s"]
+        rows.append(
+            f"| {n} | {t['assembly_s']:.2f} | {t['solve_s']:.2f} | {1e6 * both / (n * log(n)):.2f}"
+            f" | {t['peak_MB']} |"
+        )
+    rows += [
+        f"| {t['far_mm']} mm | {t['failed']} | | | {t['peak_MB']} |" for t in found if t not in good
+    ]
+    if len(good) > 1:
+        one, other = good[0], good[-1]
+        grown = (other["assembly_s"] + other["solve_s"]) / (one["assembly_s"] + one["solve_s"])
+        more = other["unknowns"] / one["unknowns"]
+        power = log(grown) / log(more)
+        same = more * log(other["unknowns"]) / log(one["unknowns"])
+        rows.append(
+            f"\nFrom the first to the last row the unknowns grow {more:.0f} ×, the time {grown:.0f} ×"
+            f" (n log n would be {same:.0f} ×): a power of {power:.2f}."
+        )
+    return "\n".join(rows)
+
+
+if __name__ == "__main__":
+    known = json.loads(Path(__file__).with_name("results.json").read_text(encoding="utf-8"))
+    (ROOT / "docs" / "benchmarks.md").write_text(page(known), encoding="utf-8")

@@ -1,0 +1,88 @@
+"""One run of each program on a case: a whole process from start to K."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from cases import WEDGE_DEG, Case
+from measure import run
+
+HERE = Path(__file__).parent
+SHAFT_GIVEN = "1e5"
+"""With K_e given, `flexspline backlash` solves for K_b alone."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Of a peer: lengths in mm, `edge` along the circles where the stress is singular."""
+
+    order: int
+    maxh: float
+    edge: float
+    grading: float
+
+    def __str__(self) -> str:
+        return f"order {self.order}, h {self.maxh:g}/{self.edge:g} mm, grading {self.grading:g}"
+
+
+@dataclass(frozen=True)
+class Peer:
+    """A peer program on the whole cup or on a wedge; `python` has NGSolve."""
+
+    name: str
+    script: str
+    sector: float
+    python: str
+
+    def run(self, case: Case, setting: Setting, steps: Path) -> dict[str, Any]:
+        options = asdict(setting) | {"sector": self.sector, "patches": case.patches()}
+        words = [str(w) for k, v in options.items() for w in (f"--{k}", v)]
+        step = case.step(steps, self.sector)
+        with tempfile.TemporaryDirectory() as folder:
+            command = [self.python, str(HERE / self.script), str(step), *words]
+            return run(command, Path(folder))
+
+
+def peers(python: str) -> tuple[Peer, ...]:
+    return (
+        Peer("NGSolve, wedge", "peer_ngsolve.py", WEDGE_DEG, python),
+        Peer("NGSolve, full", "peer_ngsolve.py", 360.0, python),
+        Peer("CalculiX, full", "peer_calculix.py", 360.0, python),
+    )
+
+
+def ours(case: Case, tolerance_pct: float) -> dict[str, Any]:
+    """`flexspline backlash` with K_e given and an empty cache."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "design.toml").write_text(case.design_text(tolerance_pct), encoding="utf-8")
+        command = [str(Path(sys.executable).with_name("flexspline")), "backlash", "design.toml"]
+        command += ["--Ke", SHAFT_GIVEN, "--json", "--out", "out"]
+        found = run(command, folder, {"FLEXSPLINE_CACHE": str(folder / "cache")})
+    return found if "failed" in found else _figures(found)
+
+
+def stiffness_command(case: Case, tolerance_pct: float) -> dict[str, Any]:
+    """`flexspline stiffness`: every load case of both parts, with an empty cache."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "design.toml").write_text(case.design_text(tolerance_pct), encoding="utf-8")
+        command = [str(Path(sys.executable).with_name("flexspline")), "stiffness", "design.toml"]
+        command += ["--json", "--out", "out"]
+        found = run(command, folder, {"FLEXSPLINE_CACHE": str(folder / "cache")})
+    return found if "failed" in found else _figures(found)
+
+
+def _figures(found: Mapping[str, Any]) -> dict[str, Any]:
+    low, high = found["K_b_bounds_Nm_per_rad"]
+    K, solver = found["K_b_Nm_per_rad"], found["solver"]
+    return {
+        "K": K, "bound_pct": 50 * (high - low) / K, "unknowns": solver["dofs"],
+        "elements": solver["elements"], "model": solver["model"],
+        "wall_s": found["wall_s"], "peak_MB": found["peak_MB"],
+    }  # fmt: skip

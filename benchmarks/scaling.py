@@ -1,0 +1,83 @@
+"""How assembly and solution grow with the unknowns, to a million: the six-hole cup made finer.
+
+`python benchmarks/scaling.py MESH.npz` times one mesh in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+import time
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cases import CASES
+from measure import run
+
+from fea.types import TetMesh
+
+FAR_MM = (2.4, 1.2, 0.8, 0.55, 0.43)
+SECTORS_DEG = (90.0, 360.0)
+NEAR_SHARE = 0.4
+
+
+def growth(far_mm: tuple[float, ...] = FAR_MM) -> list[dict[str, Any]]:
+    """Unknowns, seconds and peak memory of the quarter and the whole cup at each edge length."""
+    found = []
+    for far in far_mm:
+        wedge = wedge_mesh(far)
+        for sector in SECTORS_DEG:
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                np.savez(
+                    folder / "mesh.npz", nodes=wedge.nodes, cells=wedge.cells, facets=wedge.facets,
+                    facet_patch=wedge.facet_patch, patches=np.array(wedge.patches), sector=sector,
+                    sector_deg=wedge.sector_deg,
+                )  # fmt: skip
+                one = run([sys.executable, str(Path(__file__).resolve()), "mesh.npz"], folder)
+            found.append({"far_mm": far, "sector_deg": sector} | one)
+            print(found[-1], flush=True)
+    return sorted(found, key=lambda r: r.get("unknowns", 0))
+
+
+def wedge_mesh(far: float) -> TetMesh:
+    from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+    from fea.solid.mesh import mesh_surface
+    from fea.solid.sizing import Grading
+    from geometry.load import design_from
+    from geometry.tagged import tagged_surface
+
+    design = design_from(tomllib.loads(CASES[1].design_text()))
+    spec = replace(first_spec(design, "flexspline"), grading=Grading(NEAR_SHARE * far, far, 1.0))
+    chord = CHORD_PER_ENVELOPE * spec.envelope
+    return mesh_surface(tagged_surface(design, "flexspline", 30.0, chord, 0.1), spec)
+
+
+def one(path: str) -> dict[str, Any]:
+    """Assembly and solution of one mesh in this process."""
+    from fea.solid.cases import Model, torsion
+    from fea.solid.unfold import unfolded
+    from fea.types import Elastic
+
+    with np.load(path) as m:
+        names = tuple(str(p) for p in m["patches"])
+        arrays = (m[k] for k in ("nodes", "cells", "facets", "facet_patch"))
+        wedge = TetMesh(*arrays, names, float(m["sector_deg"]))
+        mesh = unfolded(wedge, float(m["sector"]))
+    began = time.perf_counter()
+    model = Model.of(mesh, Elastic(206e3, 0.3))
+    assembled = time.perf_counter()
+    solved = torsion(model, "mesh")
+    return {
+        "unknowns": solved.dofs, "elements": len(mesh.cells),
+        "assembly_s": round(assembled - began, 3),
+        "solve_s": round(time.perf_counter() - assembled, 3), "K": solved.K_energy,
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    print("\n" + json.dumps(one(sys.argv[1])))
