@@ -200,6 +200,28 @@ QUANTITIES: tuple[Quantity, ...] = (
         "σ_T",
         digits=3,
     ),
+    Quantity("ring_thickness_mm", "ring_thickness_mm", "mm", "Rim under the teeth", "t_rim"),
+    *(
+        Quantity(
+            f"equivalent_ring_thickness{leaf}_mm",
+            f"equivalent_ring_thickness{leaf}_mm",
+            "mm",
+            f"Plain ring as stiff as the toothed one, {name}",
+            symbol,
+        )
+        for leaf, name, symbol in (
+            ("", "bending (in K_b)", "t_b"),
+            ("_membrane", "membrane", "t_m"),
+            ("_torsion", "torsion", "t_t"),
+        )
+    ),
+    Quantity(
+        "equivalent_ring_difference_pct",
+        "equivalent_ring_difference_pct",
+        "%",
+        "That plain ring, bending, over the rim",
+        decimals=1,
+    ),
     *(
         Quantity(
             f"backlash_arcsec.{leaf}",

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Stiffness, StressPeak
 from geometry.design import Design
 from pipeline.backlash import Backlash
@@ -37,6 +38,7 @@ class ReportContent:
     K_b_lobes, K_b_lobes_contact, K_b_lobes_unsupported : the other load cases, None where not
         solved.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
+    ring : the plain ring that stands for drawn teeth, None where none are drawn.
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
     versions : name and version of the libraries that computed and drew.
@@ -56,6 +58,7 @@ class ReportContent:
     flexspline_peak: StressPeak | None = None
     shaft_peak: StressPeak | None = None
     wave_generator_peak: StressPeak | None = None
+    ring: EquivalentRing | None = None
     warnings: tuple[str, ...] = ()
     stage_seconds: Mapping[str, float] | None = None
     versions: Mapping[str, str] | None = None

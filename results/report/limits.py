@@ -17,12 +17,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
             "mounting face is held, so the bolted joint between them counts as rigid.",
         ],
-        [
-            "Teeth",
-            "Not drawn. The toothed ring is a plain ring of "
-            f"{design.flexspline.ring_thickness_mm:g} mm, the thickness under the tooth roots as "
-            "the design file gives it; teeth that stiffen the ring must be in that figure.",
-        ],
+        ["Teeth", _teeth(content)],
         [
             "Where the torque enters",
             "K_b depends on it, which is why every K_b here carries its load case. The sum uses "
@@ -78,6 +73,33 @@ def fatigue(content: ReportContent) -> str:
         f"The wave generator's ellipse alternates twice per turn: its peak of "
         f"{stress.with_unit(peak.mises_MPa)} is {100 * peak.mises_MPa / limit:.0f} % of the stated "
         f"fatigue limit of {limit:g} MPa.{beyond} Surface, size and mean stress are not considered."
+    )
+
+
+def _teeth(content: ReportContent) -> str:
+    f, ring = content.design.flexspline, content.ring
+    if ring is None:
+        return (
+            "Not drawn. The toothed ring is a plain ring of "
+            f"{f.ring_thickness_mm:g} mm, the thickness under the tooth roots as "
+            "the design file gives it; teeth that stiffen the ring must be in that figure."
+        )
+    bending, membrane, torsion = (
+        quantity(f"equivalent_ring_thickness{leaf}_mm").with_unit(value)
+        for leaf, value in (
+            ("", ring.bending_mm),
+            ("_membrane", ring.membrane_mm),
+            ("_torsion", ring.torsion_mm),
+        )
+    )
+    difference = quantity("equivalent_ring_difference_pct").with_unit(ring.difference_pct)
+    return (
+        f"Drawn with {f.tooth_flank} flanks on a rim of {f.ring_thickness_mm:g} mm. Every K_b uses a "
+        f"plain ring of {bending}, {difference} more than the rim: it is as stiff in "
+        f"bending. As stiff against growing all round would be {membrane}, against torsion about "
+        f"the axis {torsion}. The mesh leaves less than {100 * ring.change:.1g} %; root fillets "
+        "and the axial stiffness of the teeth are not in it. Stress at the tooth roots is not that "
+        "of the plain ring."
     )
 
 

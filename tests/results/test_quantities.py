@@ -17,7 +17,9 @@ CONTRACT = json.loads("""
                      "total": 0, "std": 0},
  "solver": {"model": "", "elements": 0, "dofs": 0, "wall_s": 0, "symmetry": ""}}
 """)
-SUFFIXES = {"N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s"}
+SUFFIXES = {
+    "N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s", "mm": "_mm", "%": "_pct",
+}  # fmt: skip
 
 
 def flat(record, prefix=""):

@@ -1,0 +1,57 @@
+"""Teeth that are drawn: the design whose plain ring is as stiff, which every model then uses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
+from geometry.checks import check
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.tooth import tooth_cell
+from pipeline.cache import Cache
+from pipeline.progress import Progress
+
+
+def ring_of(design: Design, cache: Cache, progress: Progress) -> EquivalentRing | None:
+    """The plain ring that stands for the teeth; None where the design draws none."""
+    f, gear = design.flexspline, design.gear
+    if f.teeth == "none":
+        return None
+    poissons_ratio = design.material.flexspline.poissons_ratio
+
+    def make() -> EquivalentRing:
+        with progress.stage("teeth"):
+            return equivalent_ring(tooth_cell(design), poissons_ratio)
+
+    inputs: dict[str, Any] = {
+        "inner_mm": f.inner_radius,
+        "rim_mm": f.ring_thickness_mm,
+        "flank": f.tooth_flank,
+        "module_mm": gear.module_mm,
+        "teeth": gear.teeth_flexspline,
+        "pressure_angle_deg": gear.pressure_angle_deg,
+        "poissons_ratio": poissons_ratio,
+    }
+    return cache.get("teeth", inputs, make)[0]
+
+
+def with_plain_ring(design: Design, ring: EquivalentRing) -> Design:
+    """The design with a plain ring as stiff against bending as its toothed one.
+
+    Raises
+    ------
+    DesignError : the thicker ring, with its 45° shoulder, does not fit the part.
+    """
+    changes = {"ring_thickness_mm": ring.bending_mm, "teeth": "none"}
+    plain = design.model_copy(update={"flexspline": design.flexspline.model_copy(update=changes)})
+    try:
+        check(plain)
+    except DesignError as error:
+        raise DesignError(
+            "flexspline.teeth",
+            design.flexspline.teeth,
+            f"stands for a plain ring of {ring.bending_mm:.4g} mm that does not fit: {error}; "
+            'teeth = "none" works',
+        ) from None
+    return plain
