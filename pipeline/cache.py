@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 T = TypeVar("T")
-FORMAT = 3
+FORMAT = 4
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

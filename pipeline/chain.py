@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from fea.axisymmetric.stress import torsion_stress
 from fea.solid.peak import stress_field
+from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
 from geometry.design import Design
 from geometry.meridian import meridian
@@ -23,14 +24,18 @@ from pipeline.rim import (
 )  # fmt: skip
 
 CACHED_TYPES: tuple[type, ...] = (
-    MeshLevel, MeshedPart, RimAnswers, SolidField, SolidRim, Stiffness, StressPeak, TetMesh, TwistedPart,
+    EquivalentRing, MeshLevel, MeshedPart, RimAnswers, SolidField, SolidRim, Stiffness, StressPeak,
+    TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
 
 
 @dataclass(frozen=True)
 class Stiffnesses:
-    """K_b of each load case that was solved, and K_e; None where nobody asked."""
+    """K_b of each load case that was solved, and K_e; None where nobody asked.
+
+    `ring` is the plain ring that stood for the teeth in all K_b, None where none were drawn.
+    """
 
     K_b: Stiffness | None
     K_e: Stiffness | None
@@ -38,6 +43,7 @@ class Stiffnesses:
     K_b_lobes_unsupported: Stiffness | None = None
     K_b_lobes_contact: Stiffness | None = None
     wave_generator_peak: StressPeak | None = None
+    ring: EquivalentRing | None = None
 
     def in_sum(self, design: Design) -> Stiffness:
         """The K_b that enters the backlash sum, by `solver.load_case`."""
@@ -80,8 +86,13 @@ class RunResult:
     stage_seconds: Mapping[str, float]
 
 
-def stiffnesses(shop: Workshop, flexspline: bool = True, shaft: bool = True) -> Stiffnesses:
+def stiffnesses(
+    shop: Workshop, flexspline: bool = True, shaft: bool = True, rim: bool = True
+) -> Stiffnesses:
     """All that `flexspline stiffness` answers, for the parts that are asked for.
+
+    Without `rim` the lobes and the wave generator are left out: the backlash sum needs them only
+    where `solver.load_case` says so.
 
     Raises
     ------
@@ -94,14 +105,17 @@ def stiffnesses(shop: Workshop, flexspline: bool = True, shaft: bool = True) -> 
     K_e = shaft_part.stiffness() if shaft else None
     if not flexspline:
         return Stiffnesses(K_b, K_e)
-    rim = rim_answers(rim_part)
+    if not rim:
+        return Stiffnesses(K_b, K_e, ring=shop.ring)
+    answers = rim_answers(rim_part)
     return Stiffnesses(
         K_b,
         K_e,
-        rim.K_b_lobes,
-        rim.K_b_lobes_unsupported,
-        rim.K_b_lobes_contact,
-        rim.wave_generator_peak,
+        answers.K_b_lobes,
+        answers.K_b_lobes_unsupported,
+        answers.K_b_lobes_contact,
+        answers.wave_generator_peak,
+        shop.ring,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
+from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Elastic, Stiffness, TetMesh
 from geometry.design import Design
 from geometry.errors import DesignError
@@ -20,9 +21,12 @@ from geometry.meridian import meridian
 from geometry.symmetry import Sector, sector_of
 from geometry.tagged import TaggedSurface, tagged_surface
 from pipeline.cache import Cache
+from pipeline.drawn_teeth import ring_of, with_plain_ring
 from pipeline.progress import Progress
 
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
+RIM_ELEMENTS = 40_000
+"""About 180 000 unknowns and 5 s for each of the three cases on the rim."""
 EDGE_POINTS_PER_WALL = 8
 """Sharp edges are sampled this finely for the stress rule: its distance is one wall thickness."""
 
@@ -37,11 +41,15 @@ class MeshedPart:
 
 @dataclass(frozen=True)
 class TwistedPart:
-    """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad."""
+    """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
+
+    `rim` is the finest of its meshes that, unfolded for the rim's cases, keeps within RIM_ELEMENTS.
+    """
 
     stiffness: Stiffness
     meshed: MeshedPart
     displacement: np.ndarray
+    rim: MeshedPart
 
 
 @dataclass(frozen=True)
@@ -52,8 +60,16 @@ class Workshop:
     cache: Cache
     progress: Progress
 
+    @cached_property
+    def ring(self) -> EquivalentRing | None:
+        """The plain ring that stands for drawn teeth; None where none are drawn."""
+        return ring_of(self.design, self.cache, self.progress)
+
     def part(self, name: str) -> PartModel:
-        return PartModel(self, name)
+        """Its model; a flexspline's teeth enter it as the equivalent plain ring."""
+        if name == "shaft" or self.ring is None:
+            return PartModel(self, name)
+        return PartModel(replace(self, design=with_plain_ring(self.design, self.ring)), name)
 
 
 @dataclass(frozen=True)
@@ -83,10 +99,11 @@ class PartModel:
 
     @property
     def geometry_key(self) -> Mapping[str, Any]:
-        """What the part's shape depends on, and nothing else."""
+        """What the part's shape depends on, and nothing else; its teeth are in the ring by now."""
         design = self.shop.design
         own = design.shaft if self.name == "shaft" else design.flexspline
-        return {"part": self.name, "shape": own.model_dump(mode="json")}
+        shape = own.model_dump(mode="json", exclude={"teeth", "tooth_flank"})
+        return {"part": self.name, "shape": shape}
 
     @property
     def revolved_key(self) -> Mapping[str, Any]:
@@ -183,7 +200,11 @@ class PartModel:
                     self.sector.label,
                     lambda text: self.shop.progress.note(f"  {self.name}: {text}"),
                 )
-            meshed = MeshedPart(found.solved.mesh, next(iter(edges.values())))
-            return TwistedPart(found.stiffness, meshed, found.solved.displacement)
+            sharp = next(iter(edges.values()))
+            meshed = [MeshedPart(mesh, sharp) for mesh in found.meshes]
+            times = sector_of(design, self.name, "ellipse").degrees / self.sector.degrees
+            sizes = [len(m.mesh.cells) * times for m in meshed]
+            rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
+            return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])
 
         return self.shop.cache.get("torsion", self.torsion_key, make)[0]

@@ -96,7 +96,7 @@ def solid_rim(flexspline: PartModel) -> SolidRim:
         sector = sector_of(design, "flexspline", "ellipse")
         progress = flexspline.shop.progress
         with progress.stage("wave generator and lobes"):
-            whole = unfolded(twisted.meshed.mesh, sector.degrees)
+            whole = unfolded(twisted.rim.mesh, sector.degrees)
             model = Model.of(whole, flexspline.material)
             progress.note(f"  {len(whole.cells)} elements, {sector.label} of the part")
             field = stress_field(
@@ -104,7 +104,7 @@ def solid_rim(flexspline: PartModel) -> SolidRim:
                 ellipse(model, w0).displacement,
                 flexspline.material,
                 f"wave generator, w0 = {w0:g} mm",
-                sharp_edges(flexspline, twisted.meshed),
+                sharp_edges(flexspline, twisted.rim),
             )
             scale = twisted.stiffness.error_scale
             return SolidRim(

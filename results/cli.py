@@ -184,7 +184,8 @@ def _backlash_record(job: _Job, kb: float | None, ke: float | None) -> dict[str,
     if kb is None or ke is None:
         from pipeline.chain import stiffnesses
 
-        found = stiffnesses(job.shop, flexspline=kb is None, shaft=ke is None)
+        rim = job.design.solver.load_case == "lobes"
+        found = stiffnesses(job.shop, flexspline=kb is None, shaft=ke is None, rim=rim)
         record |= stiffness_record(job.design, found, job.wall_s)
         kb = kb or found.in_sum(job.design).K_Nm_per_rad
         ke = ke or found.shaft.K_Nm_per_rad

@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import SolidField, Stiffness, StressPeak
 from geometry.design import Design
 from pipeline.backlash import Backlash
@@ -44,6 +45,8 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
     if found.wave_generator_peak is not None:
         record |= _peak("wave_generator_peak", found.wave_generator_peak)
         record["stress_excluded"] = found.wave_generator_peak.excluded
+    if found.ring is not None:
+        record |= _ring(design, found.ring)
     if found.K_b is not None and found.K_e is not None:
         record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
     solver = {
@@ -52,6 +55,17 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
     # the contract's flat figures are the flexspline's, or the shaft's where that alone was solved
     record["solver"] = {**next(iter(solver.values())), "wall_s": round(wall_s, 3), "parts": solver}
     return record
+
+
+def _ring(design: Design, ring: EquivalentRing) -> Record:
+    """The rim as designed and the plain rings as stiff as it is with its teeth."""
+    return {
+        "ring_thickness_mm": design.flexspline.ring_thickness_mm,
+        "equivalent_ring_thickness_mm": ring.bending_mm,
+        "equivalent_ring_thickness_membrane_mm": ring.membrane_mm,
+        "equivalent_ring_thickness_torsion_mm": ring.torsion_mm,
+        "equivalent_ring_difference_pct": ring.difference_pct,
+    }
 
 
 def _solver(stiffness: Stiffness) -> Record:

@@ -36,9 +36,10 @@ AIM = 0.7
 
 @dataclass(frozen=True)
 class SolidStiffness:
-    """The stiffness, and the finest mesh's solution for 1 rad."""
+    """The stiffness, the finest mesh's solution for 1 rad, and all meshes, coarse to fine."""
 
     stiffness: Stiffness
+    meshes: tuple[TetMesh, ...]
     model: Model
     solved: Solved
 
@@ -61,18 +62,21 @@ def solid_stiffness(
     spec = first
     levels: list[MeshLevel] = []
     errors: list[float] = []
+    meshes: list[TetMesh] = []
     for _ in range(MAX_LEVELS):
         mesh = mesher(spec)
         model = Model.of(mesh, material)
         solved = torsion(model, driven)
         estimate = energy_error(mesh, solved.displacement, material).relative * solved.K_energy
+        meshes.append(mesh)
         levels.append(_level(spec, solved))
         errors.append(estimate)
         c = efficiency(levels, errors) if len(levels) > 1 else USUAL_EFFICIENCY
         half = c * estimate / solved.K_energy
         progress(f"{len(mesh.cells)} elements, K ± {half:.2%}")
         if len(levels) > 1 and half <= tolerance:
-            return SolidStiffness(_stiffness(levels, estimate, c, symmetry), model, solved)
+            answer = _stiffness(levels, estimate, c, symmetry)
+            return SolidStiffness(answer, tuple(meshes), model, solved)
         spec = _finer(spec, float(np.clip(AIM * tolerance / half, *NEAR_STEP)))
     raise SolidError(
         f"K is known to ± {half:.2%} after {MAX_LEVELS} meshes, wanted {tolerance:.2%}:"
@@ -84,7 +88,9 @@ def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:
     g = spec.grading
     near = g.near * near_step
     envelope = min(spec.envelope, near / ENVELOPES_PER_EDGE)
-    return replace(spec, grading=Grading(near, g.far * FAR_STEP, g.growth * FAR_STEP), envelope=envelope)
+    return replace(
+        spec, grading=Grading(near, g.far * FAR_STEP, g.growth * FAR_STEP), envelope=envelope
+    )
 
 
 def efficiency(levels: list[MeshLevel], errors: list[float]) -> float:

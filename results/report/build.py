@@ -38,6 +38,7 @@ def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]
         flexspline_peak=fields["flexspline_torque"].peak,
         shaft_peak=fields["shaft_torque"].peak,
         wave_generator_peak=fields["wave_generator"].peak,
+        ring=found.ring,
         warnings=result.warnings,
         stage_seconds=result.stage_seconds,
         versions=library_versions(),
