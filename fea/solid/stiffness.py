@@ -72,7 +72,7 @@ def solid_stiffness(
         levels.append(_level(spec, solved))
         errors.append(estimate)
         c = efficiency(levels, errors) if len(levels) > 1 else USUAL_EFFICIENCY
-        half = c * estimate / solved.K_energy
+        half = c * estimate / (solved.K_energy - c * estimate)  # of the K that is reported
         progress(f"{len(mesh.cells)} elements, K ± {half:.2%}")
         if len(levels) > 1 and half <= tolerance:
             answer = _stiffness(levels, estimate, c, symmetry)
