@@ -31,7 +31,7 @@ def first_spec(design: Design, part: str) -> MeshSpec:
         near = min(near, far)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(
-        grading=Grading(near, far, growth=1.0),
+        grading=Grading(near, far, growth=0.7),
         envelope=envelope,
         snap_limit=5 * envelope,
         # half the outer radius: elements twice as long around the tube, fair ones at the bolts
