@@ -13,6 +13,7 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
+from fea.solid.swept import swept_edges, swept_mesh
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Elastic, Stiffness, TetMesh
 from geometry.design import Design
@@ -119,23 +120,34 @@ class PartModel:
         """What the solid solution depends on."""
         return {**self.revolved_key, "spec": asdict(first_spec(self.shop.design, self.name))}
 
+    @property
+    def _edge_spacing(self) -> float:
+        return self.shop.design.flexspline.wall_thickness_mm / EDGE_POINTS_PER_WALL
+
+    @property
+    def _swept_edges(self) -> np.ndarray:
+        return swept_edges(self.shop.design, self.name, self.sector.degrees, self._edge_spacing)
+
     @cached_property
     def _surface(self) -> TaggedSurface:
         spec = first_spec(self.shop.design, self.name)
-        spacing = self.shop.design.flexspline.wall_thickness_mm / EDGE_POINTS_PER_WALL
         with self.shop.progress.stage(f"CAD of the {self.name}"):
             return tagged_surface(
                 self.shop.design,
                 self.name,
                 self.sector.degrees,
                 CHORD_PER_ENVELOPE * spec.envelope,
-                spacing,
+                self._edge_spacing,
             )
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """The sector's mesh to a specification."""
 
         def make() -> MeshedPart:
+            with self.shop.progress.stage(f"mesh of the {self.name}"):
+                swept = swept_mesh(self.shop.design, self.name, self.sector.degrees, spec)
+            if swept is not None:
+                return MeshedPart(swept, self._swept_edges)
             surface = self._surface
             with self.shop.progress.stage(f"mesh of the {self.name}"):
                 return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)

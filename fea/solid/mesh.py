@@ -143,14 +143,14 @@ def _quadratic(
     raw = _in_planes(space.back(points), faces, facet_surface, surface)
     corners = snap_to_surfaces(raw, faces, facet_surface, surface.surfaces, spec.snap_limit)
     corners = _undo_inverted(raw, corners, tets)
-    edges, cells, facets = _with_middles(corners, tets, faces)
+    edges, cells, facets = with_middles(corners, tets, faces)
     # a middle follows its corners in meshing space, then goes onto the surface itself
     middles = space.back(space.to(corners)[edges].mean(axis=1))
     nodes = snap_to_surfaces(
         np.vstack([corners, middles]), facets, facet_surface, surface.surfaces, spec.snap_limit
     )
     nodes[:n] = corners
-    nodes = _straighten_bent(nodes, cells, edges)
+    nodes = straightened(nodes, cells, edges)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
@@ -183,7 +183,7 @@ def _undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np
     raise MeshQualityError("boundary nodes cannot be put onto the CAD surface without inversion")
 
 
-def _with_middles(
+def with_middles(
     corners: np.ndarray, tets: np.ndarray, faces: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Edges (e, 2), ten-node cells and six-node facets; middle node of edge i is len(corners) + i."""
@@ -198,7 +198,7 @@ def _with_middles(
     return edges, cells, np.hstack([faces, found + n])
 
 
-def _straighten_bent(nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def straightened(nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Straighten the edges of elements that curving has bent too far: their stresses are wrong."""
     n = len(nodes) - len(edges)
     out = nodes.copy()

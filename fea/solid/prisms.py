@@ -1,0 +1,92 @@
+"""Triangles swept into prisms, about the axis or along it, and prisms cut into tetrahedra.
+
+Source of the cut: Dompierre, Labbé, Vallet, Camarero, How to subdivide pyramids, prisms and hexahedra
+into tetrahedra, 8th International Meshing Roundtable (1999).
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.solid.column import HOLE, INTERFACE, Column
+from geometry.meridian import SAME
+
+FILLED = (0.6, 0.25)
+"""Rings of nodes within a hole's circle, where material closes the hole above."""
+ROTATIONS = np.array([
+    [0, 1, 2, 3, 4, 5], [1, 2, 0, 4, 5, 3], [2, 0, 1, 5, 3, 4],
+    [3, 5, 4, 0, 2, 1], [4, 3, 5, 1, 0, 2], [5, 4, 3, 2, 1, 0],
+])  # fmt: skip
+"""A prism's corners (three, and the three over them) turned so that corner k comes first."""
+CUTS = (
+    np.array([[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]]),
+    np.array([[0, 1, 2, 4], [0, 4, 2, 5], [0, 4, 5, 3]]),
+)
+
+
+def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes vertex by vertex, each at all angles; prisms between neighbouring angles."""
+    n, k = len(rest.points), len(angles)
+    polar = np.column_stack(
+        [np.repeat(rest.points[:, 0], k), np.tile(angles, n), np.repeat(rest.points[:, 1], k)]
+    )
+    base = rest.triangles * k
+    return polar, np.vstack([np.hstack([base + i, base + i + 1]) for i in range(k - 1)])
+
+
+def extruded(
+    plan: MeridianMesh, column: Column, rest: MeridianMesh, seam: np.ndarray, offset: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The column's nodes, numbered from `offset`, and its prisms, which use the interface's nodes."""
+    line = along(rest, INTERFACE)
+    line = line[np.argsort(rest.points[line, 1])]
+    z = rest.points[line, 1]
+    points, filling = _filled_hole(plan, column)
+    n, k = len(points), len(z)
+    number = offset + np.arange(n * k).reshape(n, k)
+    number[seam] = line * len(seam) + np.arange(len(seam))[:, None]
+    r, phi = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
+    polar = np.column_stack([np.repeat(r, k), np.repeat(phi, k), np.tile(z, n)])
+    prisms = []
+    for level in range(k - 1):
+        closed = z[level] > column.depth - SAME
+        flat = np.vstack([plan.triangles, filling]) if closed else plan.triangles
+        prisms.append(np.hstack([number[flat, level], number[flat, level + 1]]))
+    return polar, np.vstack(prisms)
+
+
+def _filled_hole(plan: MeridianMesh, column: Column) -> tuple[np.ndarray, np.ndarray]:
+    """Plan points (n, 2) with those inside a blind hole's half circle, and its triangles there."""
+    if not column.blind:
+        return plan.points, np.empty((0, 3), np.int64)
+    centre = np.array([column.bolt_circle, 0.0])
+    rim = along(plan, HOLE)
+    off = plan.points[rim] - centre
+    rim = rim[np.argsort(np.arctan2(off[:, 1], off[:, 0]))]
+    points, rings = [plan.points], [rim]
+    for share in FILLED:
+        rings.append(sum(map(len, points)) + np.arange(len(rim)))
+        points.append(centre + share * (plan.points[rim] - centre))
+    middle = sum(map(len, points))
+    triangles = []
+    for a, b in pairwise(rings):
+        triangles.append(np.column_stack([a[:-1], a[1:], b[:-1]]))
+        triangles.append(np.column_stack([a[1:], b[1:], b[:-1]]))
+    last = rings[-1]
+    triangles.append(np.column_stack([last[:-1], last[1:], np.full(len(last) - 1, middle)]))
+    return np.vstack([*points, centre]), np.vstack(triangles)
+
+
+def cut(prisms: np.ndarray) -> np.ndarray:
+    """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node."""
+    v = np.take_along_axis(prisms, ROTATIONS[prisms.argmin(axis=1)], axis=1)
+    first = np.minimum(v[:, 1], v[:, 5]) < np.minimum(v[:, 2], v[:, 4])
+    return np.vstack([v[first][:, CUTS[0]].reshape(-1, 4), v[~first][:, CUTS[1]].reshape(-1, 4)])
+
+
+def along(mesh: MeridianMesh, patch: str) -> np.ndarray:
+    """Vertices on a patch of the outline."""
+    return np.unique(mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))])

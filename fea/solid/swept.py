@@ -1,0 +1,204 @@
+"""Meshes of bodies of revolution with bolt holes, without a mesher: triangles swept into prisms.
+
+The meridian's triangles are swept about the axis, those of the bolt holes' plan along it
+(`fea.solid.column`), and every prism is cut into three tetrahedra. Nodes lie on the exact surfaces,
+patch edges are mesh edges, elements are long around the part and short along its meridian, and the
+same design gives the same mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, radians
+
+import numpy as np
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.triangulate import triangulate
+from fea.solid.column import INTERFACE, Column, column_of
+from fea.solid.elements import element_volumes
+from fea.solid.errors import MeshQualityError
+from fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
+from fea.solid.prisms import along, cut, extruded, revolved
+from fea.solid.sizing import Grading
+from fea.solid.snap import snap_to_surfaces
+from fea.solid.tetwild import signed_volumes
+from fea.types import TetMesh
+from geometry.design import Design
+from geometry.meridian import SAME, Meridian, meridian
+from geometry.surfaces import Surface, part_surfaces
+
+LARGEST_STEP = radians(10)
+"""Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
+PLAN_EDGE = 0.8
+"""Largest edge in the plan beside a hole, in hole radii."""
+ROUNDS = 60
+ON_SURFACE = 1e-6
+VOLUME_TOLERANCE = 1e-3
+
+
+def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> TetMesh | None:
+    """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
+
+    A keyway, a part that reaches the axis, and holes that are not in a plain column need a mesher.
+
+    Raises
+    ------
+    MeshingError : the meridian cannot be meshed.
+    MeshQualityError : the mesh does not hold the part's volume.
+    """
+    outline = meridian(design, part)
+    column = column_of(design, part, outline)
+    holes = (design.shaft if part == "shaft" else design.flexspline).bolts is not None
+    keyed = part == "shaft" and design.shaft.keyway is not None
+    if keyed or (holes and column is None) or min(s.start[0] for s in outline.segments) < SAME:
+        return None
+    polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading)
+    return _curved(design, part, outline, column, sector_deg, polar, tets)
+
+
+def _prisms(
+    outline: Meridian, column: Column | None, sector: float, grading: Grading
+) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (n, 3) as (r, φ, z) and tetrahedra (m, 4), positive."""
+    own = outline if column is None else column.rest(outline)
+    rest = _graded(triangulate(own), _critical_points(outline), grading)
+    if column is None:
+        angles = np.linspace(0, sector, ceil(sector / LARGEST_STEP) + 1)
+        polar, prisms = revolved(rest, angles)
+    else:
+        plan = _plan(column, sector, grading.far)
+        seam = along(plan, INTERFACE)
+        angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
+        seam, angles = seam[np.argsort(angle)], np.sort(angle)
+        angles[[0, -1]] = 0.0, sector
+        polar, prisms = revolved(rest, angles)
+        above, more = extruded(plan, column, rest, seam, len(polar))
+        polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
+    found = cut(prisms)
+    used, compact = np.unique(found, return_inverse=True)
+    polar, tets = polar[used], compact.reshape(found.shape)
+    inverted = signed_volumes(_cartesian(polar), tets) < 0
+    tets[inverted] = tets[inverted][:, [0, 2, 1, 3]]
+    return polar, tets
+
+
+def _critical_points(outline: Meridian) -> np.ndarray:
+    """Points (k, 2) of the meridian where the torsional stress is singular.
+
+    Patch edges and inside corners, as `TaggedSurface.critical_edges`.
+    """
+    found = list(outline.patch_edges)
+    for i, s in enumerate(outline.segments):
+        before, after = outline.segments[i - 1].tangent(1), s.tangent(0)
+        if before[0] * after[1] - before[1] * after[0] < -1e-6:
+            found.append(s.start)
+    return np.array(found)
+
+
+def _graded(mesh: MeridianMesh, critical: np.ndarray, grading: Grading) -> MeridianMesh:
+    """Triangles halved until no edge is longer than the grading asks for."""
+
+    def wanted(points: np.ndarray) -> np.ndarray:
+        away = np.linalg.norm(points[:, None] - critical, axis=2).min(axis=1)
+        return np.minimum(grading.far, grading.near + grading.growth * away)
+
+    return _sized(mesh, wanted)
+
+
+def _plan(column: Column, sector: float, far: float) -> MeridianMesh:
+    """The column's plan, finer beside the hole."""
+    centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
+
+    def wanted(points: np.ndarray) -> np.ndarray:
+        away = np.linalg.norm(points - centre, axis=1) - hole
+        return np.minimum(far, np.maximum(PLAN_EDGE * hole, away))
+
+    return _sized(triangulate(column.plan(sector)), wanted)
+
+
+def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:
+    """No edge longer than `wanted` at its triangle's centre."""
+    for _ in range(ROUNDS):
+        corner = mesh.points[mesh.triangles]
+        longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max(axis=1)
+        large = longest > wanted(corner.mean(axis=1))
+        if not large.any():
+            return mesh
+        mesh = refined(mesh, large)
+    raise MeshQualityError(
+        f"{int(large.sum())} triangles of the meridian cannot be made fine enough"
+    )
+
+
+def _curved(
+    design: Design, part: str, outline: Meridian, column: Column | None, sector_deg: float,
+    polar: np.ndarray, tets: np.ndarray,
+) -> TetMesh:  # fmt: skip
+    """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
+    corners = _cartesian(polar)
+    faces = boundary_faces(tets)
+    surfaces = part_surfaces(design, part, outline, sector_deg)
+    facet_surface = _surface_of(corners, faces, surfaces)
+    edges, cells, facets = with_middles(corners, tets, faces)
+    nodes = np.vstack([corners, _cartesian(polar[edges].mean(axis=1))])
+    longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
+    nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
+    nodes[: len(corners)] = corners
+    nodes = straightened(nodes, cells, edges)
+    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
+    facet_patch = np.array([names.index(s.patch) for s in surfaces])[facet_surface]
+    mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
+    _check(mesh, outline, column)
+    return mesh
+
+
+def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface]) -> np.ndarray:
+    """Index of the surface that each facet's corners lie on exactly; of several, its centre decides."""
+    centres = corners[faces].mean(axis=1)
+    off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
+    away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
+    lies = off[:, faces].max(axis=2) < ON_SURFACE
+    if not lies.any(axis=0).all():
+        raise MeshQualityError(
+            f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
+        )
+    return np.where(lies, away, np.inf).argmin(axis=0)
+
+
+def _check(mesh: TetMesh, outline: Meridian, column: Column | None) -> None:
+    """Compare the volume with Pappus' theorem less the holes."""
+    wanted = outline.volume * mesh.sector_deg / 360
+    if column is not None:
+        wanted -= np.pi / 2 * column.hole_radius**2 * (column.depth - column.low)
+    volume = float(element_volumes(mesh.nodes, mesh.cells).sum())
+    if abs(volume / wanted - 1) > VOLUME_TOLERANCE:
+        raise MeshQualityError(f"the mesh holds {volume:.6g} mm³, the part {wanted:.6g} mm³")
+
+
+def _cartesian(polar: np.ndarray) -> np.ndarray:
+    """(r, φ, z) to (x, y, z), both (n, 3)."""
+    r, phi, z = polar.T
+    return np.column_stack([r * np.cos(phi), r * np.sin(phi), z])
+
+
+def swept_edges(design: Design, part: str, sector_deg: float, spacing: float) -> np.ndarray:
+    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
+
+    The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
+    """
+    outline = meridian(design, part)
+    column = column_of(design, part, outline)
+    sector = radians(sector_deg)
+    found = []
+    for r, z in {*outline.sharp_corners, *outline.patch_edges}:
+        phi = np.linspace(0, sector, max(2, ceil(r * sector / spacing) + 1))
+        found.append(_cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
+    if column is not None:
+        rim = ceil(np.pi * column.hole_radius / spacing) + 1
+        turn = np.linspace(0, np.pi, max(2, rim))
+        x = column.bolt_circle + column.hole_radius * np.cos(turn)
+        y = column.hole_radius * np.sin(turn)
+        found += [np.column_stack([x, y, np.full_like(x, z)]) for z in (column.low, column.depth)]
+    return np.vstack(found)
