@@ -1,0 +1,49 @@
+"""A case: the files that a diagnosis gets, and the truth that it does not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from hidden.gear import Rig
+from hidden.record import Unit
+
+KINDS = ("clean", "single", "pair", "foreign", "undecidable")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One hidden record.
+
+    Attributes
+    ----------
+    csv, design : text of the two files. K_b, K_e : N·m/rad.
+    truth : (id, magnitude in the contract's unit), largest effect first; empty where none is named.
+    standing : noise units beyond calibration and mimicry, one per hidden effect.
+    decidable : all of them are at least 6.
+    expected : causes that an `ambiguous` verdict must mention; tolerated : those that it may.
+    seed : (run's seed, number) from which `cases.draw_case` makes the case again.
+    foreign : which foreign effect is hidden, if one is.
+    said : the law, the programme, the noise in one line.
+    """
+
+    kind: str
+    csv: str = field(repr=False)
+    design: str = field(repr=False)
+    K_b: float
+    K_e: float
+    truth: tuple[tuple[str, float], ...]
+    severity: str
+    standing: tuple[float, ...]
+    decidable: bool
+    expected: frozenset[str]
+    tolerated: frozenset[str]
+    seed: tuple[int, int]
+    said: str
+    units: tuple[Unit, ...] = field(repr=False)
+    rig: Rig = field(repr=False)
+    foreign: str = ""
+
+    @property
+    def label(self) -> str:
+        """What is hidden, for tables."""
+        return " + ".join(name for name, _ in self.truth) or self.kind

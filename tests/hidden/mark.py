@@ -1,0 +1,121 @@
+"""Marks one diagnosis against the truth of its case."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from hidden.case import Case
+from hidden.oracle import held_out_rows, oracle
+
+Diagnose = Callable[[Case], dict]
+
+
+@dataclass(frozen=True)
+class Size:
+    """One true cause that was found: |found − true| / |true|, and the same in stated deviations."""
+
+    cause: str
+    error: float
+    deviations: float
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What became of a case; `right` is what its kind demands.
+
+    first : the first cause named or suspected is the (or a) true one. exact : named, all of the
+    truth and nothing else. wrong : named, with confidence, something that is not there; a cause
+    whose own alternatives list a true one is not a confident name.
+    gain : share of the error above the noise removed; oracle : what the true form would remove.
+    """
+
+    kind: str
+    label: str
+    severity: str
+    decidable: bool
+    seed: tuple[int, int]
+    said: str
+    standing: tuple[float, ...]
+    verdict: str
+    found: tuple[str, ...]
+    alternatives: tuple[str, ...]
+    first: bool
+    exact: bool
+    wrong: bool
+    right: bool
+    seconds: float
+    sizes: tuple[Size, ...] = field(default=())
+    gain: float | None = None
+    oracle: float | None = None
+    fault: str = ""
+
+
+def mark(case: Case, diagnose: Diagnose) -> Mark:
+    """Run one diagnosis and mark it; an exception is a wrong answer that keeps its text."""
+    begun = time.perf_counter()
+    try:
+        said, fault = diagnose(case), ""
+    except Exception:
+        said, fault = {"verdict": "crashed"}, traceback.format_exc(limit=-4)
+    seconds = time.perf_counter() - begun
+    verdict, causes = said["verdict"], said.get("causes", [])
+    found = tuple(c["id"] for c in causes)
+    others = tuple(a for c in causes for a in c.get("alternatives", []))
+    true = {name for name, _ in case.truth}
+    confident = verdict == "named"
+    exact = confident and set(found) == true and bool(true)
+    wrong = confident and any(
+        c["id"] not in true and not true & set(c.get("alternatives", [])) for c in causes
+    )
+    marked = Mark(
+        kind=case.kind, label=_label(case), severity=case.severity, decidable=case.decidable,
+        seed=case.seed, said=case.said, standing=case.standing, verdict=verdict, found=found,
+        alternatives=others, first=bool(found) and found[0] in true and verdict != "consistent",
+        exact=exact, wrong=wrong, right=_right(case, verdict, exact, {*found, *others}),
+        seconds=seconds, sizes=_sizes(case, causes) if confident else (), fault=fault,
+    )  # fmt: skip
+    return _with_gain(marked, case, said.get("gain") or {})
+
+
+def _right(case: Case, verdict: str, exact: bool, mentioned: set[str]) -> bool:
+    if case.kind == "clean":
+        return verdict == "consistent"
+    if case.kind == "foreign":
+        return verdict == "unknown"
+    if case.kind == "undecidable":
+        return verdict == "ambiguous" and case.expected <= mentioned <= case.tolerated
+    return exact
+
+
+def _sizes(case: Case, causes: list[dict]) -> tuple[Size, ...]:
+    true, sizes = dict(case.truth), []
+    for c in causes:
+        if c["id"] in true and c.get("magnitude") is not None:
+            off = abs(c["magnitude"] - true[c["id"]])
+            std = c.get("magnitude_std") or np.nan
+            sizes.append(Size(c["id"], float(off / abs(true[c["id"]])), float(off / std)))
+    return tuple(sizes)
+
+
+def _with_gain(marked: Mark, case: Case, gain: dict) -> Mark:
+    """Both shares over the same rows and over the true noise, so a generous floor gains nothing."""
+    if not marked.exact or "rmse_before" not in gain:
+        return marked
+    held = held_out_rows(gain, list(case.units))
+    best = None if held is None else oracle(list(case.units), case.rig, held)
+    if best is None or best.before**2 < 1.5 * best.floor**2:  # nothing above the noise to gain
+        return marked
+    above = best.before**2 - best.floor**2
+    share = (gain["rmse_before"] ** 2 - gain["rmse_after"] ** 2) / above
+    return replace(marked, gain=float(share), oracle=best.share)
+
+
+def _label(case: Case) -> str:
+    if case.kind == "foreign":
+        return case.foreign
+    return case.severity if case.kind == "undecidable" else case.label

@@ -1,0 +1,97 @@
+"""One measurement as a file, with what truly went into it kept beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hidden.effect import Hidden
+from hidden.gear import Gear, Rig
+from hidden.noise import Noise, Spread, read_by_encoder, sample, spread
+from hidden.program import Program
+
+
+@dataclass(frozen=True)
+class Unit:
+    """One unit's measurement; arrays run over its samples.
+
+    Attributes
+    ----------
+    effects : arcsec, one array per hidden effect, as seen by who trusts the torque reading.
+    angle : read, arcsec. torque : read, N·m. outlier : bool.
+    """
+
+    program: Program
+    gear: Gear
+    spread: Spread
+    effects: tuple[np.ndarray, ...]
+    angle: np.ndarray
+    torque: np.ndarray
+    outlier: np.ndarray
+    noise: Noise
+
+    @property
+    def true_torque(self) -> np.ndarray:
+        return self.program.torque[self.program.rows]
+
+
+def sign(torque: np.ndarray, width: float) -> np.ndarray:
+    """Which side of the gap: at once, or over a width [N·m]."""
+    return np.tanh(torque / width) if width else np.sign(torque)
+
+
+def measure(
+    rig: Rig,
+    gear: Gear,
+    program: Program,
+    hidden: tuple[Hidden, ...],
+    noise: Noise,
+    rng: np.random.Generator,
+) -> Unit:
+    """Simulate the unit on the grid, read it at the samples."""
+    rows, torque = program.rows, program.torque
+    effects = [h.angle(program, gear)[rows] for h in hidden]
+    offset = sum(h.reading_Nm for h in hidden)
+    gap = gear.gap * sign(torque, noise.crossing)[rows] / 2
+    true = gear.zero + gear.compliance * torque[rows] + gap + sum(effects)
+    shaking, outlier, on_torque = sample(noise, program, rng)
+    for k, h in enumerate(hidden):
+        if h.reading_Nm:  # what the reader of a shifted torque finds missing
+            t = torque[rows]
+            line = gear.compliance * t + gear.gap * np.sign(t) / 2
+            shifted = t + h.reading_Nm
+            effects[k] = line - gear.compliance * shifted - gear.gap * np.sign(shifted) / 2
+    return Unit(
+        program,
+        gear,
+        spread(noise, program, gear.compliance, gear.gap),
+        tuple(effects),
+        read_by_encoder(true + shaking, noise.step),
+        torque[rows] + on_torque + offset,
+        outlier,
+        noise,
+    )
+
+
+def as_csv(units: list[Unit], rng: np.random.Generator) -> str:
+    """The file a logger writes: contract's columns, digits of a real instrument."""
+    several = len(units) > 1
+    columns = units[0].program.columns
+    header = [*(["unit"] if several else []), *columns, "torque_Nm", "angle_arcsec"]
+    order = rng.permutation(len(header)) if rng.random() < 0.2 else np.arange(len(header))
+    lines = [",".join(header[k] for k in order)]
+    for number, unit in enumerate(units, 1):
+        p, rows = unit.program, unit.program.rows
+        air = p.temperature[rows] + rng.normal(size=len(rows)) * 0.03
+        text = {
+            "unit": [str(number)] * len(rows),
+            "time_s": [f"{x:.4f}" for x in p.time[rows]],
+            "cycle": [str(x) for x in p.cycle[rows]],
+            "temperature_C": [f"{x:.2f}" for x in air],
+            "input_angle_deg": [f"{x:.1f}" for x in p.position[rows]],
+            "torque_Nm": [f"{x:.6g}" for x in unit.torque],
+            "angle_arcsec": [f"{x:.3f}" for x in unit.angle],
+        }
+        lines += [",".join(row) for row in zip(*(text[header[k]] for k in order), strict=True)]
+    return "\n".join(lines) + "\n"
