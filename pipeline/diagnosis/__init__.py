@@ -1,0 +1,1 @@
+"""Measured data against the prediction: what the simulation gets wrong, and why."""

@@ -1,0 +1,31 @@
+"""A gap other than the simulated one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.record import History
+
+
+class ClearanceOffset(Cause):
+    """The gap is `amplitude` [arcsec] wider than simulated, at 20 °C: twist ±½ of it."""
+
+    id = "clearance_offset"
+    title = "clearance other than simulated"
+    unit = "arcsec"
+    reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return [{}]
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return history.sign[:, None] / 2
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return rig.gap_arcsec - rig.prediction.gap_arcsec

@@ -1,0 +1,97 @@
+"""Friction: loading and unloading branches differ, whatever the rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.effects.operators import dahl, stops
+from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.record import History
+
+THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
+"""Of the elements, as shares of the largest torque."""
+SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
+"""How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
+SPREAD_ELEMENTS = 14
+LOOP_ROWS = 201
+DEADBAND = 0.001
+"""Reversals of torque below this share of the largest (or twice its noise) are noise."""
+VARIANTS = (
+    (SINGLE, 0, 1, 0), (SINGLE, 0, 0, 0), (EVEN, 0, 1, 0), (EVEN, 0, 0, 0), (SINGLE, 1, 1, 0),
+    (EXPONENTIAL, 0, 1, 0), (EXPONENTIAL, 0, 0, 0), (SINGLE, 0, 1, -1), (EVEN, 0, 1, -1),
+    (EXPONENTIAL, 0, 1, -1), (DAHL, 0, 1, 0), (DAHL, 0, 0, 0),
+)  # fmt: skip
+"""Spread, loaded, held, start of the shapes tried."""
+
+
+class FrictionHysteresis(Cause):
+    """Friction elements (Prandtl-Ishlinskii): twist −a·s/r, s the state of a stop of threshold r.
+
+    While torque rises the friction holds the output back by a, while it falls it holds it forward: a
+    loop 2a [arcsec] wide. Shapes: a single threshold, or thresholds spread evenly from 0 to r (a
+    rounded loop), or Dahl's exponential approach; width the same everywhere or growing with |T| (`loaded`); and whether the friction
+    also takes torque at the loop's ends (`held` = 1) or leaves the chord as it is (`held` = 0).
+    """
+
+    id = "friction_hysteresis"
+    title = "friction hysteresis"
+    unit = "arcsec"
+    positive = True
+    tunable = ("threshold_Nm",)
+    reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        largest = rig.torque_Nm
+        deadband = max(DEADBAND * largest, 2 * torque_noise_Nm(rig.history))
+        found: list[Shape] = []
+        for share in THRESHOLDS:
+            for spread, loaded, held, start in VARIANTS:
+                if share > 0.5 and (loaded or spread):
+                    continue
+                found.append({
+                    "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
+                    "held": held, "start": start, "largest_torque_Nm": largest,
+                    "deadband_Nm": deadband,
+                })  # fmt: skip
+        return found
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        r, largest = shape["threshold_Nm"], shape["largest_torque_Nm"]
+        if shape["spread"] == DAHL:
+            state = dahl(history, r, shape["deadband_Nm"])
+            at_end = float(np.tanh(largest / r))
+        else:
+            each, weight = self._thresholds(int(shape["spread"]), r)
+            state = stops(history, each, np.full(len(each), shape["start"])) @ (weight / each)
+            at_end = float(weight @ np.minimum(1, largest / each))
+        if not shape["held"]:
+            state = state - at_end * history.torque_Nm / largest
+        if shape["loaded"]:
+            state = state * np.abs(history.torque_Nm) / largest
+        return -state[:, None]
+
+    @staticmethod
+    def _thresholds(spread: int, r: float) -> tuple[np.ndarray, np.ndarray]:
+        """Thresholds (m,) [N·m] and the share (m,) of the friction that each holds."""
+        if spread == SINGLE:
+            return np.array([r]), np.ones(1)
+        level = (np.arange(SPREAD_ELEMENTS) + 0.5) / SPREAD_ELEMENTS
+        if spread == EVEN:
+            return 2 * r * level, 2 * level / SPREAD_ELEMENTS
+        each = -r * np.log1p(-level)
+        return each, each / each.sum()
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.2 * rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        """Full width at T = 0 of the closed loop at the largest amplitude."""
+        up = np.linspace(-rig.torque_Nm, rig.torque_Nm, LOOP_ROWS)
+        loop = np.concatenate([up, up[::-1], up, up[::-1]])
+        none = np.zeros(len(loop), int)
+        angle = self.angle_arcsec(elements, History(loop, none, none))
+        rising, falling = 2 * LOOP_ROWS + LOOP_ROWS // 2, 3 * LOOP_ROWS + LOOP_ROWS // 2
+        return float(angle[falling] - angle[rising])

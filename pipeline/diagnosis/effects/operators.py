@@ -1,0 +1,97 @@
+"""Operators on a history that several causes need: friction elements and lags."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pipeline.diagnosis.record import History
+
+
+def stops(
+    history: History, thresholds_Nm: np.ndarray, start: np.ndarray
+) -> np.ndarray:
+    """(n, m) states of elastic-perfectly plastic elements, each driven by torque.
+
+    s_i = clip(s_{i−1} + T_i − T_{i−1}, −r, r), from s = start·r before each unit's first row's T = 0.
+    Rate-independent: only the order of torques counts.
+
+    Parameters: thresholds r (m,) [N·m], start (m,) in −1…1. Source: Krasnosel'skii, Pokrovskii,
+    Systems with Hysteresis (1989), section 2.2.
+    """
+    out = np.empty((len(history), len(thresholds_Nm)))
+    high, low = thresholds_Nm, -thresholds_Nm
+    for rows in history.unit_slices:
+        state = np.clip(start * high + history.torque_Nm[rows[0]], low, high)
+        steps = np.diff(history.torque_Nm[rows], prepend=history.torque_Nm[rows[0]])
+        block = np.empty((len(rows), len(high)))
+        for i, step in enumerate(steps):
+            state = np.minimum(np.maximum(state + step, low), high)
+            block[i] = state
+        out[rows] = block
+    return out
+
+
+def play(history: History, width_Nm: float) -> np.ndarray:
+    """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone."""
+    width = np.array([max(width_Nm, 1e-12)])
+    return history.torque_Nm - stops(history, width, np.zeros(1))[:, 0]
+
+
+def rising(history: History, width_Nm: float) -> np.ndarray:
+    """(n,) 1 while torque rises, −1 while it falls, 0 before it first moves; noise does not count."""
+    moved = play(history, width_Nm)
+    out = np.zeros(len(moved))
+    for rows in history.unit_slices:
+        step = np.sign(np.diff(moved[rows], prepend=moved[rows[0]]))
+        last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
+        out[rows] = step[last]
+    return out
+
+
+def dahl(history: History, stiffness_Nm: float, deadband_Nm: float) -> np.ndarray:
+    """(n,) state z of one element of Dahl's, dz/dT = (1 − z·sign dT)/d, from z = 0; d [N·m].
+
+    Exact for torque that is monotone between rows. Source: Dahl, A solid friction model, Aerospace
+    Corporation TOR-158(3107-18) (1968).
+    """
+    moved = play(history, deadband_Nm) + deadband_Nm * rising(history, deadband_Nm)
+    out = np.empty(len(moved))
+    for rows in history.unit_slices:
+        steps = np.diff(moved[rows], prepend=0.0)
+        keep = np.exp(-np.abs(steps) / stiffness_Nm)
+        side = np.sign(steps)
+        z, block = 0.0, np.empty(len(rows))
+        for i in range(len(rows)):
+            z = side[i] + (z - side[i]) * keep[i]
+            block[i] = z
+        out[rows] = block
+    return out
+
+
+def lags(values: np.ndarray, history: History, constants_s: np.ndarray) -> np.ndarray:
+    """(n, m) first-order lags of `values` (n,), x' = (v − x)/τ, exact for v linear between rows.
+
+    Each unit starts settled at its first value. Parameters: τ (m,) [s].
+
+    Raises
+    ------
+    ValueError : the history has no time.
+    """
+    if history.time_s is None:
+        raise ValueError("a lag needs time")
+    out = np.empty((len(history), len(constants_s)))
+    for rows in history.unit_slices:
+        v, t = values[rows], history.time_s[rows]
+        step = np.diff(t)[:, None] / constants_s
+        keep = np.exp(-step)
+        # v linear over the step: x₁ = x₀k + v₀(g − k) + v₁(1 − g), g = (1 − k)/step
+        share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, 1e-300), 1 - step / 2)
+        drive = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
+        block = np.empty((len(rows), len(constants_s)))
+        state = np.full(len(constants_s), v[0])
+        block[0] = state
+        for i in range(len(rows) - 1):
+            state = state * keep[i] + drive[i]
+            block[i + 1] = state
+        out[rows] = block
+    return out

@@ -1,0 +1,32 @@
+"""Compliance that varies with the wave generator's angle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.effects.periodic import harmonic, harmonic_shapes, largest_amplitude
+from pipeline.diagnosis.record import History
+
+
+class PositionStiffness(Cause):
+    """Twist T·(a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
+
+    id = "position_stiffness"
+    title = "stiffness that varies with the wave generator's angle"
+    unit = "%"
+    reveals = "the same sweep at many wave generator angles"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return harmonic_shapes(rig)
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return harmonic(shape, history) * history.torque_Nm[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.15 * rig.prediction.compliance
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return 100 * largest_amplitude(elements) / rig.compliance

@@ -1,0 +1,63 @@
+"""Twist that lags torque, growing with its rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.effects.operators import lags
+from pipeline.diagnosis.effects.torque_program import ramp_s
+from pipeline.diagnosis.record import History
+
+LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
+"""Time constants as shares of a ramp: a longer lag is creep."""
+EXPONENTS = (0.6, 0.8, 1.25, 1.6)
+
+
+class RateDependence(Cause):
+    """Twist −a·q, q the torque's rate seen through a lag, a ≥ 0 [arcsec per N·m/s].
+
+    q = (T − lag_τ(T))/τ; `exponent` other than 1: |q/rate|^exponent at the record's typical rate.
+    """
+
+    id = "rate_dependence"
+    title = "rate dependence (twist that lags torque)"
+    unit = "arcsec per N·m/s"
+    positive = True
+    tunable = ("lag_s", "exponent")
+    reveals = "the same sweep ten times slower and ten times faster"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        ramp = ramp_s(rig.history)
+        if ramp <= 0 or rig.history.time_s is None:
+            return []
+        rate = rig.torque_Nm / ramp
+        found: list[Shape] = [
+            {"lag_s": s * ramp, "exponent": 1.0, "rate_Nm_per_s": rate, "ramp_s": ramp} for s in LAG_SHARES
+        ]
+        found += [
+            {"lag_s": LAG_SHARES[1] * ramp, "exponent": n, "rate_Nm_per_s": rate, "ramp_s": ramp} for n in EXPONENTS
+        ]
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        longest = LAG_SHARES[-1] * shape["ramp_s"]
+        return 0.4 <= shape["exponent"] <= 1.8 and shape["lag_s"] <= longest
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        tau, n = shape["lag_s"], shape["exponent"]
+        rate = (history.torque_Nm - lags(history.torque_Nm, history, np.array([tau]))[:, 0]) / tau
+        if n != 1.0:
+            unit = shape["rate_Nm_per_s"]
+            rate = unit * np.sign(rate) * np.abs(rate / unit) ** n
+        return -rate[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.15 * rig.scale_arcsec / shape["rate_Nm_per_s"]
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return sum(e.amplitudes[0] for e in elements)
+
+

@@ -1,0 +1,54 @@
+"""A gap that grows from cycle to cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.record import History
+
+RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
+
+
+class Wear(Cause):
+    """Gap w·g(cycle) with w ≥ 0 [arcsec]; g runs from 0 in the first to 1 in the last cycle.
+
+    `exponent` 1: steady; ½: slowing down. `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
+    """
+
+    id = "wear"
+    title = "wear (gap that grows from cycle to cycle)"
+    unit = "arcsec/cycle"
+    positive = True
+    tunable = ("exponent", "run_in_cycles")
+    reveals = "many more cycles at constant temperature"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        if rig.cycles < 2:
+            return []
+        last = rig.cycles - 1
+        found: list[Shape] = [{"exponent": n, "run_in_cycles": 0.0, "last": last} for n in (1.0, 0.5)]
+        if rig.cycles > 2:
+            found += [{"exponent": 1.0, "run_in_cycles": c, "last": last} for c in RUN_IN_CYCLES]
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        return 0.3 <= shape["exponent"] <= 1.3
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return (self._growth(shape, history.cycle) * history.sign / 2)[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.5 * rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return sum(e.amplitudes[0] for e in elements) / max(1, rig.cycles - 1)
+
+    @staticmethod
+    def _growth(shape: Shape, cycle: np.ndarray) -> np.ndarray:
+        run_in, last = shape["run_in_cycles"], shape["last"]
+        if run_in > 0:
+            return np.expm1(-cycle / run_in) / np.expm1(-last / run_in)
+        return (cycle / last) ** shape["exponent"]

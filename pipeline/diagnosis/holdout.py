@@ -1,0 +1,105 @@
+"""What the extension is worth on data not used for fitting it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline.diagnosis.record import History
+from pipeline.diagnosis.result import Gain
+from pipeline.diagnosis.search import Search
+from pipeline.diagnosis.solution import solved
+from pipeline.diagnosis.sweep import Explained, Prepared
+from pipeline.diagnosis.terms import race
+
+FEWEST_ROWS = 12
+CROSSING_SIGMAS = 3.0
+"""|T| within this of zero, in units of the torque noise, is the gap's crossing."""
+
+
+def held_out(history: History, names: tuple[tuple[float, ...], ...]) -> tuple[str, np.ndarray] | None:
+    """What to hold out, in words, and its rows (n,): whole cycles, or positions, or units.
+
+    Every third cycle, never the first: the last is kept for fitting where there are more than two, so
+    that what changes from cycle to cycle is not extrapolated. None where nothing can be spared.
+    """
+    count = int(history.cycle.max()) + 1
+    if count >= 2:
+        chosen = [1] if count == 2 else [c for c in range(1, count - 1) if c % 3 == 1]
+        own = names[0] if len(names[0]) == count else tuple(range(1, count + 1))
+        label = ", ".join(f"{own[c]:g}" for c in chosen)
+        return f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
+    position = history.input_angle_deg
+    if position is not None and len(places := np.unique(position)) >= 4:
+        chosen_places = places[1::3]
+        label = ", ".join(f"{p:g}" for p in chosen_places[:6])
+        return f"input_angle_deg {label}", np.isin(position, chosen_places)
+    units = history.unit_slices
+    if len(units) >= 3:
+        rows = np.zeros(len(history), bool)
+        rows[units[1]] = True
+        return "unit 2", rows
+    return None
+
+
+def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
+    """Fit the named causes anew on the rest of the record, and predict what was held out.
+
+    The shapes are searched anew as well, on the training rows alone.
+    """
+    prepared = explained.prepared
+    sweep, history = prepared.sweep, prepared.rig.history
+    split = held_out(history, sweep.cycles)
+    if split is None:
+        return None
+    label, out = split
+    train = prepared.kept & ~out
+    test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > _crossing(explained))
+    if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
+        return None
+    after = _predicted(prepared, train, causes)
+    calibrated = _predicted(prepared, train, ())
+    reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
+    return Gain(
+        label,
+        _rms(_less_zero(reading, train, test, history)[test]),
+        _rms(calibrated[test]),
+        _rms(after[test]),
+        prepared.noise.std_arcsec,
+        held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
+    )
+
+
+def _crossing(explained: Explained) -> float:
+    from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+
+    noise = CROSSING_SIGMAS * torque_noise_Nm(explained.prepared.rig.history)
+    return min(noise, explained.prepared.band_Nm)
+
+
+def _predicted(prepared: Prepared, train: np.ndarray, causes: Collection[str]) -> np.ndarray:
+    """(n,) residual of the model fitted on the training rows."""
+    fitting = replace(prepared, kept=train)
+    now = race(fitting.columns, fitting.target, fitting.kept, fitting.noise)
+    best = Search(now, lambda t: t.cause is not None and t.cause.id in causes).run()
+    return solved(now, best.terms).residual()
+
+
+def _less_zero(
+    values: np.ndarray, train: np.ndarray, test: np.ndarray, history: History
+) -> np.ndarray:
+    """Less each unit's mean over the training rows; over the held-out rows for a unit not trained on."""
+    out = values.copy()
+    for rows in history.unit_slices:
+        own = np.zeros(len(values), bool)
+        own[rows] = True
+        basis = own & train if (own & train).any() else own & test
+        if basis.any():
+            out[rows] -= values[basis].mean()
+    return out
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,58 @@
+"""What the simulation says a record should show, and how far it may be off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from geometry.design import Design
+from pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
+from pipeline.diagnosis.record import History
+
+REFERENCE_C = 20.0
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """θ = θ0 + T·compliance + sign(T)·gap/2, with one standard deviation of each from the design.
+
+    Attributes
+    ----------
+    compliance, compliance_std : [arcsec per N·m], 1/K_e + 1/K_b.
+    gap_arcsec, gap_std_arcsec : the whole angular gap at 20 °C.
+    """
+
+    compliance: float
+    compliance_std: float
+    gap_arcsec: float
+    gap_std_arcsec: float
+
+    def angle_arcsec(self, history: History) -> np.ndarray:
+        """(n,) predicted angle, with zero θ0."""
+        return history.torque_Nm * self.compliance + history.sign * self.gap_arcsec / 2
+
+    def scale_arcsec(self, torque_Nm: float) -> float:
+        """Size of the predicted angle at a torque: a natural unit for effects of unknown size."""
+        return self.compliance * torque_Nm + self.gap_arcsec / 2
+
+
+def prediction_of(
+    design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float, K_error: float = 0.0
+) -> Prediction:
+    """The design's prediction; `K_error` is the solver's relative error of the series stiffness.
+
+    Raises
+    ------
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    total = backlash(design, K_b_Nm_per_rad, K_e_Nm_per_rad)
+    compliance = (1 / K_b_Nm_per_rad + 1 / K_e_Nm_per_rad) * ARCSEC_PER_RAD
+    doubt = total.std_by_source_arcsec
+    return Prediction(
+        compliance,
+        compliance * hypot(design.uncertainty.youngs_modulus_pct / 100, K_error),
+        gap_rad(design) * ARCSEC_PER_RAD,
+        hypot(doubt["flank_clearance"], doubt["radial_clearance"]),
+    )

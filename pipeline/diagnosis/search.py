@@ -1,0 +1,219 @@
+"""The race: which set of terms explains a record best, by evidence, several at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from math import log
+
+import numpy as np
+
+from pipeline.diagnosis.terms import Race, Term, column_indices
+
+NAMED_COST = 4.5
+"""Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
+UNNAMED_COST = 6.0
+"""Against each competitor: at equal evidence a named cause is preferred."""
+ELEMENT_COST = 1.0
+"""Against a further element of a cause already named."""
+BEAM, PER_OWNERS = 14, 3
+MOST_TERMS = 8
+WORTH = 0.5
+"""Nats that a larger set must gain for the search to go on."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set of terms; `evidence` in nats beyond the base, `score` with the set's prior."""
+
+    terms: tuple[int, ...]
+    evidence: float
+    score: float
+
+    def owners(self, race: Race) -> frozenset[str]:
+        return frozenset(race.terms[i].owner for i in self.terms)
+
+    def evidence_with_shares(self, search: Search) -> float:
+        """Evidence with the shapes' prior, but not the costs of naming."""
+        return self.evidence + sum(search.race.terms[i].log_share for i in self.terms)
+
+    def named(self, race: Race) -> frozenset[str]:
+        """Ids of its causes."""
+        return frozenset(c.id for i in self.terms if (c := race.terms[i].cause))
+
+
+@dataclass
+class Search:
+    """A beam search over sets of terms of one race; remembers every set that it weighed."""
+
+    race: Race
+    allowed: Callable[[Term], bool] = lambda term: True
+    best: dict[frozenset[str], Candidate] = field(default_factory=dict)
+    """Best candidate of each set of owners."""
+    weighed: list[Candidate] = field(default_factory=list)
+    """Every candidate."""
+
+    def __post_init__(self) -> None:
+        sizes: dict[int, list[int]] = {}
+        for i, term in enumerate(self.race.terms):
+            if self.allowed(term):
+                sizes.setdefault(term.at.stop - term.at.start, []).append(i)
+        self._groups = [_Group.of(self.race, members) for members in sizes.values()]
+        self._seen: set[frozenset[int]] = set()
+
+    def run(self, starts: Iterable[Sequence[int]] = ((),), most: int = MOST_TERMS) -> Candidate:
+        """The best set found from the given ones, growing by one term at a time."""
+        beam = [self.candidate(s) for s in starts]
+        for c in beam:
+            self._remember(c)
+        top = max(c.score for c in beam)
+        while beam:
+            grown: list[Candidate] = []
+            for c in beam:
+                if len(c.terms) < most:
+                    grown += self._grown(c)
+            beam = self._chosen(grown)
+            if not beam or beam[0].score < top + WORTH:
+                break
+            top = beam[0].score
+        return max(self.best.values(), key=lambda c: c.score)
+
+    def candidate(self, terms: Sequence[int]) -> Candidate:
+        """Evidence and score of one set."""
+        at = column_indices(self.race, terms)
+        if len(at) == 0:
+            return Candidate((), 0.0, 0.0)
+        matrix = self.race.gram[np.ix_(at, at)] + np.eye(len(at))
+        right = self.race.right[at]
+        gain = right @ np.linalg.solve(matrix, right) / 2
+        evidence = float(gain - np.linalg.slogdet(matrix)[1] / 2)
+        return Candidate(tuple(terms), evidence, evidence + self.prior(terms))
+
+    def prior(self, terms: Sequence[int]) -> float:
+        """Log prior of a set: costs of its owners and of its shapes."""
+        total, seen = 0.0, set[str]()
+        for i in terms:
+            term = self.race.terms[i]
+            total += term.log_share
+            if term.cause is None:
+                total -= UNNAMED_COST
+            else:
+                total -= ELEMENT_COST if term.cause.id in seen else NAMED_COST
+                seen.add(term.cause.id)
+        return total
+
+    def _remember(self, c: Candidate) -> None:
+        self.weighed.append(c)
+        owners = c.owners(self.race)
+        if owners not in self.best or self.best[owners].score < c.score:
+            self.best[owners] = c
+
+    def _grown(self, c: Candidate) -> list[Candidate]:
+        """Best sets with one term more: the best few of each owner."""
+        race = self.race
+        at = column_indices(race, c.terms)
+        inverse = np.linalg.inv(race.gram[np.ix_(at, at)] + np.eye(len(at)))
+        mean = inverse @ race.right[at]
+        held = np.array(
+            [race.terms[i].positive for i in c.terms for _ in range(_width(race.terms[i]))], bool
+        )
+        cross = race.gram[at]
+        pull = inverse @ cross
+        found: list[Candidate] = []
+        present = {race.terms[i].owner for i in c.terms if race.terms[i].cause}
+        for group in self._groups:
+            gain, valid = group.gains(race, cross, pull, mean, held)
+            prior = group.log_share - np.where(
+                group.unnamed, UNNAMED_COST,
+                np.where([o in present for o in group.owners], ELEMENT_COST, NAMED_COST),
+            )  # fmt: skip
+            score = np.where(valid, gain + prior, -np.inf)
+            for owner in set(group.owners):
+                mine = np.flatnonzero(group.is_owner[owner])
+                order = mine[np.argsort(-score[mine])][:2]
+                for j in order:
+                    term = int(group.members[j])
+                    if np.isfinite(score[j]) and term not in c.terms:
+                        key = frozenset((*c.terms, term))
+                        if key not in self._seen:
+                            self._seen.add(key)
+                            found.append(Candidate(
+                                (*c.terms, term), c.evidence + float(gain[j]), c.score + float(score[j])
+                            ))  # fmt: skip
+        for f in found:
+            self._remember(f)
+        return found
+
+    def _chosen(self, grown: list[Candidate]) -> list[Candidate]:
+        kept: list[Candidate] = []
+        count: dict[frozenset[str], int] = {}
+        for c in sorted(grown, key=lambda c: -c.score):
+            owners = c.owners(self.race)
+            if count.get(owners, 0) < PER_OWNERS:
+                count[owners] = count.get(owners, 0) + 1
+                kept.append(c)
+            if len(kept) == BEAM:
+                break
+        return kept
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Terms with the same number k of columns, for arithmetic on all of them at once."""
+
+    members: np.ndarray
+    at: np.ndarray
+    own: np.ndarray
+    log_share: np.ndarray
+    owners: list[str]
+    unnamed: np.ndarray
+    positive: np.ndarray
+    is_owner: dict[str, np.ndarray]
+
+    @staticmethod
+    def of(race: Race, members: list[int]) -> _Group:
+        terms = [race.terms[i] for i in members]
+        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
+        owners = [t.owner for t in terms]
+        return _Group(
+            np.array(members),
+            at,
+            race.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]),
+            np.array([t.log_share for t in terms]),
+            owners,
+            np.array([t.cause is None for t in terms]),
+            np.array([t.positive for t in terms]),
+            {o: np.array([x == o for x in owners]) for o in set(owners)},
+        )
+
+    def gains(
+        self, race: Race, cross: np.ndarray, pull: np.ndarray, mean: np.ndarray, held: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Evidence (m,) that each member adds to a set, and whether all signs stay as physics has them."""
+        c, p = cross[:, self.at], pull[:, self.at]  # (s, m, k)
+        matrix = self.own - np.einsum("smk,sml->mkl", c, p)
+        right = race.right[self.at] - np.einsum("smk,s->mk", c, mean)
+        # a member of the set itself leaves nothing but its prior
+        _, logdet = np.linalg.slogdet(matrix)
+        amplitude = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        gain = (right * amplitude).sum(axis=1) / 2 - logdet / 2
+        valid = ~self.positive | (amplitude >= 0).all(axis=1)
+        if held.any():
+            moved = mean[held, None] - np.einsum("smk,mk->sm", p[held], amplitude)
+            valid &= (moved >= 0).all(axis=0)
+        return gain, valid
+
+
+def probability(search: Search, share: float = 1.0) -> dict[frozenset[str], float]:
+    """Posterior probability of each set of named causes, over all sets weighed."""
+    by: dict[frozenset[str], float] = {}
+    for c in search.best.values():
+        key = c.named(search.race) | frozenset(o for o in c.owners(search.race) if o.startswith("?"))
+        by[key] = np.logaddexp(by.get(key, -np.inf), c.score * share)
+    top = max(by.values())
+    total = log(sum(np.exp(v - top) for v in by.values())) + top
+    return {k: float(np.exp(v - total)) for k, v in by.items()}
+
+
+def _width(term: Term) -> int:
+    return int(term.at.stop - term.at.start)

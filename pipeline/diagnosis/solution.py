@@ -1,0 +1,107 @@
+"""From a set of terms to the causes' elements, their magnitudes, and the model they make."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Element, Rig
+from pipeline.diagnosis.terms import Fit, Race, fitted
+
+LINEAR = {"series_compliance": 0, "clearance_offset": 1}
+"""Causes whose elements are part of the measured compliance or gap."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A fitted set of terms on one race."""
+
+    race: Race
+    fit: Fit
+
+    @property
+    def rig(self) -> Rig:
+        return self.race.columns.rig
+
+    @property
+    def units(self) -> int:
+        return len(self.rig.history.unit_slices)
+
+    def elements(self, mean: np.ndarray | None = None) -> dict[str, tuple[Element, ...]]:
+        """Elements of each cause, by id."""
+        fit = self.fit if mean is None else replace(self.fit, mean=mean)
+        found: dict[str, tuple[Element, ...]] = {}
+        for i, amplitudes in zip(fit.terms, fit.amplitudes(self.race), strict=True):
+            term = self.race.terms[i]
+            if term.cause is not None:
+                element = Element(term.shape, tuple(float(a) for a in amplitudes))
+                found[term.cause.id] = (*found.get(term.cause.id, ()), element)
+        return found
+
+    def measured_rig(self, mean: np.ndarray | None = None) -> Rig:
+        """The rig with compliance and gap as measured."""
+        mean = self.fit.mean if mean is None else mean
+        k = self.units
+        change = mean[k : k + 2].copy()
+        if k > 1:
+            change += mean[k + 2 : k + 2 + 2 * k].reshape(k, 2).mean(axis=0)
+        for cause_id, elements in self.elements(mean).items():
+            if cause_id in LINEAR:
+                change[LINEAR[cause_id]] += sum(e.amplitudes[0] for e in elements)
+        p = self.rig.prediction
+        return replace(
+            self.rig, measured=(p.compliance + float(change[0]), p.gap_arcsec + float(change[1]))
+        )
+
+    def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
+        """The contract's magnitude of each named cause."""
+        rig = self.measured_rig(mean)
+        return {c: causes()[c].magnitude(e, rig) for c, e in self.elements(mean).items()}
+
+    def magnitude_stds(self) -> dict[str, float]:
+        """Their standard deviations by the posterior, to first order."""
+        at_mean = self.magnitudes()
+        slope = {c: np.zeros(len(self.fit.mean)) for c in at_mean}
+        std = np.sqrt(np.diag(self.fit.covariance))
+        for j in range(self.units, len(std)):
+            step = np.zeros(len(std))
+            step[j] = 0.3 * std[j]
+            for c, value in self.magnitudes(self.fit.mean + step).items():
+                slope[c][j] = (value - at_mean[c]) / step[j]
+        return {c: float(np.sqrt(s @ self.fit.covariance @ s)) for c, s in slope.items()}
+
+    def added(self, owner: str) -> np.ndarray:
+        """(n,) angle [arcsec] that all terms of an owner add."""
+        total = np.zeros(len(self.rig.history))
+        for i, amplitudes in zip(self.fit.terms, self.fit.amplitudes(self.race), strict=True):
+            term = self.race.terms[i]
+            if term.owner == owner:
+                total += self.race.columns.all[:, term.at] @ amplitudes
+        return total
+
+    def residual(self) -> np.ndarray:
+        """(n,) measured less fitted angle, all rows."""
+        left = self.race.target - self.race.columns.base @ self.fit.mean[: self.fit.base_count]
+        for i, amplitudes in zip(self.fit.terms, self.fit.amplitudes(self.race), strict=True):
+            left = left - self.race.columns.all[:, self.race.terms[i].at] @ amplitudes
+        return left
+
+
+def solved(race: Race, terms: Sequence[int]) -> Solution:
+    """Fit a set of terms."""
+    return Solution(race, fitted(race, terms))
+
+
+def owner_rms(solution: Solution, owners: Sequence[str]) -> dict[str, float]:
+    """Rms [arcsec] of what each owner adds over the kept rows, each unit's mean removed."""
+    kept, unit = solution.race.kept, solution.rig.history.unit
+    found = {}
+    for owner in owners:
+        added = solution.added(owner)[kept]
+        for u in np.unique(unit[kept]):
+            added[unit[kept] == u] -= added[unit[kept] == u].mean()
+        found[owner] = float(np.sqrt(np.mean(added**2)))
+    return found

@@ -1,0 +1,177 @@
+"""Torque sweeps: calibrate, race, decide, hold out, and say what to measure next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.diagnosis.crossing import Crossing, crossing
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Rig
+from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.noise import (
+    Noise,
+    crossing_band_Nm,
+    estimated,
+    isolated_outliers,
+    rough_residual,
+    stretches_of,
+)
+from pipeline.diagnosis.prediction import Prediction
+from pipeline.diagnosis.record import History, Sweep
+from pipeline.diagnosis.search import Candidate, Search
+from pipeline.diagnosis.solution import Solution, solved
+from pipeline.diagnosis.terms import Columns, Race, columns_of, race, refined
+from pipeline.diagnosis.weighing import Weighed, weigh
+
+ROUNDS = 2
+"""Of noise estimated from what the best set leaves."""
+OFFSET_NATS = 6.0
+OFFSET_LEAST = 0.004
+"""Of the largest torque: a smaller offset moves nothing that counts."""
+FEWEST_KEPT = 12
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A sweep with its rows sorted out.
+
+    Attributes
+    ----------
+    kept : (n,) rows that name causes: outside the gap crossing, no outliers.
+    outlier : (n,). band_Nm : half width of the crossing. offset_Nm : taken off the torque reading.
+    """
+
+    sweep: Sweep
+    prediction: Prediction
+    rig: Rig
+    columns: Columns
+    target: np.ndarray
+    kept: np.ndarray
+    outlier: np.ndarray
+    band_Nm: float
+    rows_per_cycle: float
+    noise: Noise
+
+
+@dataclass(frozen=True)
+class Explained:
+    """A prepared sweep and its decided race; `crossing` where the gap's crossing was seen."""
+
+    prepared: Prepared
+    weighed: Weighed
+    crossing: Crossing | None
+    offset_Nm: float
+    offset_nats: float
+
+
+def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Prepared:
+    """Sort the rows out and evaluate every term."""
+    history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
+    if history.time_s is None:
+        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    rig = Rig(prediction, history)
+    target = sweep.angle_arcsec - prediction.angle_arcsec(history)
+    band = crossing_band_Nm(history)
+    kept = np.abs(history.torque_Nm) > band
+    count = sum(int(history.cycle[rows].max()) + 1 for rows in history.unit_slices)
+    per_cycle = len(history) / count
+    if int(kept.sum()) < FEWEST_KEPT:
+        return Prepared(
+            sweep, prediction, rig, Columns(rig, np.empty((0, 0)), np.empty(0), np.empty((0, 0)), ()),
+            target, kept, np.zeros(len(target), bool), band, per_cycle, Noise(0, 0, 0),
+        )  # fmt: skip
+    rough = rough_residual(target, history, kept, per_cycle)
+    spread = 1.4826 * float(np.median(np.abs(rough))) + 1e-9
+    outlier = np.zeros(len(kept), bool)
+    outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
+    good = ~outlier[kept]
+    kept &= ~outlier
+    noise = estimated(rough[good], stretches_of(history, kept), per_cycle, int(kept.sum()) // 6)
+    return Prepared(
+        sweep, prediction, rig, columns_of(rig, causes()), target, kept, outlier, band, per_cycle, noise
+    )
+
+
+def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
+    """Race, with the noise estimated anew from what the best set leaves."""
+    for round_ in range(ROUNDS):
+        now = _race(prepared)
+        search = Search(now)
+        best = search.run()
+        prepared = _with_noise(prepared, solved(now, best.terms).residual(), len(best.terms))
+        columns = refined(prepared.columns, _interesting(search, best), round_)
+        prepared = replace(prepared, columns=columns)
+    return prepared, weigh(_race(prepared))
+
+
+def _interesting(search: Search, best: Candidate) -> list[int]:
+    """Terms whose shapes are worth refining: of the best set, and of each rival's best set."""
+    race_ = search.race
+    chosen = dict.fromkeys(best.terms)
+    mine = best.named(race_)
+    ranked = sorted(search.best.values(), key=lambda c: -c.score)
+    for cause in {t.cause.id for t in race_.terms if t.cause} - mine:
+        for c in ranked:
+            names = c.named(race_)
+            if cause in names and len(names) <= max(1, len(mine)):
+                chosen.update(dict.fromkeys(i for i in c.terms if race_.terms[i].owner == cause))
+                break
+    return list(chosen)
+
+
+def _race(prepared: Prepared) -> Race:
+    return race(prepared.columns, prepared.target, prepared.kept, prepared.noise)
+
+
+def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
+    history = prepared.rig.history
+    inside = np.abs(history.torque_Nm) > prepared.band_Nm
+    spread = 1.4826 * float(np.median(np.abs(left[inside & ~prepared.outlier])))
+    outlier = np.zeros(len(left), bool)
+    outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
+    kept = inside & ~outlier
+    noise = estimated(left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + 3)
+    return replace(prepared, noise=noise, kept=kept, outlier=outlier)
+
+
+def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
+    """The whole race, with and without an offset of the torque reading."""
+    prepared, weighed = explain(prepare(sweep, prediction))
+    seen = seen_crossing(prepared, weighed.solution)
+    largest = prepared.rig.torque_Nm
+    if seen is None or seen.nats < OFFSET_NATS or abs(seen.offset_Nm) < OFFSET_LEAST * largest:
+        return Explained(prepared, weighed, seen, 0.0, 0.0)
+    offset, total = seen.offset_Nm, seen.nats
+    for _ in range(2):
+        again, decided = explain(prepare(sweep, prediction, offset))
+        further = seen_crossing(again, decided.solution)
+        if further is None:
+            break
+        seen = replace(further, nats=total, offset_Nm=offset + further.offset_Nm)
+        if abs(further.offset_Nm) < max(further.std_Nm, 0.001 * largest):
+            return Explained(again, decided, seen, seen.offset_Nm, total)
+        offset = seen.offset_Nm
+    return Explained(again, decided, seen, offset, total)
+
+
+def seen_crossing(prepared: Prepared, solution: Solution) -> Crossing | None:
+    """The crossing, with everything but the gap taken off the measured angle."""
+    history = prepared.rig.history
+    gap = solution.measured_rig().gap_arcsec
+    left = solution.residual() + _gap_of(solution, history)
+    return crossing(
+        history.torque_Nm[~prepared.outlier], left[~prepared.outlier], gap,
+        prepared.noise.std_arcsec, torque_noise_Nm(history), solution.measured_rig().compliance,
+    )  # fmt: skip
+
+
+def _gap_of(solution: Solution, history: History) -> np.ndarray:
+    """(n,) what the gap adds in the solution, with the sign of the torque as read."""
+    return history.sign * solution.measured_rig().gap_arcsec / 2
+
+
+def largest_torque_Nm(history: History) -> float:
+    """Largest |torque|."""
+    return float(np.abs(history.torque_Nm).max())

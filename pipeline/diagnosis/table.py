@@ -1,0 +1,191 @@
+"""A CSV file as named columns of checked numbers in our units."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite, pi
+from pathlib import Path
+
+import numpy as np
+
+from pipeline.diagnosis.errors import MeasurementError
+
+LARGEST_BYTES = 200_000_000
+LARGEST_ROWS = 2_000_000
+
+Factors = dict[str, float]
+TORQUE: Factors = {"Nm": 1.0, "Nmm": 1e-3}
+ANGLE: Factors = {
+    "arcsec": 1.0, "arcmin": 60.0, "deg": 3600.0,
+    "mrad": 180 * 3.6 / pi, "rad": 180 * 3600 / pi,
+}  # fmt: skip
+TIME: Factors = {"s": 1.0, "min": 60.0, "h": 3600.0}
+KELVIN_AT_0_C = 273.15
+QUANTITIES: Mapping[str, tuple[str, Factors]] = {
+    "torque": ("Nm", TORQUE),
+    "angle": ("arcsec", ANGLE),
+    "angle_plus": ("arcsec", ANGLE),
+    "angle_minus": ("arcsec", ANGLE),
+    "time": ("s", TIME),
+    "input_angle": ("deg", {unit: factor / 3600 for unit, factor in ANGLE.items()}),
+    "temperature": ("C", {"C": 1.0, "K": 1.0}),
+    "stiffness": ("Nm_per_rad", {"Nm_per_rad": 1.0}),
+    "stiffness_std": ("Nm_per_rad", {"Nm_per_rad": 1.0}),
+}
+"""Quantity: our unit, and what one of each accepted unit is worth in it."""
+LABELS = ("unit", "specimen", "part")
+PLAIN = ("cycle",)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns by our name, e.g. `torque_Nm`; numbers (n,) and labels; `line` (n,) in the file."""
+
+    path: Path
+    numbers: Mapping[str, np.ndarray]
+    labels: Mapping[str, tuple[str, ...]]
+    line: np.ndarray
+    ignored: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def has(self, *names: str) -> bool:
+        """Whether all these columns exist."""
+        return all(n in self.numbers or n in self.labels for n in names)
+
+    def refuse(self, row: int | None, reason: str) -> MeasurementError:
+        """The error for data row `row`, None for the whole file."""
+        return MeasurementError(self.path, None if row is None else int(self.line[row]), reason)
+
+
+def read_table(path: Path) -> Table:
+    """Read a measurement.
+
+    Lines beginning with # are comments. Columns whose name is no quantity of the contract are kept
+    aside as `ignored`, except dotted design keys, which are read as numbers.
+
+    Raises
+    ------
+    MeasurementError : anything that cannot be read without guessing.
+    """
+    lines, numbers_of = _lines(path)
+    if not lines:
+        raise MeasurementError(path, None, "holds no header line; expected columns such as torque_Nm")
+    reader = csv.reader(lines, strict=True)
+    try:
+        rows = list(reader)
+    except csv.Error as error:
+        raise MeasurementError(path, numbers_of[min(reader.line_num, len(lines)) - 1], str(error)) from None
+    header = [h.strip() for h in rows[0]]
+    columns = _columns(path, numbers_of[0], header)
+    body = rows[1:]
+    for i, row in enumerate(body):
+        if len(row) != len(header):
+            raise MeasurementError(
+                path, numbers_of[i + 1], f"{len(row)} fields where the header has {len(header)}"
+            )
+    if not body:
+        raise MeasurementError(path, numbers_of[0], "a header and no data rows")
+    numbers: dict[str, np.ndarray] = {}
+    labels: dict[str, tuple[str, ...]] = {}
+    line = np.array(numbers_of[1:])
+    for j, column in enumerate(columns):
+        if column is None:
+            continue
+        texts = [row[j].strip() for row in body]
+        if column.name in LABELS:
+            empty = next((i for i, t in enumerate(texts) if not t), None)
+            if empty is not None:
+                raise MeasurementError(path, int(line[empty]), f"{header[j]} is empty")
+            labels[column.name] = tuple(texts)
+        else:
+            numbers[column.name] = _numbers(path, header[j], texts, line) * column.factor + column.shift
+    ignored = tuple(h for h, c in zip(header, columns, strict=True) if c is None)
+    return Table(path, numbers, labels, line, ignored)
+
+
+@dataclass(frozen=True)
+class _Column:
+    name: str
+    factor: float = 1.0
+    shift: float = 0.0
+
+
+def _lines(path: Path) -> tuple[list[str], list[int]]:
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_BYTES:
+            raise MeasurementError(
+                path, None, f"{size / 1e6:.0f} MB; at most {LARGEST_BYTES / 1e6:.0f} MB are read"
+            )
+        raw = path.read_bytes()
+    except OSError as error:
+        raise MeasurementError(path, None, error.strerror or "cannot be read") from None
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise MeasurementError(
+            path, line, f"byte {raw[error.start]:#04x} is not UTF-8; save the file as UTF-8"
+        ) from None
+    if "\0" in text:
+        raise MeasurementError(path, text[: text.index("\0")].count("\n") + 1, "holds a NUL byte")
+    kept, numbers = [], []
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            kept.append(line)
+            numbers.append(number)
+    if len(kept) > LARGEST_ROWS:
+        raise MeasurementError(path, None, f"{len(kept)} rows; at most {LARGEST_ROWS} are read")
+    return kept, numbers
+
+
+def _columns(path: Path, line: int, header: list[str]) -> list[_Column | None]:
+    if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
+        raise MeasurementError(path, line, "columns must be separated by commas")
+    columns = [_column(path, line, h) for h in header]
+    seen: dict[str, str] = {}
+    for h, c in zip(header, columns, strict=True):
+        key = c.name if c else h
+        if key in seen:
+            same = "twice" if seen[key] == h else f"as {seen[key]} and as {h}"
+            raise MeasurementError(path, line, f"column {key} appears {same}")
+        seen[key] = h
+    return columns
+
+
+def _column(path: Path, line: int, name: str) -> _Column | None:
+    if name in LABELS or name in PLAIN or "." in name:
+        return _Column(name)
+    for quantity in sorted(QUANTITIES, key=len, reverse=True):
+        unit, factors = QUANTITIES[quantity]
+        if name != quantity and not name.startswith(quantity + "_"):
+            continue
+        given = name[len(quantity) + 1 :]
+        if given not in factors:
+            accepted = ", ".join(f"{quantity}_{u}" for u in factors)
+            raise MeasurementError(path, line, f"column {name}: accepted are {accepted}")
+        shift = -KELVIN_AT_0_C if given == "K" else 0.0
+        return _Column(f"{quantity}_{unit}", factors[given], shift)
+    return None
+
+
+def _numbers(path: Path, name: str, texts: list[str], line: np.ndarray) -> np.ndarray:
+    try:
+        found = np.array([float(t) for t in texts])
+    except ValueError:
+        found = None
+    if found is not None and np.isfinite(found).all() and not any("_" in t for t in texts):
+        return found
+    for text, number in zip(texts, line, strict=True):
+        try:
+            good = isfinite(float(text)) and "_" not in text
+        except ValueError:
+            good = False
+        if not good:
+            what = "is empty" if not text else f'= "{text[:40]}" is not a finite number'
+            raise MeasurementError(path, int(number), f"{name} {what}")
+    raise AssertionError("unreachable: one of the texts is no number")

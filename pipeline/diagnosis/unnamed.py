@@ -1,0 +1,165 @@
+"""Competitors without a name: flexible functions of each channel.
+
+They stand in the race beside the named causes, so that an effect that no cause explains is not given
+the name of the cause that mimics it best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Rig
+from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.prediction import REFERENCE_C
+
+SPLINE = 6
+STEPS = 25
+MOST_LEVELS = 8
+"""Columns of one competitor at most."""
+RIPPLES = range(3, 33)
+"""Half periods over the range of torque or angle."""
+WAVES = range(3, 61)
+"""Half periods over the time of the record."""
+
+
+@dataclass(frozen=True)
+class Unnamed:
+    """A flexible term: which channel it lives in, what it is, and its columns (n, k)."""
+
+    channel: str
+    what: str
+    columns: np.ndarray
+
+
+def competitors(rig: Rig) -> list[Unnamed]:
+    """All flexible terms that a rig's record has the channels for; columns of unit rms."""
+    found = []
+    for make in (_torque, _angle, _direction, _time, _cycle, _temperature, _position, _unit):
+        for channel, what, columns in make(rig):
+            rms = np.sqrt((columns**2).mean(axis=0))
+            good = rms > 1e-9
+            if good.any():
+                found.append(Unnamed(channel, what, columns[:, good] / rms[good]))
+    return found
+
+
+Made = Iterator[tuple[str, str, np.ndarray]]
+
+
+def _torque(rig: Rig) -> Made:
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    yield "torque_Nm", "a smooth function of torque", _splines(torque, SPLINE)
+    soft = np.abs(torque) ** np.array([[1.5], [2.0], [3.0]]) * np.sign(torque)
+    yield "torque_Nm", "softening", -soft.T[:, :1]
+    yield "torque_Nm", "softening", -soft.T[:, 1:2]
+    yield "torque_Nm", "softening", -soft.T[:, 2:]
+    yield "torque_Nm", "a curve of torque, equal for both signs", (torque**2)[:, None]
+    yield from _ripples(torque, "torque_Nm", "a ripple over torque")
+
+
+def _angle(rig: Rig) -> Made:
+    angle = rig.prediction.angle_arcsec(rig.history)
+    yield from _ripples(angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle")
+
+
+def _ripples(x: np.ndarray, channel: str, what: str) -> Made:
+    for k in RIPPLES:
+        turn = np.pi * k * (x + 1) / 2
+        yield channel, what, np.column_stack([np.cos(turn), np.sin(turn)])
+
+
+def _direction(rig: Rig) -> Made:
+    direction = rising(rig.history, 0.02 * rig.torque_Nm)
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    basis = np.column_stack([direction, direction * torque, direction * torque**2, direction * torque**3])
+    yield "direction", "a difference between rising and falling torque", basis
+    yield "direction", "output leads torque", direction[:, None]
+    bow = direction * (1 - torque**2)
+    yield "direction", "output leads torque", bow[:, None]
+
+
+def _time(rig: Rig) -> Made:
+    if rig.duration_s <= 0 or rig.history.time_s is None:
+        return
+    t = np.zeros(len(rig.history))
+    for rows in rig.history.unit_slices:
+        t[rows] = (rig.history.time_s[rows] - rig.history.time_s[rows[0]]) / rig.duration_s
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    yield "time_s", "a smooth function of time", _splines(2 * t - 1, SPLINE)
+    yield "time_s", "a stiffness that changes with time", torque[:, None] * _splines(2 * t - 1, 3)
+    for k in WAVES:
+        turn = np.pi * k * t
+        yield "time_s", "a wave in time", np.column_stack([np.cos(turn), np.sin(turn)])
+    for u, rows in enumerate(rig.history.unit_slices):
+        for place in np.linspace(0, 1, STEPS + 2)[1:-1]:
+            step = np.zeros(len(t))
+            step[rows[int(place * len(rows)) :]] = 1.0
+            where = f" of unit {u + 1}" if len(rig.history.unit_slices) > 1 else ""
+            yield "time_s", f"a step in time{where}", step[:, None]
+
+
+def _cycle(rig: Rig) -> Made:
+    if rig.cycles < 2:
+        return
+    levels = _levels(rig.history.cycle.astype(float))
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    yield "cycle", "a zero of its own in each cycle", levels
+    yield "cycle", "a stiffness of its own in each cycle", levels * torque[:, None]
+    ramp = rig.history.cycle / (rig.cycles - 1) - 0.5
+    yield "cycle", "a stiffness that changes from cycle to cycle", (ramp * torque)[:, None]
+    yield "cycle", "a gap of its own in each cycle", levels * rig.history.sign[:, None]
+
+
+def _temperature(rig: Rig) -> Made:
+    temperature = rig.history.temperature_C
+    if temperature is None or np.ptp(temperature) < 0.3:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    warm = (temperature - REFERENCE_C) / max(np.abs(temperature - REFERENCE_C).max(), 1e-9)
+    centred = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
+    yield "temperature_C", "a zero that changes with temperature", warm[:, None]
+    yield "temperature_C", "a zero that changes with temperature", _splines(centred, 3)
+    yield "temperature_C", "a stiffness that changes with temperature", (warm * torque)[:, None]
+    yield "temperature_C", "a gap not linear in temperature", (warm**2 * rig.history.sign)[:, None]
+
+
+def _position(rig: Rig) -> Made:
+    angle = rig.history.input_angle_deg
+    if angle is None or np.ptp(angle) == 0:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    levels = _levels(np.mod(angle, 360.0))
+    yield "input_angle_deg", "a zero of its own at each position", levels
+    yield "input_angle_deg", "a stiffness of its own at each position", levels * torque[:, None]
+    yield "input_angle_deg", "a gap of its own at each position", levels * rig.history.sign[:, None]
+
+
+def _unit(rig: Rig) -> Made:
+    units = rig.history.unit_slices
+    if len(units) < 2:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    for u, rows in enumerate(units):
+        own = np.zeros(len(torque))
+        own[rows] = 1.0
+        yield "unit", f"a gain of unit {u + 1}'s own", (own * torque)[:, None]
+        yield "unit", f"a gap of unit {u + 1}'s own", (own * rig.history.sign)[:, None]
+
+
+def _levels(values: np.ndarray) -> np.ndarray:
+    """(n, k) one column per level but the first; neighbouring levels share one where they are many."""
+    seen = np.unique(values)
+    if len(seen) > MOST_LEVELS + 1:
+        seen = np.quantile(values, np.linspace(0, 1, MOST_LEVELS + 2)[:-1])
+        index = np.clip(np.searchsorted(seen, values, side="right") - 1, 0, None)
+    else:
+        index = np.searchsorted(seen, values)
+    return np.column_stack([index == i for i in range(1, max(2, index.max() + 1))]).astype(float)
+
+
+def _splines(x: np.ndarray, count: int) -> np.ndarray:
+    """(n, count) Legendre polynomials of degree 1 to `count` over −1…1."""
+    return np.polynomial.legendre.legvander(np.clip(x, -1, 1), count)[:, 1:]

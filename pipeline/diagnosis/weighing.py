@@ -1,0 +1,114 @@
+"""From a finished race to causes: which are named, which rivals remain, what is left over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from pipeline.diagnosis.search import Candidate, Search
+from pipeline.diagnosis.solution import Solution, owner_rms, solved
+from pipeline.diagnosis.terms import Race
+
+NAMING_NATS = 3.0
+"""A cause must raise the score by this over the best set without it."""
+MINOR_SHARE = 0.045
+"""An effect below this share of the main one's rms may be only that one's shape misfit."""
+RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
+"""The contract's limits for a rival."""
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A race decided.
+
+    Attributes
+    ----------
+    solution : the best set of terms, fitted. named : ids of its causes, largest first.
+    rms : of each owner [arcsec]. rivals : of each cause, ids that explain the record as well.
+    evidence : of each cause, nats over the best set without it.
+    """
+
+    search: Search
+    best: Candidate
+    solution: Solution
+    named: tuple[str, ...]
+    rms: dict[str, float]
+    rivals: dict[str, tuple[str, ...]]
+    rival_sets: dict[str, Candidate]
+    evidence: dict[str, float]
+
+    @property
+    def named_rms(self) -> float:
+        """Of all named causes together [arcsec]."""
+        return float(np.sqrt(sum(self.rms[c] ** 2 for c in self.named)))
+
+    @property
+    def unnamed_rms(self) -> float:
+        """Of all competitors and minor causes in the best set [arcsec]."""
+        return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
+
+
+def weigh(race: Race) -> Weighed:
+    """Run the race and decide it."""
+    search = Search(race)
+    best = search.run()
+    evidence: dict[str, float] = {}
+    for _ in range(4):
+        without = {c: _without(race, best, c) for c in best.named(race)}
+        evidence = {c: best.score - w.score for c, w in without.items()}
+        weak = [c for c, e in evidence.items() if e < NAMING_NATS]
+        if not weak:
+            break
+        best = without[min(weak, key=lambda c: evidence[c])]
+    solution = solved(race, best.terms)
+    rms = owner_rms(solution, sorted(best.owners(race)))
+    largest = max((rms[c] for c in best.named(race)), default=0.0)
+    named = sorted(
+        (c for c in best.named(race) if rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
+    )
+    rivals: dict[str, tuple[str, ...]] = {}
+    rival_sets: dict[str, Candidate] = {}
+    for cause in named:
+        rivals[cause], found = _rivals(race, best, cause)
+        if found is not None:
+            rival_sets[cause] = found
+    return Weighed(search, best, solution, tuple(named), rms, rivals, rival_sets, evidence)
+
+
+def _without(race: Race, best: Candidate, cause: str) -> Candidate:
+    """The best set that does without a cause: competitors and other causes may stand in."""
+    start = [i for i in best.terms if race.terms[i].owner != cause]
+    search = Search(race, lambda t: t.owner != cause)
+    return search.run([start, ()], most=len(best.terms) + 2)
+
+
+def _rivals(
+    race: Race, best: Candidate, cause: str
+) -> tuple[tuple[str, ...], Candidate | None]:
+    """Ids of other causes that, in the place of this one, explain the record as well."""
+    start = tuple(i for i in best.terms if race.terms[i].owner != cause)
+    present = {race.terms[i].owner for i in best.terms}
+    others = {t.cause.id for t in race.terms if t.cause} - present
+    mine = penalised(race, best.terms)
+    found: list[tuple[float, str, Candidate]] = []
+    for other in sorted(others):
+        search = Search(
+            race, lambda t, other=other: t.owner == other or (t.owner in present and t.owner != cause)
+        )
+        rival = search.run([start], most=len(best.terms) + 3)
+        if other not in rival.named(race):
+            continue
+        gap = best.evidence_with_shares(search) - rival.evidence_with_shares(search)
+        if gap < RIVAL_EVIDENCE or mine - penalised(race, rival.terms) < RIVAL_LIKELIHOOD:
+            found.append((gap, other, rival))
+    found.sort(key=lambda f: f[0])
+    return tuple(f[1] for f in found), (found[0][2] if found else None)
+
+
+def penalised(race: Race, terms: tuple[int, ...]) -> float:
+    """Log likelihood less ½ log n for each amplitude."""
+    fit = solved(race, terms).fit
+    count = len(fit.mean) - fit.base_count
+    return -fit.chi2 / 2 - count * log(max(race.rows, 2)) / 2

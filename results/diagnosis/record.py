@@ -1,0 +1,64 @@
+"""diagnosis.json: the contract's keys."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.result import Gain, NamedCause
+from results.records import heading
+
+EXTENDED_MODEL = "extended_model.toml"
+Record = dict[str, Any]
+
+
+def diagnosis_record(diagnosis: Diagnosis) -> Record:
+    """The diagnosis as JSON; what was not found is absent."""
+    outcome = diagnosis.outcome
+    record: Record = {
+        **heading(diagnosis.design),
+        "verdict": outcome.verdict,
+        "summary": outcome.summary,
+        "causes": [_cause(c) for c in outcome.causes],
+        "unexplained": [
+            {"channel": u.channel, "rms": u.rms, "p_value": u.p_value, "what": u.what}
+            for u in outcome.unexplained
+        ],
+        "notes": list(outcome.notes),
+    }
+    if outcome.gain is not None:
+        record["gain"] = _gain(outcome.gain)
+    if diagnosis.model is not None:
+        record["extended_model"] = EXTENDED_MODEL
+    if outcome.next_measurement is not None:
+        after = outcome.next_measurement
+        record["next_measurement"] = {"vary": after.vary, "why": after.why}
+    return record
+
+
+def _cause(cause: NamedCause) -> Record:
+    record: Record = {
+        "id": cause.id,
+        "probability": cause.probability,
+        "alternatives": list(cause.alternatives),
+        "magnitude": cause.magnitude,
+        "magnitude_std": cause.magnitude_std,
+        "unit": cause.unit,
+        "evidence_nats": cause.evidence_nats,
+        "rms_arcsec": cause.rms_arcsec,
+    }
+    if cause.own_units:
+        record["units"] = list(cause.own_units)
+    return record
+
+
+def _gain(gain: Gain) -> Record:
+    return {
+        "held_out": gain.held_out,
+        "rmse_before": gain.rmse_before,
+        "rmse_calibrated": gain.rmse_calibrated,
+        "rmse_after": gain.rmse_after,
+        "noise_floor": gain.noise_floor,
+        "unit": gain.unit,
+        "held_out_rows": list(gain.held_out_rows),
+    }
