@@ -1,6 +1,7 @@
 """Results kept by the content of what made them: the same question is answered once.
 
-The mesher is not deterministic, so the cache is also what makes a design give the same answer twice.
+fTetWild is not deterministic, so the cache is also what makes a part that it meshes give the same answer
+twice.
 An entry is one .npz: arrays, and a JSON text for the rest. Damaged entries are dropped and made anew.
 """
 
@@ -19,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 T = TypeVar("T")
-FORMAT = 4
+FORMAT = 5
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

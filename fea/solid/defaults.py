@@ -9,6 +9,9 @@ from geometry.design import Design
 CHORD_PER_ENVELOPE = 1.5
 """Chord error of the tessellation over the mesher's envelope: the nodes are put back onto the exact
 surfaces afterwards, so neither limits accuracy, and coarse chords mesh faster."""
+FINEST_SHARE = 20
+"""The largest edge is at least this share of the outer radius: a wall of a hundredth of it needs one
+layer of long elements, not a part full of short ones."""
 
 
 def first_spec(design: Design, part: str) -> MeshSpec:
@@ -18,13 +21,13 @@ def first_spec(design: Design, part: str) -> MeshSpec:
         wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
         outer = max(s.outer_diameter_mm for s in segments) / 2
         on_axis = any(s.inner_diameter_mm == 0 for s in segments)
-        far = min(0.45 * wall, design.shaft.length / 8, outer / 3)
+        far = min(max(0.45 * wall, outer / FINEST_SHARE), design.shaft.length / 8, outer / 3)
         near, envelope = 0.4 * far, far / 100
     else:
         f = design.flexspline
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
         on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
-        far = min(5 * wall, f.length_mm / 6, outer / 3)
+        far = min(max(5 * wall, outer / FINEST_SHARE), f.length_mm / 6, outer / 3)
         near, envelope = min(wall, far / 2, outer / 50), wall / 20
     if design.solver.edge_length_mm is not None:
         far = design.solver.edge_length_mm

@@ -28,12 +28,16 @@ CUTS = (
 
 
 def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes vertex by vertex, each at all angles; prisms between neighbouring angles."""
+    """Nodes (r, φ, z) vertex by vertex, each at all angles; prisms between neighbouring angles.
+
+    A triangle that is counter-clockwise in (r, z) is clockwise seen along φ: its order is turned, so
+    that every prism, here and in `extruded`, has its second triangle on the positive side of the first.
+    """
     n, k = len(rest.points), len(angles)
     polar = np.column_stack(
         [np.repeat(rest.points[:, 0], k), np.tile(angles, n), np.repeat(rest.points[:, 1], k)]
     )
-    base = rest.triangles * k
+    base = rest.triangles[:, ::-1] * k
     return polar, np.vstack([np.hstack([base + i, base + i + 1]) for i in range(k - 1)])
 
 
@@ -81,7 +85,10 @@ def _filled_hole(plan: MeridianMesh, column: Column) -> tuple[np.ndarray, np.nda
 
 
 def cut(prisms: np.ndarray) -> np.ndarray:
-    """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node."""
+    """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node.
+
+    They are positive as the prism is.
+    """
     v = np.take_along_axis(prisms, ROTATIONS[prisms.argmin(axis=1)], axis=1)
     first = np.minimum(v[:, 1], v[:, 5]) < np.minimum(v[:, 2], v[:, 4])
     return np.vstack([v[first][:, CUTS[0]].reshape(-1, 4), v[~first][:, CUTS[1]].reshape(-1, 4)])

@@ -14,16 +14,15 @@ from math import ceil, radians
 import numpy as np
 
 from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError
 from fea.axisymmetric.triangulate import triangulate
 from fea.solid.column import INTERFACE, Column, column_of
-from fea.solid.elements import element_volumes
-from fea.solid.errors import MeshQualityError
+from fea.solid.elements import element_volumes, facet_areas
+from fea.solid.errors import MeshQualityError, SolidError
 from fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
 from fea.solid.prisms import along, cut, extruded, revolved
 from fea.solid.sizing import Grading
 from fea.solid.snap import snap_to_surfaces
-from fea.solid.tetwild import signed_volumes
 from fea.types import TetMesh
 from geometry.design import Design
 from geometry.meridian import SAME, Meridian, meridian
@@ -35,18 +34,22 @@ PLAN_EDGE = 0.8
 """Largest edge in the plan beside a hole, in hole radii."""
 ROUNDS = 60
 ON_SURFACE = 1e-6
-VOLUME_TOLERANCE = 1e-3
+TOLERANCE = 1e-3
+"""Of volume and patch areas; parabolas for arcs of 15° leave 1e-5."""
+MOST_ELEMENTS = 500_000
+"""2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
 
 
 def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
     A keyway, a part that reaches the axis, and holes that are not in a plain column need a mesher.
+    So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
+    part, a volume or a patch area that is not its own, a meridian that cannot be triangulated.
 
     Raises
     ------
-    MeshingError : the meridian cannot be meshed.
-    MeshQualityError : the mesh does not hold the part's volume.
+    SolidError : the mesh would be too large.
     """
     outline = meridian(design, part)
     column = column_of(design, part, outline)
@@ -54,8 +57,11 @@ def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> 
     keyed = part == "shaft" and design.shaft.keyway is not None
     if keyed or (holes and column is None) or min(s.start[0] for s in outline.segments) < SAME:
         return None
-    polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading)
-    return _curved(design, part, outline, column, sector_deg, polar, tets)
+    try:
+        polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading)
+        return _curved(design, part, outline, column, sector_deg, polar, tets)
+    except (MeshQualityError, MeshingError):
+        return None
 
 
 def _prisms(
@@ -66,6 +72,7 @@ def _prisms(
     rest = _graded(triangulate(own), _critical_points(outline), grading)
     if column is None:
         angles = np.linspace(0, sector, ceil(sector / LARGEST_STEP) + 1)
+        _refuse_beyond_memory(rest, angles)
         polar, prisms = revolved(rest, angles)
     else:
         plan = _plan(column, sector, grading.far)
@@ -73,15 +80,23 @@ def _prisms(
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)
         angles[[0, -1]] = 0.0, sector
+        _refuse_beyond_memory(rest, angles)
         polar, prisms = revolved(rest, angles)
         above, more = extruded(plan, column, rest, seam, len(polar))
         polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
     found = cut(prisms)
     used, compact = np.unique(found, return_inverse=True)
-    polar, tets = polar[used], compact.reshape(found.shape)
-    inverted = signed_volumes(_cartesian(polar), tets) < 0
-    tets[inverted] = tets[inverted][:, [0, 2, 1, 3]]
-    return polar, tets
+    return polar[used], compact.reshape(found.shape)
+
+
+def _refuse_beyond_memory(rest: MeridianMesh, angles: np.ndarray) -> None:
+    """The column, which has fewer elements than the rest, is not counted."""
+    elements = 3 * len(rest.triangles) * (len(angles) - 1)
+    if elements > MOST_ELEMENTS:
+        raise SolidError(
+            f"the mesh would have {elements} elements, at most {MOST_ELEMENTS}:"
+            " raise solver.tolerance_pct or solver.edge_length_mm"
+        )
 
 
 def _critical_points(outline: Meridian) -> np.ndarray:
@@ -155,7 +170,10 @@ def _curved(
 
 
 def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface]) -> np.ndarray:
-    """Index of the surface that each facet's corners lie on exactly; of several, its centre decides."""
+    """Index of the surface that each facet's corners lie on exactly; of several, its centre decides.
+
+    Of two that coincide, the planes of a half part, it is the first, as in `geometry.tagged`.
+    """
     centres = corners[faces].mean(axis=1)
     off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
     away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
@@ -164,17 +182,28 @@ def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface])
         raise MeshQualityError(
             f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
         )
-    return np.where(lies, away, np.inf).argmin(axis=0)
+    away = np.where(lies, away, np.inf)
+    return (away < away.min(axis=0) + ON_SURFACE).argmax(axis=0)
 
 
 def _check(mesh: TetMesh, outline: Meridian, column: Column | None) -> None:
-    """Compare the volume with Pappus' theorem less the holes."""
-    wanted = outline.volume * mesh.sector_deg / 360
-    if column is not None:
-        wanted -= np.pi / 2 * column.hole_radius**2 * (column.depth - column.low)
-    volume = float(element_volumes(mesh.nodes, mesh.cells).sum())
-    if abs(volume / wanted - 1) > VOLUME_TOLERANCE:
-        raise MeshQualityError(f"the mesh holds {volume:.6g} mm³, the part {wanted:.6g} mm³")
+    """Compare volume and patch areas with Pappus' theorems less the holes, which all start in `mount`."""
+    share = mesh.sector_deg / 360
+    half_hole = 0.0 if column is None else np.pi / 2 * column.hole_radius**2
+    depth = 0.0 if column is None else column.depth - column.low
+    pairs = {
+        "volume": (
+            float(element_volumes(mesh.nodes, mesh.cells).sum()),
+            outline.volume * share - half_hole * depth,
+        )
+    }
+    for patch in {s.patch for s in outline.segments if s.patch}:
+        area = float(facet_areas(mesh.nodes, mesh.on(patch)).sum())
+        mine = outline.patch_area(patch) * share - (half_hole if patch == "mount" else 0.0)
+        pairs[patch] = (area, mine)
+    for what, (found, wanted) in pairs.items():
+        if not abs(found / wanted - 1) < TOLERANCE:
+            raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {wanted:.6g} in the part")
 
 
 def _cartesian(polar: np.ndarray) -> np.ndarray:
