@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from hidden.gear import Rig
 from hidden.record import Unit
 
@@ -22,7 +24,9 @@ class Case:
     decidable : all of them are at least 6.
     expected : causes that an `ambiguous` verdict must mention; tolerated : those that it may.
     seed : (run's seed, number) from which `cases.draw_case` makes the case again.
-    foreign : which foreign effect is hidden, if one is.
+    foreign : which foreign effect is hidden, if one is. absorbed : share of it, in quadrature, that
+        the best two named causes could absorb together.
+    unsized : causes whose magnitude the record's positions do not fix, true law or not.
     said : the law, the programme, the noise in one line.
     """
 
@@ -42,6 +46,21 @@ class Case:
     units: tuple[Unit, ...] = field(repr=False)
     rig: Rig = field(repr=False)
     foreign: str = ""
+    absorbed: float = 0.0
+    unsized: frozenset[str] = frozenset()
+
+    @property
+    def rows(self) -> int:
+        return sum(len(u.angle) for u in self.units)
+
+    @property
+    def file_cycles(self) -> np.ndarray | None:
+        """The file's cycle column; None where it has none."""
+        lines = [x.split(",") for x in self.csv.splitlines() if not x.startswith("#")]
+        if "cycle" not in lines[0]:
+            return None
+        at = lines[0].index("cycle")
+        return np.array([int(x[at]) for x in lines[1:]])
 
     @property
     def label(self) -> str:

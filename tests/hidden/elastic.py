@@ -169,6 +169,14 @@ def harmonics(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, str]:
     return amplitude, rng.uniform(0, 2 * np.pi, 3), said
 
 
+def fixes_harmonics(position_deg: np.ndarray) -> bool:
+    """Whether zero and harmonics 1, 2, 4 each follow from the positions: 7 unknowns, well apart."""
+    turn = np.radians(np.unique(position_deg))[:, None] * HARMONICS
+    columns = np.concatenate([np.ones((len(turn), 1)), np.sin(turn), np.cos(turn)], axis=1)
+    least = np.linalg.svd(columns, compute_uv=False)
+    return len(turn) >= columns.shape[1] and bool(least[-1] > 0.3 * np.sqrt(len(turn)))
+
+
 def periodic(position_deg: np.ndarray, amplitude: np.ndarray, phase: np.ndarray) -> np.ndarray:
     turn = np.radians(position_deg)[:, None] * HARMONICS
     return np.sin(turn + phase) @ amplitude

@@ -15,6 +15,10 @@ from hidden.oracle import held_out_rows, oracle
 Diagnose = Callable[[Case], dict]
 
 
+NEAR = 2 / 5**0.5
+"""Absorbed : left = 2 : 1, where the contract lets `named` stand beside what is unexplained."""
+
+
 @dataclass(frozen=True)
 class Size:
     """One true cause that was found: |found − true| / |true|, and the same in stated deviations."""
@@ -31,6 +35,7 @@ class Mark:
     first : the first cause named or suspected is the (or a) true one. exact : named, all of the
     truth and nothing else. wrong : named, with confidence, something that is not there; a cause
     whose own alternatives list a true one is not a confident name.
+    near : a foreign effect of which named causes absorb most (more than twice what they leave).
     gain : share of the error above the noise removed; oracle : what the true form would remove.
     """
 
@@ -53,6 +58,7 @@ class Mark:
     gain: float | None = None
     oracle: float | None = None
     fault: str = ""
+    near: bool = False
 
 
 def mark(case: Case, diagnose: Diagnose) -> Mark:
@@ -78,6 +84,7 @@ def mark(case: Case, diagnose: Diagnose) -> Mark:
         alternatives=others, first=bool(found) and found[0] in true and verdict != "consistent",
         exact=exact, wrong=wrong, right=_right(case, verdict, exact, {*found, *others}),
         seconds=seconds, sizes=_sizes(case, causes) if confident else (), fault=fault,
+        near=case.absorbed > NEAR,
     )  # fmt: skip
     return _with_gain(marked, case, said.get("gain") or {})
 
@@ -95,7 +102,7 @@ def _right(case: Case, verdict: str, exact: bool, mentioned: set[str]) -> bool:
 def _sizes(case: Case, causes: list[dict]) -> tuple[Size, ...]:
     true, sizes = dict(case.truth), []
     for c in causes:
-        if c["id"] in true and c.get("magnitude") is not None:
+        if c["id"] in true and c["id"] not in case.unsized and c.get("magnitude") is not None:
             off = abs(c["magnitude"] - true[c["id"]])
             std = c.get("magnitude_std") or np.nan
             sizes.append(Size(c["id"], float(off / abs(true[c["id"]])), float(off / std)))
@@ -106,7 +113,7 @@ def _with_gain(marked: Mark, case: Case, gain: dict) -> Mark:
     """Both shares over the same rows and over the true noise, so a generous floor gains nothing."""
     if not marked.exact or "rmse_before" not in gain:
         return marked
-    held = held_out_rows(gain, list(case.units))
+    held = held_out_rows(gain, case.rows, case.file_cycles)
     best = None if held is None else oracle(list(case.units), case.rig, held)
     if best is None or best.before**2 < 1.5 * best.floor**2:  # nothing above the noise to gain
         return marked

@@ -38,7 +38,7 @@ def _friction(p: Program, gear: Gear) -> Columns:
 
 def _hardening(p: Program, gear: Gear) -> Columns:
     a, s = np.abs(p.load), np.sign(p.load)
-    bends = (0.04, 0.08, 0.14, 0.22, 0.32, 0.45, 0.6, 0.75, 0.88)
+    bends = (0.05, 0.09, 0.15, 0.22, 0.32, 0.45, 0.6, 0.75)
     return [*(s * np.minimum(a, b) for b in bends), *(-s * np.maximum(a - b, 0) for b in bends)]
 
 

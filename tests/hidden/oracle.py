@@ -29,18 +29,19 @@ class Gain:
         return (self.before**2 - self.after**2) / (self.before**2 - self.floor**2)
 
 
-def held_out_rows(gain: Mapping, units: list[Unit]) -> np.ndarray | None:
-    """True where the diagnosis held a row out; None where it does not say in a way one can follow."""
-    n = sum(len(u.angle) for u in units)
-    out = np.zeros(n, bool)
-    if (rows := gain.get("held_out_rows")) is not None:
-        out[np.asarray(rows, int)] = True
+def held_out_rows(gain: Mapping, rows: int, cycles: np.ndarray | None) -> np.ndarray | None:
+    """True where the diagnosis held a row out; None where it does not say in a way one can follow.
+
+    `rows` is how many the file has, `cycles` its column of that name.
+    """
+    if (listed := gain.get("held_out_rows")) is not None:
+        out = np.zeros(rows, bool)
+        out[np.asarray(listed, int)] = True
         return out
     found = re.fullmatch(r"cycles? ([\d, and]+)", str(gain.get("held_out", "")))
-    if not found:
+    if not found or cycles is None:
         return None
-    cycles = [int(x) for x in re.findall(r"\d+", found[1])]
-    return np.isin(np.concatenate([u.program.cycle[u.program.rows] for u in units]), cycles)
+    return np.isin(cycles, [int(x) for x in re.findall(r"\d+", found[1])])
 
 
 def oracle(units: list[Unit], rig: Rig, held: np.ndarray) -> Gain | None:

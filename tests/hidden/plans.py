@@ -19,10 +19,10 @@ FOR_CAUSE: dict[str, Plan] = {
     "clearance_offset": Plan(air=("none", *MOVING_AIR), cycles=(3, 8)),
     "thermal_clearance": Plan(air=MOVING_AIR, with_columns=("temperature_C",), cycles=(3, 8)),
     "kinematic_error": Plan(
-        places=MANY_PLACES, with_columns=("input_angle_deg", "cycle", "time_s"), cycles=(4, 8)
+        places=MANY_PLACES, with_columns=("input_angle_deg", "cycle", "time_s"), cycles=(5, 14)
     ),
     "position_stiffness": Plan(
-        places=MANY_PLACES, with_columns=("input_angle_deg", "cycle", "time_s"), cycles=(4, 8)
+        places=MANY_PLACES, with_columns=("input_angle_deg", "cycle", "time_s"), cycles=(5, 14)
     ),
     "direction_asymmetry": Plan(),
     "creep": Plan(wave=HELD, with_columns=("time_s",)),

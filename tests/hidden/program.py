@@ -20,7 +20,7 @@ class Program:
     ----------
     time : s. torque : N·m, true. progress : cycles done, fractional. cycle : whole number, from 1.
     temperature : °C, of the air. position : deg, where the wave generator is locked.
-    rows : indices of the grid that are recorded.
+    rows : indices of the grid that are recorded; the grid may begin before them, at times below 0.
     hold : s, the shortest hold; 0 where there is none.
     quickest : s, the shortest cycle.
     columns : optional columns that the file has.
@@ -71,6 +71,7 @@ class Plan:
     one_sided: bool = False
     rows: tuple[int, int] = (300, 3000)
     extra: dict[str, float] = field(default_factory=dict)
+    unrecorded: float = 0.25
 
 
 def draw_program(plan: Plan, peak: float, rng: np.random.Generator) -> Program:
@@ -88,6 +89,10 @@ def draw_program(plan: Plan, peak: float, rng: np.random.Generator) -> Program:
     start = np.concatenate([[0], np.cumsum(periods)])
     t = (start[:-1, None] + periods[:, None] * phase).ravel()
     q = (peaks[:, None] * level).ravel()
+    before = rng.random() < plan.unrecorded
+    if before:  # the gear was worked once, and nobody wrote it down: friction does not start fresh
+        t = np.concatenate([periods[0] * (phase[:-1] - 1), t])
+        q = np.concatenate([peaks[0] * level[:-1], q])
     keep = np.concatenate([[True], np.diff(t) > 1e-9])
     t, q = t[keep], q[keep]
     count = int(np.exp(rng.uniform(*np.log(plan.rows))))
@@ -100,10 +105,14 @@ def draw_program(plan: Plan, peak: float, rng: np.random.Generator) -> Program:
     place = str(rng.choice(plan.places))
     columns = _columns(plan, air, place, rng)
     flats = np.diff(t)[np.diff(q) == 0]
+    also = [
+        *(["several rates"] if several else []),
+        *(["several peaks"] if amplitudes else []),
+        *(["worked before"] if before else []),
+    ]
     said = (
-        f"{wave}, {n} cycles of {period:.0f} s{', several rates' if several else ''}"
-        f"{', several peaks' if amplitudes else ''}, peak {peak:.3g} N·m, {count} rows {sampling}, "
-        f"air {air}, positions {place}, columns {'+'.join(columns) or 'none'}"
+        f"{', '.join([wave, f'{n} cycles of {period:.0f} s', *also])}, peak {peak:.3g} N·m, {count} rows "
+        f"{sampling}, air {air}, positions {place}, columns {'+'.join(columns) or 'none'}"
     )
     return Program(
         time=time,

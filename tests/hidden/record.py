@@ -79,19 +79,59 @@ def as_csv(units: list[Unit], rng: np.random.Generator) -> str:
     several = len(units) > 1
     columns = units[0].program.columns
     header = [*(["unit"] if several else []), *columns, "torque_Nm", "angle_arcsec"]
+    first_cycle, clock = (
+        int(rng.integers(2)),
+        float(rng.choice([0.0, rng.uniform(0, 1e5)], p=[0.7, 0.3])),
+    )
     order = rng.permutation(len(header)) if rng.random() < 0.2 else np.arange(len(header))
-    lines = [",".join(header[k] for k in order)]
+    lines = ["# test rig 3, wave generator locked"] if rng.random() < 0.2 else []
+    name = _names(rng)
+    lines.append(",".join(name.get(header[k], header[k]) for k in order))
     for number, unit in enumerate(units, 1):
         p, rows = unit.program, unit.program.rows
         air = p.temperature[rows] + rng.normal(size=len(rows)) * 0.03
         text = {
             "unit": [str(number)] * len(rows),
-            "time_s": [f"{x:.4f}" for x in p.time[rows]],
-            "cycle": [str(x) for x in p.cycle[rows]],
+            "time_s": [
+                _digits((x + clock) * FACTOR.get(name.get("time_s", ""), 1)) for x in p.time[rows]
+            ],
+            "cycle": [str(x - 1 + first_cycle) for x in p.cycle[rows]],
             "temperature_C": [f"{x:.2f}" for x in air],
             "input_angle_deg": [f"{x:.1f}" for x in p.position[rows]],
-            "torque_Nm": [f"{x:.6g}" for x in unit.torque],
-            "angle_arcsec": [f"{x:.3f}" for x in unit.angle],
+            "torque_Nm": [
+                _digits(x * FACTOR.get(name.get("torque_Nm", ""), 1)) for x in unit.torque
+            ],
+            "angle_arcsec": [
+                _digits(x * FACTOR.get(name.get("angle_arcsec", ""), 1)) for x in unit.angle
+            ],
         }
         lines += [",".join(row) for row in zip(*(text[header[k]] for k in order), strict=True)]
     return "\n".join(lines) + "\n"
+
+
+FACTOR = {
+    "torque_Nmm": 1e3,
+    "angle_arcmin": 1 / 60,
+    "angle_deg": 1 / 3600,
+    "angle_mrad": np.pi / 648,
+    "time_min": 1 / 60,
+    "time_h": 1 / 3600,
+}
+"""What the contract lets a file write instead, per N·m, arcsec and s."""
+
+
+def _names(rng: np.random.Generator) -> dict[str, str]:
+    """In one file of six, other units in the header."""
+    if rng.random() > 1 / 6:
+        return {}
+    angle = str(rng.choice(["angle_arcmin", "angle_deg", "angle_mrad"]))
+    return {
+        "torque_Nm": str(rng.choice(["torque_Nm", "torque_Nmm"])),
+        "angle_arcsec": angle,
+        "time_s": str(rng.choice(["time_s", "time_min", "time_h"])),
+    }
+
+
+def _digits(x: float) -> str:
+    """Ten digits: more than the encoder and the clock have."""
+    return f"{x:.10g}"

@@ -57,6 +57,7 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
         _share("pair: wrong name with confidence", pairs, "wrong", most=0.04),
         _share("nothing hidden: consistent", kind["clean"], "right", least=0.98),
         _share("foreign: unknown", kind["foreign"], "right", least=0.95),
+        _share("foreign, less than half mimicked", [m for m in kind["foreign"] if not m.near], "right"),
         _share("foreign: wrong name with confidence", kind["foreign"], "wrong"),
         _share("cannot tell: ambiguous, right rivals", kind["undecidable"], "right", least=0.90),
         _share("single below 6 units: wrong name",

@@ -83,7 +83,7 @@ def draw_drift(s: Setting, rng: np.random.Generator) -> Hidden:
     scale = total / float(shape(np.array(end)))
     return Hidden(
         "sensor_drift",
-        per_hour(scale * shape(s.program.time), s.program.time),
+        per_hour(*(x[s.program.rows] for x in (scale * shape(s.program.time), s.program.time))),
         f"drift {kind}, {total:+.2f}″ in {end / HOUR:.3f} h",
         lambda p, g: scale * shape(p.time),
     )

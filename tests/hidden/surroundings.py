@@ -18,7 +18,7 @@ def temperature(
     """°C at every time [s]; `air` as in `Plan.air`, `extra["constant_C"]` fixes the constant one."""
     span = rng.uniform(6, 25) * rng.choice([-1, 1], p=[0.2, 0.8])
     first = REFERENCE_C + rng.uniform(-2, 6)
-    share = time / time[-1]
+    share = np.maximum(time, 0) / time[-1]
     if air == "none":
         return np.full_like(time, REFERENCE_C)
     if air == "constant":

@@ -107,14 +107,19 @@ def test_a_crash_is_a_wrong_answer_with_its_reason() -> None:
 
 
 def test_held_out_cycles_are_read_from_words_or_rows() -> None:
-    case = of_kind("single")
-    units = list(case.units)
-    cycle = np.concatenate([u.program.cycle[u.program.rows] for u in units])
-    words = held_out_rows({"held_out": "cycles 1, 2"}, units)
-    assert np.array_equal(words, cycle <= 2)
-    assert held_out_rows({"held_out": "unit 3"}, units) is None
-    rows = held_out_rows({"held_out": "unit 3", "held_out_rows": [0, 4]}, units)
+    cycle = np.array([0, 0, 1, 1, 2])
+    words = held_out_rows({"held_out": "cycles 1, 2"}, 5, cycle)
+    assert np.flatnonzero(words).tolist() == [2, 3, 4]
+    assert held_out_rows({"held_out": "cycles 1, 2"}, 5, None) is None
+    assert held_out_rows({"held_out": "unit 3"}, 5, cycle) is None
+    rows = held_out_rows({"held_out": "unit 3", "held_out_rows": [0, 4]}, 5, None)
     assert np.flatnonzero(rows).tolist() == [0, 4]
+
+
+def test_the_cycle_column_is_the_file_s() -> None:
+    case = next(c for c in cases() if ",cycle" in c.csv or c.csv.startswith("cycle"))
+    own = np.concatenate([u.program.cycle[u.program.rows] for u in case.units])
+    assert len(set(case.file_cycles - own)) == 1  # the file may count from 0
 
 
 def test_allowance_is_two_binomial_deviations() -> None:
