@@ -22,10 +22,17 @@ def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
 
 
 def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
-    """The sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane."""
+    """The sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane.
+
+    At 360° it is closed: the last copy's plane is the first one's, and no plane of symmetry is left.
+    That takes an even number of copies of a sector whose two planes have their own names.
+    """
     times = round(sector_deg / mesh.sector_deg)
     if times < 1 or abs(times * mesh.sector_deg - sector_deg) > 1e-9 * sector_deg:
         raise ValueError(f"{sector_deg} is no multiple of the sector {mesh.sector_deg}")
+    closed = sector_deg == 360 and times > 1
+    if closed and (times % 2 or times == 2):
+        raise ValueError(f"copies of the sector {mesh.sector_deg} cannot be closed to 360°")
     n = len(mesh.nodes)
     r = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1])
     angle = np.arctan2(mesh.nodes[:, 1], mesh.nodes[:, 0])
@@ -40,12 +47,15 @@ def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
         if k:
             plane = shared[(k - 1) % 2]
             owner[k, plane] = owner[k - 1, plane]
+        if closed and k == times - 1:
+            owner[k, shared[1]] = owner[0, shared[1]]
         phi = (k + 1) * step - angle if odd else k * step + angle
         nodes.append(np.column_stack([r * np.cos(phi), r * np.sin(phi), mesh.nodes[:, 2]]))
         cells.append(owner[k][mesh.cells[:, MIRRORED_CELL] if odd else mesh.cells])
         names = [mesh.patches[i] for i in mesh.facet_patch]
         drop = {inner[k % 2]} if k < times - 1 else set()
         drop |= {inner[(k - 1) % 2]} if k else set()
+        drop |= {SYMMETRY_START} if closed and k in (0, times - 1) else set()
         keep = np.array([name not in drop for name in names])
         facets.append(owner[k][(mesh.facets[:, MIRRORED_FACET] if odd else mesh.facets)[keep]])
         patches.append(_renamed(mesh, mesh.facet_patch[keep], last=k == times - 1 and odd))

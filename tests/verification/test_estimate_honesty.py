@@ -7,26 +7,31 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hole_free import CASES, REFERENCE, solved
+from hole_free import CASES, FINE, KINDS, REFERENCE, SOLID, TOLERANCE, solved
 
 
-def ratio(name: str) -> float:
-    pair = solved(name)
+def ratio(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> float:
+    pair = solved(name, kind, tolerance)
     return pair.true_error / pair.estimated_error
 
 
+@pytest.mark.parametrize(("kind", "tolerance"), KINDS)
 @pytest.mark.parametrize("name", CASES)
-def test_true_error_over_estimate(name: str, record) -> None:
+def test_true_error_over_estimate(name: str, kind: str, tolerance: float, record) -> None:
     """The demand: between 0.3 and 3 on the finest mesh, the one that is reported."""
-    pair = solved(name)
-    record(f"True over estimated error, {name}", "demanded", (0.3, 3.0), ratio(name), digits=2)
+    if (name, tolerance) == (SOLID, FINE):
+        pytest.skip("fTetWild to 0.1 % takes minutes")
+    pair, found = solved(name, kind, tolerance), ratio(name, kind, tolerance)
+    how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
+    what = f"True over estimated error, {name}, to {tolerance:.1%}{how}"
+    record(what, "demanded", (0.3, 3.0), found, digits=2)
     # the bounds' half width is what the true error is uncertain by: small beside the estimate
     assert REFERENCE / 2 * pair.exact.K_Nm_per_rad < 0.2 * pair.estimated_error
-    assert 0.3 < ratio(name) < 3.0
+    assert 0.3 < found < 3.0
 
 
 def test_ten_designs_and_no_bias() -> None:
     """An estimate that is honest on the whole has a median near 1, not only extremes in range."""
     assert len(CASES) == 10
-    # the scale comes from two meshes, each with its own scatter: 0.8 to 1.6 per design, measured
+    # one mesh takes the usual scale, two have their own, each with its scatter: 0.8 to 1.8 measured
     assert 0.6 < np.median([ratio(name) for name in CASES]) < 1.6

@@ -1,6 +1,6 @@
 """Solid K against two-sided axisymmetric bounds (Michell 1899) on hole-free parts.
 
-The references come from another discretisation, another formulation and another mesher.
+The references come from another discretisation and another formulation.
 """
 
 from __future__ import annotations
@@ -9,26 +9,35 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from hole_free import CASES, EXAMPLES, solved
+from hole_free import CASES, EXAMPLES, FINE, KINDS, SOLID, mesher, solved
 
 from fea.solid.cases import Model, torsion
 from fea.solid.defaults import first_spec
 from fea.solid.mesh import mesh_surface
 from fea.solid.sizing import Grading
 from fea.solid.stress import energy_error
+from fea.solid.unfold import unfolded
 from fea.types import Elastic
 from geometry.load import design_from
 from geometry.tagged import tagged_surface
 
 
+@pytest.mark.parametrize(("kind", "tolerance"), KINDS)
 @pytest.mark.parametrize("name", CASES)
-def test_solid_stiffness_lies_within_its_bounds(name: str, record) -> None:
-    pair = solved(name)
+def test_solid_stiffness_lies_within_its_bounds(
+    name: str, kind: str, tolerance: float, record
+) -> None:
+    if (name, tolerance) == (SOLID, FINE):
+        pytest.skip("fTetWild to 0.1 % takes minutes")
+    pair = solved(name, kind, tolerance)
     found, exact = pair.solid, pair.exact
+    how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
     record(
-        f"K of {name}", "Michell 1899, bounds", exact.K_Nm_per_rad, found.K_Nm_per_rad, "N·m/rad"
-    )
-    assert found.K_Nm_per_rad == pytest.approx(exact.K_Nm_per_rad, rel=0.006)  # the issue's demand
+        f"K of {name}, to {tolerance:.1%}{how}", "Michell 1899, bounds", exact.K_Nm_per_rad,
+        found.K_Nm_per_rad, "N·m/rad",
+    )  # fmt: skip
+    # the issue's demand is 0.6 % for all; the tolerance asked for is the program's own promise
+    assert found.K_Nm_per_rad == pytest.approx(exact.K_Nm_per_rad, rel=tolerance)
     assert found.lower_Nm_per_rad < exact.upper_Nm_per_rad
     assert found.upper_Nm_per_rad > exact.lower_Nm_per_rad
     for level in found.levels:
@@ -36,8 +45,25 @@ def test_solid_stiffness_lies_within_its_bounds(name: str, record) -> None:
         assert level.K_reaction_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
 
 
-def test_wedge_agrees_with_the_full_model(record) -> None:
-    """Six holes: 1/12 with antisymmetry against the whole cup, meshed apart (the issue: 0.3 %)."""
+def test_wedge_is_the_full_model(record) -> None:
+    """Six holes: 1/12 with antisymmetry against the same mesh reflected all round, held by nothing else.
+
+    The reflected mesh has the wedge's symmetry, so the two solutions are the same but for rounding.
+    """
+    design = design_from(tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8")))
+    material = Elastic.of(design.material.flexspline)
+    coarse = replace(first_spec(design, "flexspline"), grading=Grading(1.0, 4.0))
+    wedge = mesher(design, "flexspline", "chosen")(coarse)
+    whole = unfolded(wedge, 360.0)
+    assert len(whole.cells) == 12 * len(wedge.cells)
+    K = [torsion(Model.of(m, material), "mesh").K_energy for m in (wedge, whole)]
+    record("K of the six-hole cup, 1/12 against whole", "symmetry", K[1], K[0], "N·m/rad")
+    assert K[0] == pytest.approx(K[1], rel=1e-8)  # direct solves lose 1e-10 to 1e-12
+
+
+@pytest.mark.long
+def test_wedge_agrees_with_the_full_model_meshed_apart(record) -> None:
+    """The same by fTetWild, with a mesh of its own for each (the issue: 0.3 %)."""
     design = design_from(tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8")))
     material = Elastic.of(design.material.flexspline)
     first = first_spec(design, "flexspline")
@@ -50,5 +76,5 @@ def test_wedge_agrees_with_the_full_model(record) -> None:
         error = energy_error(mesh, solved.displacement, material).relative
         # both meshes are coarse: compare with the estimated error taken off, scaled alike (1.9)
         K[degrees] = solved.K_energy * (1 - 1.9 * error)
-    record("K of the six-hole cup, 1/12 against whole", "symmetry", K[360.0], K[30.0], "N·m/rad")
+    record("K of the six-hole cup, two meshes", "symmetry", K[360.0], K[30.0], "N·m/rad")
     assert K[30.0] == pytest.approx(K[360.0], rel=0.003)
