@@ -9,7 +9,7 @@ import numpy as np
 
 from hidden.case import Case
 from hidden.clearance import draw_offset, draw_thermal, draw_wear
-from hidden.effect import LEVELS, Hidden, Setting, nothing
+from hidden.effect import LEVELS, CannotShowError, Hidden, Setting, nothing
 from hidden.elastic import (
     draw_asymmetry,
     draw_hardening,
@@ -139,7 +139,7 @@ def _single(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case
     bench = _Bench(FOR_CAUSE[cause], rng, 1 if cause in CALIBRATED else _several(rng, 0.05))
     try:
         hidden = CAUSES[cause](bench.setting(level), rng)
-    except ValueError:  # the programme drawn cannot show this cause
+    except CannotShowError:  # the programme drawn cannot show this cause
         return None
     units = bench.measured((hidden,))
     left, rival = standing(units, bench.rig, (cause,)).single(0, cause)
@@ -161,7 +161,7 @@ def _pair(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case |
     bench = _Bench(plan, rng)
     try:
         hidden = tuple(CAUSES[c](bench.setting(level), rng) for c in (one, two))
-    except ValueError:
+    except CannotShowError:
         return None
     units = bench.measured(hidden)
     found = standing(units, bench.rig, (one, two))
@@ -182,7 +182,7 @@ def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Cas
         shape, said = unit_gain(rng) if several else KINDS[kind](setting, rng)
         one = foreign(kind, shape, said, 1.0)
         found = standing(bench.measured((one,), only), bench.rig, (one.cause,))
-    except ValueError:
+    except CannotShowError:
         return None
     left = found.of_two(0)
     if left < 1e-6:
@@ -208,7 +208,7 @@ def _undecidable(rng: np.random.Generator, seed: tuple[int, int], cause: str) ->
     bench = _Bench(plan, rng)
     try:
         hidden = CAUSES[hide](bench.setting(level), rng)
-    except ValueError:
+    except CannotShowError:
         return None
     units = bench.measured((hidden,))
     found = standing(units, bench.rig, (hide,))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hidden.effect import Hidden, Setting
+from hidden.effect import CannotShowError, Hidden, Setting
 from hidden.program import Program
 from hidden.surroundings import REFERENCE_C
 
@@ -33,7 +33,7 @@ def draw_thermal(s: Setting, rng: np.random.Generator) -> Hidden:
     """The gap follows the temperature at once or with a lag of up to a third of a cycle."""
     reach = float(np.abs(s.program.temperature - REFERENCE_C).max())
     if reach < 2:
-        raise ValueError("no temperature to speak of")
+        raise CannotShowError("no temperature to speak of")
     per_kelvin = s.windup * s.size(0.05, 0.12, 0.3, rng) / reach
     if rng.random() < 0.4:
         per_kelvin = -min(per_kelvin, 0.9 * s.gear.gap / reach)

@@ -13,6 +13,10 @@ from hidden.program import Program
 LEVELS = ("slight", "clear", "strong")
 
 
+class CannotShowError(ValueError):
+    """The programme drawn cannot show this effect: another one is drawn."""
+
+
 @dataclass(frozen=True)
 class Hidden:
     """Attributes.

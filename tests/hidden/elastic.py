@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from hidden.effect import Hidden, Setting
+from hidden.effect import CannotShowError, Hidden, Setting
 
 Curve = Callable[[np.ndarray], np.ndarray]
 """Twist / (compliance · peak) against load / peak, odd, growing, its slope falling with |load|."""
@@ -147,6 +147,8 @@ def chord_asymmetry(twist_plus: float, twist_minus: float) -> float:
 
 def draw_position_stiffness(s: Setting, rng: np.random.Generator) -> Hidden:
     """Compliance with harmonics 1, 2, 4 of the wave generator's angle, one of them leading."""
+    if not tells_harmonics(s.program.position, s.program.cycle):
+        raise CannotShowError("too few positions for their harmonics")
     share = min(s.size(0.04, 0.09, 0.2, rng), 0.4)
     amplitude, phase, said = harmonics(rng)
     scale = share * s.gear.compliance
@@ -171,10 +173,23 @@ def harmonics(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, str]:
 
 def fixes_harmonics(position_deg: np.ndarray) -> bool:
     """Whether zero and harmonics 1, 2, 4 each follow from the positions: 7 unknowns, well apart."""
-    turn = np.radians(np.unique(position_deg))[:, None] * HARMONICS
-    columns = np.concatenate([np.ones((len(turn), 1)), np.sin(turn), np.cos(turn)], axis=1)
+    columns = _harmonic_columns(np.unique(position_deg))
     least = np.linalg.svd(columns, compute_uv=False)
-    return len(turn) >= columns.shape[1] and bool(least[-1] > 0.3 * np.sqrt(len(turn)))
+    return len(columns) >= columns.shape[1] and bool(least[-1] > 0.3 * np.sqrt(len(columns)))
+
+
+def tells_harmonics(position_deg: np.ndarray, cycle: np.ndarray) -> bool:
+    """Whether harmonics are more than another name for a zero (or a K) of its own in each cycle.
+
+    As many harmonics as cycles fit anything; two cycles to spare are asked for.
+    """
+    places = position_deg[np.unique(cycle, return_index=True)[1]]
+    return len(places) >= int(np.linalg.matrix_rank(_harmonic_columns(places), tol=1e-6)) + 2
+
+
+def _harmonic_columns(position_deg: np.ndarray) -> np.ndarray:
+    turn = np.radians(position_deg)[:, None] * HARMONICS
+    return np.concatenate([np.ones((len(turn), 1)), np.sin(turn), np.cos(turn)], axis=1)
 
 
 def periodic(position_deg: np.ndarray, amplitude: np.ndarray, phase: np.ndarray) -> np.ndarray:

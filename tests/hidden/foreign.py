@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hidden.effect import Hidden, Setting
+from hidden.effect import CannotShowError, Hidden, Setting
 from hidden.gear import Gear
 from hidden.program import Program
 
@@ -135,5 +135,5 @@ def foreign(kind: str, shape: Shape, said: str, size: float) -> Hidden:
 def _centred(x: np.ndarray) -> np.ndarray:
     span = np.ptp(x)
     if span < 2:
-        raise ValueError("no change of temperature to speak of")
+        raise CannotShowError("no change of temperature to speak of")
     return (x - x[0]) / span

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from hidden.effect import Hidden, Setting, nothing
-from hidden.elastic import harmonics, periodic
+from hidden.effect import CannotShowError, Hidden, Setting, nothing
+from hidden.elastic import harmonics, periodic, tells_harmonics
 
 
 def draw_kinematic(s: Setting, rng: np.random.Generator) -> Hidden:
     """Position error with harmonics 1, 2, 4 of the wave generator's angle, one leading."""
+    if not tells_harmonics(s.program.position, s.program.cycle):
+        raise CannotShowError("too few positions for their harmonics")
     size = s.windup * s.size(0.04, 0.1, 0.25, rng)
     amplitude, phase, said = harmonics(rng)
     return Hidden(

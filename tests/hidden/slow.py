@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hidden.clearance import lagged
-from hidden.effect import Hidden, Setting
+from hidden.effect import CannotShowError, Hidden, Setting
 from hidden.fit import amounts
 from hidden.program import Program
 
@@ -19,7 +19,7 @@ HOUR = 3600.0
 def draw_creep(s: Setting, rng: np.random.Generator) -> Hidden:
     """Logarithmic, power-law or Kelvin-chain creep; steps of torque superpose."""
     if not s.program.hold:
-        raise ValueError("creep needs holds")
+        raise CannotShowError("creep needs holds")
     percent = s.size(0.7, 1.8, 4.5, rng)
     kernel, law = KERNELS[int(rng.integers(len(KERNELS)))](s.program, rng)
     scale = percent / per_decade(kernel, s.program.hold)

@@ -121,21 +121,32 @@ def test_outliers_are_isolated_and_far() -> None:
     assert np.abs(angle[out]).min() > (8 - 4) * 0.5  # 8 deviations, less 4 of the noise under it
 
 
-def test_clean_records_lie_within_calibration() -> None:
-    """Residuals about the drawn gear are the noise: mean square of the whitened ones is 1."""
-    squares = []
-    for k in range(30):
-        for unit in draw_case(11, k, "clean").units:
-            t = unit.torque
-            clear = (
-                np.abs(t) > 5 * np.hypot(unit.noise.torque, unit.noise.crossing)
-            ) & ~unit.outlier
-            line = unit.gear.zero + unit.gear.compliance * t + unit.gear.gap * np.sign(t) / 2
-            rest = (unit.angle - line)[clear]
-            expected = unit.spread.independent + unit.spread.coloured**2
-            squares.append(np.mean(rest**2) / expected[clear].mean())
-    # coloured records have some 30 independent samples: 25 % each, 5 % on the mean of 30
-    assert np.mean(squares) == pytest.approx(1.0, abs=0.15)
+def test_what_is_left_beside_the_truth_is_the_noise() -> None:
+    """About the drawn gear and its effects the mean square of the residual is the claimed variance."""
+    ratio = []
+    for k in range(60):
+        for unit in draw_case(11, k).units:
+            width = 5 * np.hypot(unit.noise.torque, unit.noise.crossing)
+            clear = np.minimum(np.abs(unit.torque), np.abs(unit.true_torque)) > width
+            clear &= ~unit.outlier
+            half = np.sign(unit.torque) / 2
+            line = unit.gear.zero + unit.gear.compliance * unit.torque + unit.gear.gap * half
+            rest = (unit.angle - line - sum(unit.effects))[clear]
+            claimed = unit.spread.independent + unit.spread.coloured**2
+            ratio.append(np.mean(rest**2) / claimed[clear].mean())
+    # a coloured record has some 30 independent samples: 25 % each, 3 % on the mean of 60
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.1)
+    assert max(ratio) < 2.5  # 6 deviations of the worst record: no effect is left out
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_clean_records_stay_within_calibration(number: int) -> None:
+    """K and gap as drawn cost less than 3 deviations each: no clean record is off by a finding."""
+    case = draw_case(14, number, "clean")
+    for unit in case.units:
+        assert abs(unit.gear.gap - case.rig.gap) < 4 * case.rig.gap_std
+        assert abs(unit.gear.compliance / case.rig.compliance - 1) < 0.065
+        assert unit.effects == ()
 
 
 def test_drawn_gears_have_the_stated_uncertainty() -> None:
