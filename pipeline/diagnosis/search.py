@@ -12,11 +12,11 @@ from pipeline.diagnosis.terms import Race, Term, column_indices
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
-UNNAMED_COST = 6.0
+UNNAMED_COST = 9.0
 """Against each competitor: at equal evidence a named cause is preferred."""
 ELEMENT_COST = 1.0
 """Against a further element of a cause already named."""
-BEAM, PER_OWNERS = 14, 3
+BEAM, PER_OWNERS, PER_SINGLE = 18, 3, 8
 MOST_TERMS = 8
 WORTH = 0.5
 """Nats that a larger set must gain for the search to go on."""
@@ -130,7 +130,7 @@ class Search:
             score = np.where(valid, gain + prior, -np.inf)
             for owner in set(group.owners):
                 mine = np.flatnonzero(group.is_owner[owner])
-                order = mine[np.argsort(-score[mine])][:2]
+                order = mine[np.argsort(-score[mine])][: PER_SINGLE if not c.terms else 2]
                 for j in order:
                     term = int(group.members[j])
                     if np.isfinite(score[j]) and term not in c.terms:
@@ -149,7 +149,8 @@ class Search:
         count: dict[frozenset[str], int] = {}
         for c in sorted(grown, key=lambda c: -c.score):
             owners = c.owners(self.race)
-            if count.get(owners, 0) < PER_OWNERS:
+            single = len(owners) == 1 and len(c.terms) == 1
+            if count.get(owners, 0) < (PER_SINGLE if single else PER_OWNERS):
                 count[owners] = count.get(owners, 0) + 1
                 kept.append(c)
             if len(kept) == BEAM:

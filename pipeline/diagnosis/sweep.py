@@ -22,11 +22,13 @@ from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import History, Sweep
 from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, solved
-from pipeline.diagnosis.terms import Columns, Race, columns_of, race, refined
+from pipeline.diagnosis.terms import Columns, Race, columns_of, race, with_terms
+from pipeline.diagnosis.tune import tuned
 from pipeline.diagnosis.weighing import Weighed, weigh
 
-ROUNDS = 2
+ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
+TUNINGS = 3
 OFFSET_NATS = 6.0
 OFFSET_LEAST = 0.004
 """Of the largest torque: a smaller offset moves nothing that counts."""
@@ -95,30 +97,45 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
 
 
 def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
-    """Race, with the noise estimated anew from what the best set leaves."""
-    for round_ in range(ROUNDS):
-        now = _race(prepared)
-        search = Search(now)
-        best = search.run()
-        prepared = _with_noise(prepared, solved(now, best.terms).residual(), len(best.terms))
-        columns = refined(prepared.columns, _interesting(search, best), round_)
-        prepared = replace(prepared, columns=columns)
-    return prepared, weigh(_race(prepared))
+    """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
+    for _ in range(ROUNDS):
+        now = _tuned_race(_race(prepared))
+        best = Search(now).run()
+        left = solved(now, best.terms).residual()
+        prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=now.columns)
+    now = _tuned_race(_race(prepared))
+    return replace(prepared, columns=now.columns), weigh(now)
 
 
-def _interesting(search: Search, best: Candidate) -> list[int]:
-    """Terms whose shapes are worth refining: of the best set, and of each rival's best set."""
-    race_ = search.race
-    chosen = dict.fromkeys(best.terms)
-    mine = best.named(race_)
-    ranked = sorted(search.best.values(), key=lambda c: -c.score)
-    for cause in {t.cause.id for t in race_.terms if t.cause} - mine:
-        for c in ranked:
-            names = c.named(race_)
-            if cause in names and len(names) <= max(1, len(mine)):
-                chosen.update(dict.fromkeys(i for i in c.terms if race_.terms[i].owner == cause))
-                break
-    return list(chosen)
+def _tuned_race(now: Race) -> Race:
+    """The race with tuned shapes: of the best named set, of each cause alone, of the best of all.
+
+    Named causes are tuned before any competitor is let in: a shape from a coarse grid leaves a
+    misfit, which a competitor would fill.
+    """
+    named = Search(now, lambda t: t.cause is not None)
+    best = named.run()
+    for _ in range(TUNINGS):
+        sets = [best.terms, *_alone(named, best)]
+        shapes = [pair for terms in sets if terms for pair in tuned(now, terms).shapes]
+        wider = with_terms(now, shapes)
+        if wider is now:
+            break
+        now = wider
+        named = Search(now, lambda t: t.cause is not None)
+        before, best = best.score, named.run([best.terms, ()])
+        if best.score < before + 1.0:
+            break
+    return now
+
+
+def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
+    """Best set of each cause that alone explains a good part of what the best set does."""
+    found = []
+    for owners, c in search.best.items():
+        if len(owners) == 1 and c.terms != best.terms and c.evidence > 0.5 * best.evidence:
+            found.append(c.terms)
+    return found
 
 
 def _race(prepared: Prepared) -> Race:

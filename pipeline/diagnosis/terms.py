@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
@@ -31,6 +31,8 @@ class Term:
     at: slice
     prior: np.ndarray
     """(k,) standard deviations of the amplitudes."""
+    positive: bool
+    """Whether its amplitudes may not be negative."""
     log_share: float
     """Log of the share of its cause's (or channel's) prior that this shape has."""
 
@@ -38,10 +40,6 @@ class Term:
     def owner(self) -> str:
         """Cause id, or `?channel`."""
         return self.cause.id if self.cause else f"?{self.channel}"
-
-    @property
-    def positive(self) -> bool:
-        return self.cause is not None and self.cause.positive
 
 
 @dataclass(frozen=True)
@@ -56,8 +54,38 @@ class Columns:
     terms: tuple[Term, ...]
 
 
+NOISE_WINDOWS = (2, 6)
+"""Rows on each side over which the torque is taken as straight."""
+
+
+def jitter(history: History, width: int) -> np.ndarray:
+    """(n,) torque less a straight line through its neighbours: its noise, and little else.
+
+    With noise in the torque reading, whatever knows the true torque better explains the angle better.
+    These columns take that away from every term, so that no cause is found in the torque's noise.
+    """
+    out = np.zeros(len(history))
+    for rows in history.unit_slices:
+        n = len(rows)
+        torque = history.torque_Nm[rows]
+        t = np.arange(n, dtype=float) if history.time_s is None else history.time_s[rows]
+        t = (t - t[0]) / max(np.ptp(t), 1e-12)
+        low, high = np.maximum(np.arange(n) - width, 0), np.minimum(np.arange(n) + width + 1, n)
+
+        def summed(values: np.ndarray, low: np.ndarray = low, high: np.ndarray = high) -> np.ndarray:
+            total = np.concatenate([[0.0], np.cumsum(values)])
+            return total[high] - total[low]
+
+        count = (high - low).astype(float)
+        mean_t, mean = summed(t) / count, summed(torque) / count
+        spread = summed(t * t) / count - mean_t**2
+        slope = (summed(t * torque) / count - mean_t * mean) / np.maximum(spread, 1e-15)
+        out[rows] = torque - mean - slope * (t - mean_t)
+    return out
+
+
 def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
-    """(n, b) zero of each unit, deviation of compliance and gap (common, and per unit if several)."""
+    """(n, b) zero of each unit, deviation of compliance and gap (common, and per unit if several), torque noise."""
     h, p = rig.history, rig.prediction
     units = [np.isin(np.arange(len(h)), rows).astype(float) for rows in h.unit_slices]
     columns = [*units, h.torque_Nm, h.sign / 2]
@@ -66,6 +94,9 @@ def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
         for own in units:
             columns += [own * h.torque_Nm, own * h.sign / 2]
             prior += [p.compliance_std, p.gap_std_arcsec]
+    for width in NOISE_WINDOWS:
+        columns.append(jitter(h, width))
+        prior.append(p.compliance)
     return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)
 
 
@@ -77,12 +108,11 @@ def columns_of(rig: Rig, known: dict[str, Cause]) -> Columns:
     width = 0
     for cause in known.values():
         shapes = cause.shapes(rig)
-        for shape in shapes:
-            block = cause.columns(shape, rig.history)
+        for shape, block in zip(shapes, cause.columns_of_all(shapes, rig.history), strict=True):
             k = block.shape[1]
             spread = np.full(k, cause.spread(shape, rig))
             terms.append(
-                Term(cause, shape, "", cause.title, slice(width, width + k), spread, -log(len(shapes)))
+                Term(cause, shape, "", cause.title, slice(width, width + k), spread, cause.positive, -log(len(shapes)))
             )
             blocks.append(block.astype(np.float32))
             width += k
@@ -94,49 +124,11 @@ def columns_of(rig: Rig, known: dict[str, Cause]) -> Columns:
     return Columns(rig, base, prior, np.hstack(blocks), tuple(terms))
 
 
-FACTORS = (0.6, 0.8, 1.25, 1.6)
-"""By which a tunable shape parameter is varied at first; each further round takes the root."""
-
-
-def refined(columns: Columns, chosen: Sequence[int], round_: int) -> Columns:
-    """The same columns with further shapes beside the chosen terms' own.
-
-    A parameter of 0 or 1 switches something off and is left alone.
-    """
-    blocks, terms = [columns.all], list(columns.terms)
-    width = columns.all.shape[1]
-    known = {_shape_key(t) for t in columns.terms}
-    for i in chosen:
-        term = columns.terms[i]
-        if term.cause is None:
-            continue
-        for key in term.cause.tunable:
-            if term.shape[key] in (0.0, 1.0):
-                continue
-            for factor in FACTORS:
-                shape = {**term.shape, key: term.shape[key] * factor ** (0.5**round_)}
-                new = Term(
-                    term.cause, shape, "", term.what, slice(width, width + 1),
-                    np.full(1, term.cause.spread(shape, columns.rig)), term.log_share,
-                )  # fmt: skip
-                if _shape_key(new) in known or not term.cause.possible(shape):
-                    continue
-                known.add(_shape_key(new))
-                blocks.append(term.cause.columns(shape, columns.rig.history).astype(np.float32))
-                terms.append(new)
-                width += 1
-    return Columns(columns.rig, columns.base, columns.base_prior, np.hstack(blocks), tuple(terms))
-
-
-def _shape_key(term: Term) -> tuple[str, tuple[tuple[str, float], ...]]:
-    return term.owner, tuple(sorted((k, round(float(v), 9)) for k, v in term.shape.items()))
-
-
 def _competitor(rival: Unnamed, rivals: Sequence[Unnamed], at: int, rig: Rig) -> Term:
     alike = sum(r.channel == rival.channel for r in rivals)
     k = rival.columns.shape[1]
     prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec / np.sqrt(k))
-    return Term(None, {}, rival.channel, rival.what, slice(at, at + k), prior, -log(alike))
+    return Term(None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike))
 
 
 @dataclass(frozen=True)
@@ -162,6 +154,16 @@ class Race:
     base_cross: np.ndarray
     total: float
     rows: int
+    y: np.ndarray
+    base: np.ndarray
+    x: np.ndarray
+    """(r,), (r, b), (r, P) whitened; x scaled to unit prior."""
+
+    def prepared(self, values: np.ndarray) -> np.ndarray:
+        """(n, k) further columns of the record, whitened like all others."""
+        stretches = stretches_of(self.columns.rig.history, self.kept)
+        block = max(1, int(self.kept.sum()) // MOST_ROWS)
+        return _summed(self.noise.whitened(values[self.kept].astype(float), stretches), block)
 
     @property
     def terms(self) -> tuple[Term, ...]:
@@ -170,28 +172,68 @@ class Race:
 
 def race(columns: Columns, target: np.ndarray, kept: np.ndarray, noise: Noise) -> Race:
     """Whiten the kept rows and form all products."""
-    stretches = stretches_of(columns.rig.history, kept)
+    empty = np.empty((0, 0))
+    bare = Race(
+        columns, noise, kept, target, empty, np.empty(0), np.empty(0), empty, np.empty(0), empty,
+        0.0, 0, np.empty(0), empty, empty,
+    )  # fmt: skip
+    y = bare.prepared(target[:, None])[:, 0]
+    base = bare.prepared(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
-    block = max(1, int(kept.sum()) // MOST_ROWS)
-
-    def prepared(values: np.ndarray) -> np.ndarray:
-        return _summed(noise.whitened(values[kept].astype(float), stretches), block)
-
-    y = prepared(target[:, None])[:, 0]
-    base = prepared(columns.base)
     step = 64
-    wide = [prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)]
+    wide = [bare.prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)]
     x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
+    block = max(1, int(kept.sum()) // MOST_ROWS)
     base_gram = base.T @ base + np.diag(columns.base_prior**-2)
     base_right = base.T @ y
     cross = base.T @ x
     solved = np.linalg.solve(base_gram, np.column_stack([base_right, cross]))
     gram = x.T @ x - cross.T @ solved[:, 1:]
     right = x.T @ y - cross.T @ solved[:, 0]
-    return Race(
-        columns, noise, kept, target, gram, right, prior, base_gram, base_right, cross,
-        float(y @ y), len(y) * block,
+    return replace(
+        bare, gram=gram, right=right, scale=prior, base_gram=base_gram, base_right=base_right,
+        base_cross=cross, total=float(y @ y), rows=len(y) * block, y=y, base=base, x=x,
     )  # fmt: skip
+
+
+def with_terms(old: Race, shapes: Sequence[tuple[Term, Shape]]) -> Race:
+    """The race with further shapes, each beside a term of the same cause; known ones are skipped."""
+    known = {_shape_key(t.owner, t.shape) for t in old.terms}
+    columns, terms, blocks = old.columns, list(old.terms), []
+    width = columns.all.shape[1]
+    for like, shape in shapes:
+        key = _shape_key(like.owner, shape)
+        if like.cause is None or key in known:
+            continue
+        known.add(key)
+        block = like.cause.columns(shape, columns.rig.history)
+        k = block.shape[1]
+        spread = np.full(k, like.cause.spread(shape, columns.rig))
+        terms.append(replace(like, shape=shape, at=slice(width, width + k), prior=spread))
+        blocks.append(block.astype(np.float32))
+        width += k
+    if not blocks:
+        return old
+    new = np.hstack(blocks)
+    prior = np.concatenate([t.prior for t in terms[len(old.terms) :]])
+    x = old.prepared(new) * prior
+    cross = old.base.T @ x
+    solved = np.linalg.solve(old.base_gram, np.column_stack([old.base_right, cross]))
+    mixed = old.x.T @ x - old.base_cross.T @ solved[:, 1:]
+    own = x.T @ x - cross.T @ solved[:, 1:]
+    return replace(
+        old,
+        columns=replace(columns, all=np.hstack([columns.all, new]), terms=tuple(terms)),
+        gram=np.block([[old.gram, mixed], [mixed.T, own]]),
+        right=np.concatenate([old.right, x.T @ old.y - cross.T @ solved[:, 0]]),
+        scale=np.concatenate([old.scale, prior]),
+        base_cross=np.hstack([old.base_cross, cross]),
+        x=np.hstack([old.x, x]),
+    )
+
+
+def _shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
+    return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
 
 
 def _summed(values: np.ndarray, block: int) -> np.ndarray:

@@ -12,10 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.effects.operators import lags, rising, stops
+from pipeline.diagnosis.effects.torque_program import ramp_s
 from pipeline.diagnosis.prediction import REFERENCE_C
 
+NEW_SHARE = 0.25
+"""Of a column's own size: one of which less is new beside torque and gap is no competitor."""
 SPLINE = 6
+LEADS = "output leads torque"
+LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
+LEADING_LAGS = (0.05, 0.15, 0.4)
 STEPS = 25
 MOST_LEVELS = 8
 """Columns of one competitor at most."""
@@ -32,17 +38,27 @@ class Unnamed:
     channel: str
     what: str
     columns: np.ndarray
+    positive: bool = False
 
 
 def competitors(rig: Rig) -> list[Unnamed]:
-    """All flexible terms that a rig's record has the channels for; columns of unit rms."""
+    """All flexible terms that a rig's record has the channels for.
+
+    Columns have unit rms, less what zero, compliance and gap can be.
+    """
+    h = rig.history
+    # a wave in time with the torque's own period is the torque without its noise, and would win by that
+    free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
+    inverse = np.linalg.pinv(free)
     found = []
-    for make in (_torque, _angle, _direction, _time, _cycle, _temperature, _position, _unit):
+    for make in (_torque, _angle, _direction, _leading, _time, _cycle, _temperature, _position, _unit):
         for channel, what, columns in make(rig):
-            rms = np.sqrt((columns**2).mean(axis=0))
-            good = rms > 1e-9
+            rest = columns - free @ (inverse @ columns)
+            was = np.sqrt(((columns - columns.mean(axis=0)) ** 2).mean(axis=0))
+            rms = np.sqrt((rest**2).mean(axis=0))
+            good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
-                found.append(Unnamed(channel, what, columns[:, good] / rms[good]))
+                found.append(Unnamed(channel, what, rest[:, good] / rms[good], make is _leading))
     return found
 
 
@@ -76,9 +92,19 @@ def _direction(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     basis = np.column_stack([direction, direction * torque, direction * torque**2, direction * torque**3])
     yield "direction", "a difference between rising and falling torque", basis
-    yield "direction", "output leads torque", direction[:, None]
-    bow = direction * (1 - torque**2)
-    yield "direction", "output leads torque", bow[:, None]
+
+
+def _leading(rig: Rig) -> Made:
+    """Loops run through the wrong way round: friction and lag with their sign reversed."""
+    yield "direction", LEADS, rising(rig.history, 0.02 * rig.torque_Nm)[:, None]
+    thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
+    for r, state in zip(thresholds, stops(rig.history, thresholds, np.zeros(len(thresholds))).T, strict=True):
+        yield "direction", LEADS, (state / r)[:, None]
+        yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
+    ramp = ramp_s(rig.history)
+    for share in LEADING_LAGS if ramp > 0 else ():
+        lagging = lags(rig.history.torque_Nm, rig.history, np.array([share * ramp]))[:, 0]
+        yield "direction", LEADS, (rig.history.torque_Nm - lagging)[:, None]
 
 
 def _time(rig: Rig) -> Made:

@@ -95,7 +95,9 @@ def _rivals(
     found: list[tuple[float, str, Candidate]] = []
     for other in sorted(others):
         search = Search(
-            race, lambda t, other=other: t.owner == other or (t.owner in present and t.owner != cause)
+            race,
+            lambda t, other=other: t.owner == other
+            or (t.cause is not None and t.owner in present and t.owner != cause),
         )
         rival = search.run([start], most=len(best.terms) + 3)
         if other not in rival.named(race):

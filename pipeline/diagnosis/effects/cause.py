@@ -101,6 +101,10 @@ class Cause(ABC):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         """(n, k) angle [arcsec] for one unit of each of the k amplitudes."""
 
+    def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        """Columns of several shapes at once."""
+        return [self.columns(shape, history) for shape in shapes]
+
     @abstractmethod
     def spread(self, shape: Shape, rig: Rig) -> float:
         """Prior standard deviation of an amplitude: the size that such effects have in real gears."""

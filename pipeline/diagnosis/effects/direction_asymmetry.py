@@ -11,22 +11,39 @@ from pipeline.diagnosis.record import History
 
 
 class DirectionAsymmetry(Cause):
-    """Compliance c ± a for torque of either sign: twist a·|T| with a [arcsec per N·m]."""
+    """Compliance c ± a for torque of either sign: twist a·|T| with a [arcsec per N·m].
+
+    At the largest torque; between, the difference may grow a little slower or faster than torque
+    (`exponent`), or set in smoothly (`rounding_Nm`).
+    """
 
     id = "direction_asymmetry"
     title = "stiffness that differs with the torque's direction"
     unit = "%"
+    tunable = ("exponent", "rounding_Nm")
     reveals = "the same sweep with the gear turned round on the rig, so that the torque cell's own sign is excluded"
 
     def shapes(self, rig: Rig) -> list[Shape]:
-        return [{}]
+        return [
+            {"exponent": n, "rounding_Nm": r * rig.torque_Nm, "largest_torque_Nm": rig.torque_Nm}
+            for n, r in ((1.0, 0.0), (0.85, 0.0), (1.2, 0.0), (1.0, 0.15), (1.0, 0.4))
+        ]
+
+    def possible(self, shape: Shape) -> bool:
+        """Far from |T| the curve is some other even function, not two stiffnesses."""
+        rounding = shape["rounding_Nm"] / shape["largest_torque_Nm"]
+        return 0.75 <= shape["exponent"] <= 1.35 and rounding <= 0.5
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        return np.abs(history.torque_Nm)[:, None]
+        largest, rounding = shape["largest_torque_Nm"], shape["rounding_Nm"]
+        x = (np.hypot(history.torque_Nm, rounding) - rounding) / (
+            np.hypot(largest, rounding) - rounding
+        )
+        return (largest * x ** shape["exponent"])[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
         return 0.15 * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        """(K₊ − K₋) over their mean: −2a/c for compliances c ± a, exactly."""
+        """(K₊ − K₋) over their mean: −2a/c for chord compliances c ± a, exactly."""
         return -200 * sum(e.amplitudes[0] for e in elements) / rig.compliance

@@ -16,6 +16,7 @@ THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
 SPREAD_ELEMENTS = 14
+NOISE_WIDTHS = 6.0
 LOOP_ROWS = 201
 DEADBAND = 0.001
 """Reversals of torque below this share of the largest (or twice its noise) are noise."""
@@ -47,7 +48,10 @@ class FrictionHysteresis(Cause):
         largest = rig.torque_Nm
         deadband = max(DEADBAND * largest, 2 * torque_noise_Nm(rig.history))
         found: list[Shape] = []
-        for share in THRESHOLDS:
+        # an element as narrow as the torque's noise would follow that noise, and be fitted to it
+        least = NOISE_WIDTHS * torque_noise_Nm(rig.history) / largest
+        shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-3]]
+        for share in shares:
             for spread, loaded, held, start in VARIANTS:
                 if share > 0.5 and (loaded or spread):
                     continue
@@ -58,16 +62,45 @@ class FrictionHysteresis(Cause):
                 })  # fmt: skip
         return found
 
+    def possible(self, shape: Shape) -> bool:
+        return shape["threshold_Nm"] >= 3 * shape["deadband_Nm"]
+
     def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return self.columns_of_all([shape], history)[0]
+
+    def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        stopped = [s for s in shapes if s["spread"] != DAHL]
+        sloped = [s for s in shapes if s["spread"] == DAHL]
+        states = dict(zip(map(id, sloped), self._dahls(sloped, history), strict=True))
+        if stopped:
+            parts = [self._thresholds(int(s["spread"]), s["threshold_Nm"]) for s in stopped]
+            each = np.concatenate([r for r, _ in parts])
+            start = np.concatenate([np.full(len(r), s["start"]) for s, (r, _) in zip(stopped, parts, strict=True)])
+            # the even and exponential spreads repeat thresholds; each pair is run once
+            pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
+            run = stops(history, pairs[:, 0], pairs[:, 1])
+            at = 0
+            for s, (r, weight) in zip(stopped, parts, strict=True):
+                mine = where[at : at + len(r)]
+                states[id(s)] = run[:, mine] @ (weight / r)
+                at += len(r)
+        return [self._column(s, states[id(s)], history) for s in shapes]
+
+    @staticmethod
+    def _dahls(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        if not shapes:
+            return []
+        widths = np.array([s["threshold_Nm"] for s in shapes])
+        return list(dahl(history, widths, shapes[0]["deadband_Nm"]).T)
+
+    def _column(self, shape: Shape, state: np.ndarray, history: History) -> np.ndarray:
         r, largest = shape["threshold_Nm"], shape["largest_torque_Nm"]
-        if shape["spread"] == DAHL:
-            state = dahl(history, r, shape["deadband_Nm"])
-            at_end = float(np.tanh(largest / r))
-        else:
-            each, weight = self._thresholds(int(shape["spread"]), r)
-            state = stops(history, each, np.full(len(each), shape["start"])) @ (weight / each)
-            at_end = float(weight @ np.minimum(1, largest / each))
         if not shape["held"]:
+            if shape["spread"] == DAHL:
+                at_end = float(np.tanh(largest / r))
+            else:
+                each, weight = self._thresholds(int(shape["spread"]), r)
+                at_end = float(weight @ np.minimum(1, largest / each))
             state = state - at_end * history.torque_Nm / largest
         if shape["loaded"]:
             state = state * np.abs(history.torque_Nm) / largest

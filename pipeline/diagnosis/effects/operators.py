@@ -37,6 +37,17 @@ def play(history: History, width_Nm: float) -> np.ndarray:
     return history.torque_Nm - stops(history, width, np.zeros(1))[:, 0]
 
 
+def within_cycle(history: History) -> np.ndarray:
+    """(n,) share of its cycle's rows that lie before each row."""
+    out = np.zeros(len(history))
+    for rows in history.unit_slices:
+        cycle = history.cycle[rows]
+        for c in np.unique(cycle):
+            own = rows[cycle == c]
+            out[own] = np.arange(len(own)) / len(own)
+    return out
+
+
 def rising(history: History, width_Nm: float) -> np.ndarray:
     """(n,) 1 while torque rises, −1 while it falls, 0 before it first moves; noise does not count."""
     moved = play(history, width_Nm)
@@ -48,22 +59,22 @@ def rising(history: History, width_Nm: float) -> np.ndarray:
     return out
 
 
-def dahl(history: History, stiffness_Nm: float, deadband_Nm: float) -> np.ndarray:
-    """(n,) state z of one element of Dahl's, dz/dT = (1 − z·sign dT)/d, from z = 0; d [N·m].
+def dahl(history: History, stiffness_Nm: np.ndarray, deadband_Nm: float) -> np.ndarray:
+    """(n, m) states z of elements of Dahl's, dz/dT = (1 − z·sign dT)/d, from z = 0; d (m,) [N·m].
 
     Exact for torque that is monotone between rows. Source: Dahl, A solid friction model, Aerospace
     Corporation TOR-158(3107-18) (1968).
     """
     moved = play(history, deadband_Nm) + deadband_Nm * rising(history, deadband_Nm)
-    out = np.empty(len(moved))
+    out = np.empty((len(moved), len(stiffness_Nm)))
     for rows in history.unit_slices:
         steps = np.diff(moved[rows], prepend=0.0)
-        keep = np.exp(-np.abs(steps) / stiffness_Nm)
+        keep = np.exp(-np.abs(steps)[:, None] / stiffness_Nm)
         side = np.sign(steps)
-        z, block = 0.0, np.empty(len(rows))
+        state, block = np.zeros(len(stiffness_Nm)), np.empty((len(rows), len(stiffness_Nm)))
         for i in range(len(rows)):
-            z = side[i] + (z - side[i]) * keep[i]
-            block[i] = z
+            state = side[i] + (state - side[i]) * keep[i]
+            block[i] = state
         out[rows] = block
     return out
 

@@ -31,7 +31,7 @@ class RateDependence(Cause):
 
     def shapes(self, rig: Rig) -> list[Shape]:
         ramp = ramp_s(rig.history)
-        if ramp <= 0 or rig.history.time_s is None:
+        if ramp <= 0:
             return []
         rate = rig.torque_Nm / ramp
         found: list[Shape] = [

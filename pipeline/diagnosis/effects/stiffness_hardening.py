@@ -9,11 +9,13 @@ import numpy as np
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.record import History
 
-LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4}
+LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
+TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
+"""Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
 KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.8)
 SCALES = (0.1, 0.2, 0.35, 0.6, 1.0)
 POWERS = (0.5, 0.7, 0.85)
-LIMITS = {0: (0.08, 0.85), 1: (0.07, 1.0), 2: (0.35, 0.88), 3: (1.0, 1.0), 4: (0.07, 1.2)}
+LIMITS = {0: (0.1, 0.85), 1: (0.09, 1.0), 2: (0.45, 0.88), 3: (1.0, 1.0), 4: (0.09, 1.2), 5: (0.08, 0.5)}
 """Of the parameter, by law."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
 """Between which shares of the largest torque the contract takes chord stiffness."""
@@ -22,7 +24,7 @@ CHORDS = ((0.05, 0.20), (0.80, 1.00))
 class StiffnessHardening(Cause):
     """Odd, concave twist a·g(|T|)·sign T [arcsec], g = 1 at the largest torque, a ≥ 0.
 
-    Laws: a knee (K1, K2), tanh, a power below 1, the linear less the cubic, rational. `held` is the
+    Laws: a knee (K1, K2), two knees (K1, K2, K3), tanh, a power below 1, the linear less the cubic, rational. `held` is the
     share of its chord (0: at full load as simulated) that is taken off: real soft wind-up may leave
     the stiffness as simulated at full load, on the chord, or at zero.
     """
@@ -31,24 +33,35 @@ class StiffnessHardening(Cause):
     title = "stiffness that grows with load (soft wind-up)"
     unit = "1"
     positive = True
-    tunable = ("parameter",)
+    tunable = ("parameter", "second", "share")
     reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
 
     def shapes(self, rig: Rig) -> list[Shape]:
         laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]
         laws += [("power", p) for p in POWERS] + [("cubic", 1.0)]
         laws += [("rational", s) for s in SCALES]
-        return [
+        found: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.torque_Nm}
             for law, p in laws
             for held in (0, 1, 2)
             if not (law == "power" and held == 2)  # infinitely soft at zero
         ]
+        found += [
+            {
+                "law": LAWS["two knees"], "parameter": p, "second": q, "share": share, "held": held,
+                "largest_torque_Nm": rig.torque_Nm,
+            }
+            for p, q in TWO_KNEES
+            for share in (0.35, 0.65)
+            for held in (0, 1, 2)
+        ]  # fmt: skip
+        return found
 
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
         low, high = LIMITS[int(shape["law"])]
-        return low <= shape["parameter"] <= high
+        second = shape.get("second", 0.6)
+        return low <= shape["parameter"] <= high and shape["parameter"] < second <= 0.9
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
@@ -81,6 +94,9 @@ class StiffnessHardening(Cause):
                 return x**p
             case 3:
                 return 1.5 * x - 0.5 * x**3
+            case 5:
+                q, share = shape["second"], shape["share"]
+                return share * np.minimum(x, p) / p + (1 - share) * np.minimum(x, q) / q
             case _:
                 return x * (1 + p) / (x + p)
 
@@ -94,5 +110,7 @@ class StiffnessHardening(Cause):
                 return float(1 / p / np.tanh(1 / p))
             case 3:
                 return 1.5
+            case 5:
+                return shape["share"] / p + (1 - shape["share"]) / shape["second"]
             case _:
                 return (1 + p) / p

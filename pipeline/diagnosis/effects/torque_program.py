@@ -6,53 +6,72 @@ import numpy as np
 
 from pipeline.diagnosis.record import History
 
-STILL = 0.04
-"""A hold's torque stays within this share of the largest torque."""
-FEWEST = 6
+STILL = 0.08
+"""A hold's torque moves at less than this share of the ramps' rate,"""
+MOVING = 0.3
+"""and just before and after it at more than this."""
+SPAN = 0.04
+"""Over a whole hold torque changes by less than this share of the largest."""
+FEWEST = 5
+WINDOW = 3
+
+
+def local_rates(history: History, rows: np.ndarray) -> np.ndarray:
+    """(m,) slope of torque over time [N·m/s] at one unit's rows, over three rows on each side."""
+    assert history.time_s is not None
+    torque, t = history.torque_Nm[rows], history.time_s[rows]
+    n = len(rows)
+    low, high = np.maximum(np.arange(n) - WINDOW, 0), np.minimum(np.arange(n) + WINDOW, n - 1)
+    half = (high - low) // 2
+    # difference of the means of the later and the earlier rows: as good as a fit, and simple
+    total = np.concatenate([[0.0], np.cumsum(torque)])
+    clock = np.concatenate([[0.0], np.cumsum(t)])
+    count = np.maximum(half, 1)
+    later = (total[high + 1] - total[high + 1 - count]) / count
+    early = (total[low + count] - total[low]) / count
+    step = (clock[high + 1] - clock[high + 1 - count]) / count - (clock[low + count] - clock[low]) / count
+    return (later - early) / np.maximum(step, 1e-12)
+
+
+def ramp_rate(history: History) -> float:
+    """Typical torque per second while it moves [N·m/s]; 0 without time."""
+    if history.time_s is None:
+        return 0.0
+    found = []
+    for rows in history.unit_slices:
+        if len(rows) < 2 * WINDOW or np.ptp(history.time_s[rows]) == 0:
+            continue
+        rate = np.abs(local_rates(history, rows))
+        fast = np.quantile(rate, 0.95)
+        moving = rate[rate > MOVING * fast]
+        if len(moving):
+            found.append(float(np.median(moving)))
+    return float(np.median(found)) if found else 0.0
 
 
 def holds(history: History) -> list[np.ndarray]:
-    """Rows of each stretch where torque stands still for at least `FEWEST` rows.
-
-    Ramps are told from holds by the rate: a hold moves less than `STILL` of the largest torque over a
-    time in which a ramp would move ten times that.
-    """
-    if history.time_s is None:
+    """Rows of each stretch where torque stands still between two moves, at least `FEWEST` rows."""
+    fast = ramp_rate(history)
+    if fast == 0:
         return []
-    band = STILL * np.abs(history.torque_Nm).max()
+    largest = float(np.abs(history.torque_Nm).max())
+    noise = torque_noise_Nm(history)
+    span = SPAN * largest + 6 * noise
     found = []
     for rows in history.unit_slices:
-        torque, t = history.torque_Nm[rows], history.time_s[rows]
-        shortest = 10 * band / max(typical_rate(torque, t), 1e-300)
-        i = 0
-        while i < len(rows):
-            low = high = torque[i]
-            j = i
-            while j + 1 < len(rows):
-                low, high = min(low, torque[j + 1]), max(high, torque[j + 1])
-                if high - low > band:
-                    break
-                j += 1
-            if j - i + 1 >= FEWEST and t[j] - t[i] > shortest:
-                found.append(rows[i : j + 1])
-                i = j + 1
-            else:
-                i += 1
+        if len(rows) < 2 * WINDOW:
+            continue
+        assert history.time_s is not None
+        gap = np.median(np.diff(history.time_s[rows]))
+        still = max(STILL * fast, 3 * noise / (np.sqrt(WINDOW) * WINDOW * max(gap, 1e-12)))
+        rate = np.abs(local_rates(history, rows))
+        edges = np.diff(np.r_[0, (rate < min(still, MOVING * fast)).astype(int), 0])
+        for i, j in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+            before, after = rate[max(0, i - FEWEST) : i], rate[j : j + FEWEST]
+            sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
+            if j - i >= FEWEST and sharp and np.ptp(history.torque_Nm[rows[i:j]]) < span:
+                found.append(rows[i:j])
     return found
-
-
-def typical_rate(torque_Nm: np.ndarray, time_s: np.ndarray) -> float:
-    """Torque per second while it moves: path of a torque thinned to steps of a tenth of its range."""
-    step = 0.1 * np.ptp(torque_Nm)
-    if step == 0 or np.ptp(time_s) == 0:
-        return 0.0
-    rates, last = [], 0
-    for i in range(1, len(torque_Nm)):
-        moved = abs(torque_Nm[i] - torque_Nm[last])
-        if moved >= step:
-            rates.append(moved / max(time_s[i] - time_s[last], 1e-12))
-            last = i
-    return float(np.quantile(rates, 0.75)) if rates else 0.0
 
 
 def longest_hold_s(history: History) -> float:
@@ -63,16 +82,9 @@ def longest_hold_s(history: History) -> float:
 
 
 def ramp_s(history: History) -> float:
-    """Time of a ramp from zero to the largest torque."""
-    if history.time_s is None:
-        return 0.0
-    largest = np.abs(history.torque_Nm).max()
-    found = [
-        largest / rate
-        for rows in history.unit_slices
-        if (rate := typical_rate(history.torque_Nm[rows], history.time_s[rows])) > 0
-    ]
-    return min(found, default=0.0)
+    """Time of a ramp from zero to the largest torque, 0 without time or movement."""
+    rate = ramp_rate(history)
+    return float(np.abs(history.torque_Nm).max()) / rate if rate > 0 else 0.0
 
 
 def torque_noise_Nm(history: History) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.record import History
+from pipeline.diagnosis.effects.operators import within_cycle
 
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 
@@ -15,7 +16,7 @@ RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 class Wear(Cause):
     """Gap w·g(cycle) with w ≥ 0 [arcsec]; g runs from 0 in the first to 1 in the last cycle.
 
-    `exponent` 1: steady; ½: slowing down. `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
+    It grows between cycles, or all along them (`steady` = 1). `exponent` 1: evenly; ½: slowing down. `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
     """
 
     id = "wear"
@@ -29,16 +30,23 @@ class Wear(Cause):
         if rig.cycles < 2:
             return []
         last = rig.cycles - 1
-        found: list[Shape] = [{"exponent": n, "run_in_cycles": 0.0, "last": last} for n in (1.0, 0.5)]
+        laws = [(1.0, 0.0), (0.5, 0.0)]
         if rig.cycles > 2:
-            found += [{"exponent": 1.0, "run_in_cycles": c, "last": last} for c in RUN_IN_CYCLES]
-        return found
+            laws += [(1.0, c) for c in RUN_IN_CYCLES]
+        return [
+            {"exponent": n, "run_in_cycles": c, "last": last, "steady": steady}
+            for n, c in laws
+            for steady in (0, 1)
+        ]
 
     def possible(self, shape: Shape) -> bool:
         return 0.3 <= shape["exponent"] <= 1.3
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        return (self._growth(shape, history.cycle) * history.sign / 2)[:, None]
+        cycle = history.cycle.astype(float)
+        if shape["steady"]:
+            cycle = cycle + within_cycle(history)
+        return (self._growth(shape, cycle) * history.sign / 2)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
         return 0.5 * rig.scale_arcsec
