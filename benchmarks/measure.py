@@ -9,6 +9,7 @@ import statistics
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,24 +19,31 @@ TIME_LIMIT_S = 600.0
 
 
 def run(
-    command: Sequence[str], folder: Path, extra: Mapping[str, str] | None = None
+    command: Sequence[str],
+    folder: Path,
+    extra: Mapping[str, str] | None = None,
+    memory: int = MEMORY_LIMIT,
 ) -> dict[str, Any]:
     """Start a command in `folder` and wait; start-up is part of what is timed.
 
-    Returns its JSON with "wall_s" and "peak_MB" added, or "failed" with the reason.
+    Returns its JSON with "wall_s", "cpu_s" (user and system, its children too) and "peak_MB" added, or
+    "failed" with the reason.
     """
     with open(folder / "out.txt", "w+b") as out, open(folder / "err.txt", "w+b") as err:
         began = time.perf_counter()
         child = subprocess.Popen(
             list(command), cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
-            env=os.environ | dict(extra or {}), preexec_fn=_limits, start_new_session=True,
+            env=os.environ | dict(extra or {}), preexec_fn=partial(_limit, memory), start_new_session=True,
         )  # fmt: skip
         status, usage = _wait(child, began + TIME_LIMIT_S)
         wall = time.perf_counter() - began
         out.seek(0)
         err.seek(0)
         said, complaint = out.read().decode(errors="replace"), err.read().decode(errors="replace")
-    found = {"wall_s": round(wall, 3), "peak_MB": round(usage.ru_maxrss / 1024)}
+    found = {
+        "wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
+        "peak_MB": round(usage.ru_maxrss / 1024),
+    }  # fmt: skip
     if status is None:
         return found | {"failed": f"stopped after {TIME_LIMIT_S:.0f} s"}
     if status != 0:
@@ -44,8 +52,8 @@ def run(
     return found | _last_json(said)
 
 
-def _limits() -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
+def _limit(memory: int) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
 
 def _wait(child: subprocess.Popen, until: float) -> tuple[int | None, Any]:
@@ -82,6 +90,7 @@ def repeated(runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return dict(good[len(good) // 2]) | {
         "wall_s": statistics.median(walls),
         "wall_range_s": [walls[0], walls[-1]],
+        "cpu_s": statistics.median(r["cpu_s"] for r in good),
         "runs": len(good),
         "peak_MB": max(r["peak_MB"] for r in good),
     }

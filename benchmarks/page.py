@@ -25,7 +25,9 @@ HEAD = """# Speed, side by side
 
 Written by `benchmarks/run.py`; the figures are in `benchmarks/results.json`. Every time is of a whole
 process, from its start to K_b of the load case `uniform`: imports, CAD or STEP reading, meshing and
-solving. Median of five runs, the range in brackets; the programs take turns within each round."""
+solving. Median of five runs, the range in brackets; the programs take turns within each round, and what
+takes more than 30 s runs once. CPU is user and system seconds of all cores: it suffers less from other work
+on the machine than the time does."""
 
 HOW = """## How it was done
 
@@ -35,8 +37,8 @@ HOW = """## How it was done
 - Peers: the STEP file that `flexspline export` writes, Netgen's mesher, refined along the circles where
   the stress is singular. NGSolve: curved elements of order 2 or 3, static condensation, its sparse
   Cholesky, all cores. CalculiX: C3D10 on Netgen's curved second-order mesh, SPOOLES, all cores.
-  Edge lengths, grading and order were searched for each accuracy, and the fastest that reaches it is
-  quoted: a peer is told when to stop, by somebody who knows the answer. None of them gives an
+  Edge lengths, grading and order were searched for each accuracy on the hole-free cup, the fastest of them
+  tried on the cup with holes, and the fastest that reaches the accuracy is quoted: a peer is told when to stop, by somebody who knows the answer. None of them gives an
   error bound of its own.
 - `setting`: order, largest edge / edge at the singular circles, Netgen's grading."""
 
@@ -44,11 +46,14 @@ HOW = """## How it was done
 def machine(r: Row) -> str:
     m = r["machine"]
     load = r["load_at_timing"][0]
+    busy = (
+        " That is other work: the times below were taken on a loaded machine." if load > 0.5 else ""
+    )
     return (
         f"{m['cpu']}, {m['cores']} cores, {m['memory_GB']} GB, {m['system']}; Python {m['python']},"
         f" flexspline {m['flexspline']} ({m['commit']}), NGSolve {m['NGSolve']}, CalculiX"
         f" {m['CalculiX']}, pytetwild {m['pytetwild']}, pypardiso {m['pypardiso']}, numpy {m['numpy']},"
-        f" scipy {m['scipy']}. Load average when the timing began: {load:.2f}."
+        f" scipy {m['scipy']}. Load average when the timing began: {load:.2f}.{busy}"
     )
 
 
@@ -83,12 +88,13 @@ def times(r: Row, case: str) -> Iterable[str]:
     for accuracy in ACCURACIES_PCT:
         rows = [
             f"### To {accuracy:g} %\n",
-            "| program | time [s] | own bound [%] | true error [%] | unknowns | memory [MB] | setting |",
-            "|---|---|---|---|---|---|---|",
+            "| program | time [s] | CPU [s] | own bound [%] | true error [%] | unknowns | memory [MB]"
+            " | setting |",
+            "|---|---|---|---|---|---|---|---|",
         ]
         for program in programs(r, case):
             t = fastest(r, case, accuracy, program)
-            rows.append(f"| {program} | not reached | | | | | |" if t is None else line(t))
+            rows.append(f"| {program} | not reached | | | | | | |" if t is None else line(t))
         yield "\n".join(rows)
 
 
@@ -99,9 +105,10 @@ def line(t: Row) -> str:
     elif "bound_pct" in t:
         bound += ", estimated"
     low, high = t["wall_range_s"]
+    spread = f"({low:.2f} to {high:.2f})" if t["runs"] > 1 else "(one run)"
     setting = t["setting"] or f"tolerance_pct = {t['accuracy_pct']:g}"
     return (
-        f"| {t['program']} | {t['wall_s']:.2f} ({low:.2f} to {high:.2f}) | {bound}"
+        f"| {t['program']} | {t['wall_s']:.2f} {spread} | {t['cpu_s']:.2f} | {bound}"
         f" | {t['error_pct']:+.3f} | {t['unknowns']} | {t['peak_MB']} | {setting} |"
     )
 

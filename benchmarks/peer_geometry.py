@@ -72,9 +72,11 @@ def _patch(face: Any, j: Job) -> str:
     outer = min(radii) > p["ring_radius"] - NEAR
     if outer and abs(min(z) - low) < NEAR and abs(max(z) - high) < NEAR:
         return "mesh"
+    # all corners of a hole's half wall lie in the plane too, its centre does not
+    middle = (face.center.x, face.center.y, face.center.z)
     for name, degrees in (("start", 0.0), ("end", j.sector)):
         a = math.radians(degrees)
-        off = max(abs(-x * math.sin(a) + y * math.cos(a)) for x, y, _ in points)
+        off = max(abs(-x * math.sin(a) + y * math.cos(a)) for x, y, _ in [*points, middle])
         if j.sector < 360 and off < NEAR and max(radii) > min(radii) + 1:
             return name
     return "free"

@@ -1,10 +1,10 @@
 """Every benchmark in one run, side by side; writes results.json here and docs/benchmarks.md.
 
     pip install ngsolve; apt-get install calculix-ccx
-    python benchmarks/run.py [--peers-python PYTHON] [--quick]
+    python benchmarks/run.py [--peers-python PYTHON] [--resume] [--rounds 5]
 
-`--peers-python` names an interpreter that has NGSolve, if this one has not. `--quick` reuses the
-peers' settings and the references of the last results.json.
+`--peers-python` names an interpreter that has NGSolve, if this one has not. `--resume` keeps what the
+last results.json holds of references, of the search for the peers' settings, and of the growth.
 """
 
 from __future__ import annotations
@@ -23,60 +23,78 @@ from typing import Any
 from cases import ACCURACIES_PCT, CASES, ROOT
 from measure import repeated
 from page import page
-from programs import Setting, ours, peers, stiffness_command
+from programs import Peer, Setting, ours, peers, stiffness_command
 from references import references
 from scaling import growth
-from tune import tuned
+from tune import settings, tuned
 
 RUNS = 5
+LONG_S = 30.0
+"""What takes longer in the first round is not run again: its scatter does not matter here."""
 RESULTS = Path(__file__).with_name("results.json")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--peers-python", default=sys.executable)
-    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--resume", action="store_true")
+    parser.add_argument("--rounds", type=int, default=RUNS)
     options = parser.parse_args()
-    old = json.loads(RESULTS.read_text(encoding="utf-8")) if options.quick else {}
+    old = json.loads(RESULTS.read_text(encoding="utf-8")) if options.resume else {}
     everybody = peers(options.peers_python)
-    result: dict[str, Any] = {"machine": machine(options.peers_python)}
+    kept = {k: old[k] for k in ("references", "tuning", "scaling") if k in old}
+    result: dict[str, Any] = {"machine": machine(options.peers_python), "tuning": {}} | kept
     with tempfile.TemporaryDirectory() as name:
         steps = Path(name)
-        result["references"] = old.get("references") or references(everybody[0], steps)
-        save(result)
-        result["tuning"], settings = old.get("tuning", {}), old.get("settings", {})
-        for case in CASES:
-            for peer in everybody:
-                key = f"{case.name}, {peer.name}"
-                if key not in settings:
-                    K = result["references"][case.name]["K"]
-                    result["tuning"][key], settings[key] = tuned(peer, case, K, steps)
-                    save(result)
-        result["settings"] = settings
+        if "references" not in result:
+            result["references"] = references(everybody[0], steps)
+            save(result)
+        search(everybody, result, steps)
         result["load_at_timing"] = os.getloadavg()
-        result["times"] = timed(everybody, settings, result["references"], steps)
+        known = {key: settings(tried) for key, tried in result["tuning"].items()}
+        result["times"] = timed(everybody, known, result["references"], steps, options.rounds)
         save(result)
-    result["scaling"] = old.get("scaling") or growth()
-    save(result)
+    if "scaling" not in result:
+        result["scaling"] = growth()
+        save(result)
     (ROOT / "docs" / "benchmarks.md").write_text(page(result), encoding="utf-8")
 
 
-def timed(everybody, settings, known, steps: Path) -> list[dict[str, Any]]:
-    """Five rounds; within a round everybody runs once, so that a slow minute hits all alike."""
+def search(everybody: tuple[Peer, ...], result: dict[str, Any], steps: Path) -> None:
+    """Peers' settings on the first cup from scratch, on the second from the first's."""
+    first, second = (c.name for c in CASES)
+    for case in CASES:
+        for peer in everybody:
+            key = f"{case.name}, {peer.name}"
+            if key in result["tuning"]:
+                continue
+            K = result["references"][case.name]["K"]
+            known = result["tuning"].get(f"{first}, {peer.name}") if case.name == second else None
+            result["tuning"][key] = tuned(peer, case, K, steps, known)
+            save(result)
+
+
+def timed(
+    everybody: tuple[Peer, ...], chosen: dict[str, Any], known: dict[str, Any], steps: Path,
+    count: int,
+) -> list[dict[str, Any]]:  # fmt: skip
+    """Rounds; within a round everybody runs once, so that a slow minute hits all alike."""
     jobs: dict[tuple, Any] = {}
     for case in CASES:
         for accuracy in ACCURACIES_PCT:
             jobs[case.name, accuracy, "flexspline", ""] = lambda c=case, a=accuracy: ours(c, a)
             for peer in everybody:
-                for words in settings[f"{case.name}, {peer.name}"][f"{accuracy:g}"]:
+                for words in chosen[f"{case.name}, {peer.name}"][f"{accuracy:g}"]:
                     s = Setting(**words)
                     jobs[case.name, accuracy, peer.name, str(s)] = lambda p=peer, c=case, s=s: (
                         p.run(c, s, steps)
                     )
         jobs[case.name, 0.5, "flexspline stiffness", ""] = lambda c=case: stiffness_command(c, 0.5)
     rounds: dict[tuple, list[dict[str, Any]]] = {key: [] for key in jobs}
-    for number in range(RUNS):
+    for number in range(count):
         for key, job in jobs.items():
+            if number and rounds[key][0]["wall_s"] > LONG_S:
+                continue
             rounds[key].append(job())
             print(number + 1, *key, rounds[key][-1], flush=True)
     found = []

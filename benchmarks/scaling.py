@@ -23,6 +23,8 @@ from fea.types import TetMesh
 FAR_MM = (2.4, 1.2, 0.8, 0.55, 0.43)
 SECTORS_DEG = (90.0, 360.0)
 NEAR_SHARE = 0.4
+MEMORY = 8 * 2**30
+"""Address space of a run [bytes]: one that would need more fails."""
 
 
 def growth(far_mm: tuple[float, ...] = FAR_MM) -> list[dict[str, Any]]:
@@ -38,23 +40,28 @@ def growth(far_mm: tuple[float, ...] = FAR_MM) -> list[dict[str, Any]]:
                     facet_patch=wedge.facet_patch, patches=np.array(wedge.patches), sector=sector,
                     sector_deg=wedge.sector_deg,
                 )  # fmt: skip
-                one = run([sys.executable, str(Path(__file__).resolve()), "mesh.npz"], folder)
+                one = run(
+                    [sys.executable, str(Path(__file__).resolve()), "mesh.npz"],
+                    folder,
+                    None,
+                    MEMORY,
+                )
             found.append({"far_mm": far, "sector_deg": sector} | one)
             print(found[-1], flush=True)
     return sorted(found, key=lambda r: r.get("unknowns", 0))
 
 
 def wedge_mesh(far: float) -> TetMesh:
-    from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
-    from fea.solid.mesh import mesh_surface
+    from fea.solid.defaults import first_spec
     from fea.solid.sizing import Grading
+    from fea.solid.swept import swept_mesh
     from geometry.load import design_from
-    from geometry.tagged import tagged_surface
 
     design = design_from(tomllib.loads(CASES[1].design_text()))
     spec = replace(first_spec(design, "flexspline"), grading=Grading(NEAR_SHARE * far, far, 1.0))
-    chord = CHORD_PER_ENVELOPE * spec.envelope
-    return mesh_surface(tagged_surface(design, "flexspline", 30.0, chord, 0.1), spec)
+    mesh = swept_mesh(design, "flexspline", 30.0, spec)
+    assert mesh is not None
+    return mesh
 
 
 def one(path: str) -> dict[str, Any]:
