@@ -11,6 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
+from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.record import History
+
 REACH = 0.35
 """Offsets searched, as a share of the largest torque."""
 STEPS = 141
@@ -35,15 +38,13 @@ def crossing(
     gap_arcsec: float,
     noise_arcsec: float,
     torque_noise_Nm: float,
-    slope: float,
 ) -> Crossing | None:
     """Find the offset from rows near zero torque.
 
     Parameters
     ----------
-    torque_Nm : (n,) readings. left_arcsec : (n,) measured angle less everything but the gap.
-    slope : compliance [arcsec per N·m]: an offset o also lowers the twist by slope·o, which the zero
-        has absorbed as fitted far from the crossing.
+    torque_Nm : (n,) readings. left_arcsec : (n,) measured angle less everything but the gap; what an
+        offset does to the twist itself is in the zero, which is free.
 
     Returns None where the gap is too small to see, or no rows lie near zero.
     """
@@ -81,3 +82,51 @@ def _log_likelihood(
     own = np.log(1 - OUTLIER_SHARE) - off / 2 - np.log(2 * np.pi * variance) / 2
     other = np.log(OUTLIER_SHARE / (2 * gap + 6 * noise))
     return float(np.logaddexp(own, other).sum())
+
+
+FIRST_STEPS = 81
+FIRST_NATS = 12.0
+ROBUST = 4.0
+
+
+def first_offset(
+    history: History, angle_arcsec: np.ndarray, gap_arcsec: float, band_Nm: float
+) -> float:
+    """A first guess of the offset [N·m], before anything is fitted; 0 where there is none to see.
+
+    A large offset puts rows on the wrong side of the gap far outside the crossing's band, and would
+    pass for other causes. The angle is fitted by smooth functions of torque and direction and one
+    step of free height; the step's place is the guess, if it is clearly better there than at zero.
+    """
+    largest = float(np.abs(history.torque_Nm).max())
+    x = history.torque_Nm / largest
+    direction = rising(history, 0.02 * largest)
+    units = [np.isin(np.arange(len(x)), rows).astype(float) for rows in history.unit_slices]
+    smooth = np.column_stack([*units, x, np.abs(x), x**2, x**3, direction, direction * x**2])
+    step = max(1, len(x) // 3000)
+    places = np.linspace(-REACH, REACH, FIRST_STEPS) * largest
+
+    def misfit(place: float) -> float:
+        far = np.abs(history.torque_Nm - place) > 0.3 * band_Nm
+        rows = np.flatnonzero(far)[::step]
+        side = np.sign(history.torque_Nm[rows] - place)
+        basis = np.column_stack([smooth[rows], side])
+        weight = np.ones(len(rows))
+        left = angle_arcsec[rows]
+        for _ in range(2):
+            found = np.linalg.lstsq(basis * weight[:, None], angle_arcsec[rows] * weight, rcond=None)[0]
+            left = angle_arcsec[rows] - basis @ found
+            scale = 1.4826 * np.median(np.abs(left)) + 1e-9
+            weight = 1 / np.maximum(1, np.abs(left) / (ROBUST * scale))
+        if found[-1] < 0.15 * gap_arcsec:
+            return np.inf
+        return float(np.mean(np.minimum(np.abs(left), 2 * gap_arcsec) ** 2)) * len(rows)
+
+    table = np.array([misfit(p) for p in places])
+    at_zero = misfit(0.0)
+    best = int(np.argmin(table))
+    count = len(x) / step
+    nats = count / 2 * np.log(at_zero / table[best]) / 4  # neighbours are not independent
+    if not np.isfinite(table[best]) or abs(places[best]) < band_Nm / 2 or nats < FIRST_NATS:
+        return 0.0
+    return float(places[best])

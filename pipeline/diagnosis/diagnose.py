@@ -26,7 +26,7 @@ from pipeline.diagnosis.weighing import Weighed
 
 UNEXPLAINED_SHARE = 0.5
 """Of the named effects' rms: with more left unexplained the verdict is `unknown`."""
-SURE = 1e-6
+SURE = 1e-8
 """p-value of a channel's structure that, with nothing named, makes the verdict `unknown`."""
 STILL = 0.1
 """Torque that varies by less than this share of its largest value is constant."""
@@ -81,8 +81,7 @@ def diagnose_sweep(design: Design, sweep: Sweep, prediction: Prediction) -> Diag
         return _insufficient(design, sweep, prediction, "too few rows lie outside the gap's crossing")
     found = _named_causes(explained)
     model = model_of(weighed.solution, sweep, [c.id for c in found], explained.offset_Nm)
-    left = weighed.solution.residual()
-    tests = channel_tests(explained.prepared, left)
+    tests = channel_tests(explained.prepared, weighed.solution)
     unexplained = _unexplained(explained, tests)
     verdict = _verdict(explained, found, tests)
     if verdict == "consistent":

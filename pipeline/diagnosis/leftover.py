@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from pipeline.diagnosis.noise import stretches_of
-from pipeline.diagnosis.sweep import Prepared
 from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.solution import Solution
+from pipeline.diagnosis.sweep import Prepared
 
+RANK = 1e-3
+"""Of the largest singular value: bins that the model's terms can be count for nothing."""
 BINS = 12
 FEWEST_PER_BIN = 5
 SIGNIFICANT = 1e-4
@@ -19,37 +21,39 @@ SIGNIFICANT = 1e-4
 
 @dataclass(frozen=True)
 class ChannelTest:
-    """Means of the residual in bins of one channel: structure's rms [arcsec], and its p-value."""
+    """Structure of the residual in one channel: its rms [arcsec], and its p-value."""
 
     channel: str
     rms_arcsec: float
     p_value: float
 
 
-def channel_tests(prepared: Prepared, left: np.ndarray) -> list[ChannelTest]:
-    """Test the residual `left` (n,) of a model against each channel.
+def channel_tests(prepared: Prepared, solution: Solution) -> list[ChannelTest]:
+    """Test what a solution leaves against each channel.
 
-    Bin means of the whitened residual are independent with variance 1/count where nothing is left;
-    bins are whitened with it, so that coloured noise does not pass for structure.
+    The channel's bins, less what the model's own terms can be, explain a χ² with as many degrees of
+    freedom as they have where nothing is left. All is whitened, so coloured noise does not pass for
+    structure.
     """
-    history, kept = prepared.rig.history, prepared.kept
+    race = solution.race
+    chosen = [race.x[:, race.terms[i].at] for i in solution.fit.terms]
+    model, _ = np.linalg.qr(np.hstack([race.base, *chosen]))
+    left = race.y - model @ (model.T @ race.y)
     found = []
     for channel, values in _channels(prepared).items():
-        codes = _bins(values[kept])
+        codes = _bins(values)
         levels = codes.max() + 1
         if levels < 2:
             continue
-        onehot = (codes[:, None] == np.arange(levels)).astype(float)
-        stretches = stretches_of(history, kept)
-        x = prepared.noise.whitened(onehot, stretches)
-        y = prepared.noise.whitened(left[kept], stretches)
-        gram = x.T @ x + 1e-9 * np.eye(levels)
-        mean = np.linalg.solve(gram, x.T @ y)
-        statistic = float(mean @ (x.T @ y))
-        share = onehot.mean(axis=0)
-        noise_part = float(share @ np.diag(np.linalg.inv(gram)))
-        rms = float(np.sqrt(max(0.0, share @ (mean - share @ mean) ** 2 - noise_part)))
-        found.append(ChannelTest(channel, rms, float(chi2_distribution.sf(statistic, levels - 1))))
+        bins = race.prepared((codes[:, None] == np.arange(levels)).astype(float))
+        bins -= model @ (model.T @ bins)
+        basis, size, _ = np.linalg.svd(bins, full_matrices=False)
+        own = basis[:, size > RANK * size.max()]
+        statistic = float(((own.T @ left) ** 2).sum())
+        freedom = own.shape[1]
+        share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
+        rms = float(np.sqrt(share)) * prepared.noise.std_arcsec
+        found.append(ChannelTest(channel, rms, float(chi2_distribution.sf(statistic, freedom))))
     return found
 
 

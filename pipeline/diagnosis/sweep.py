@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.crossing import Crossing, crossing
+from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Rig
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
@@ -29,6 +29,7 @@ from pipeline.diagnosis.weighing import Weighed, weigh
 ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
 TUNINGS = 3
+OFFSET_ROUNDS = 4
 OFFSET_NATS = 6.0
 OFFSET_LEAST = 0.004
 """Of the largest torque: a smaller offset moves nothing that counts."""
@@ -155,40 +156,36 @@ def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
 
 def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     """The whole race, with and without an offset of the torque reading."""
-    prepared, weighed = explain(prepare(sweep, prediction))
-    seen = seen_crossing(prepared, weighed.solution)
-    largest = prepared.rig.torque_Nm
-    if seen is None or seen.nats < OFFSET_NATS or abs(seen.offset_Nm) < OFFSET_LEAST * largest:
-        return Explained(prepared, weighed, seen, 0.0, 0.0)
-    offset, total = seen.offset_Nm, seen.nats
-    for _ in range(2):
-        again, decided = explain(prepare(sweep, prediction, offset))
-        further = seen_crossing(again, decided.solution)
-        if further is None:
+    guess = first_offset(
+        sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, crossing_band_Nm(sweep.history)
+    )
+    offset, nats = guess, 0.0
+    for _ in range(OFFSET_ROUNDS):
+        prepared, weighed = explain(prepare(sweep, prediction, offset))
+        seen = seen_crossing(prepared, weighed.solution, offset)
+        if seen is None:
             break
-        seen = replace(further, nats=total, offset_Nm=offset + further.offset_Nm)
-        if abs(further.offset_Nm) < max(further.std_Nm, 0.001 * largest):
-            return Explained(again, decided, seen, seen.offset_Nm, total)
+        nats = seen.nats
+        further = seen.offset_Nm - offset
+        small = abs(seen.offset_Nm) < OFFSET_LEAST * prepared.rig.torque_Nm
+        if seen.nats < OFFSET_NATS or small:
+            if offset == 0.0:
+                break
+            offset = 0.0
+            continue
+        if abs(further) < max(0.5 * seen.std_Nm, 0.001 * prepared.rig.torque_Nm):
+            break
         offset = seen.offset_Nm
-    return Explained(again, decided, seen, offset, total)
+    return Explained(prepared, weighed, seen, offset, nats)
 
 
-def seen_crossing(prepared: Prepared, solution: Solution) -> Crossing | None:
-    """The crossing, with everything but the gap taken off the measured angle."""
+def seen_crossing(prepared: Prepared, solution: Solution, offset_Nm: float) -> Crossing | None:
+    """The crossing as read, with everything but the gap taken off the measured angle."""
     history = prepared.rig.history
     gap = solution.measured_rig().gap_arcsec
-    left = solution.residual() + _gap_of(solution, history)
+    good = ~prepared.outlier
+    left = solution.residual() + history.sign * gap / 2
     return crossing(
-        history.torque_Nm[~prepared.outlier], left[~prepared.outlier], gap,
-        prepared.noise.std_arcsec, torque_noise_Nm(history), solution.measured_rig().compliance,
+        history.torque_Nm[good] + offset_Nm, left[good], gap,
+        prepared.noise.std_arcsec, torque_noise_Nm(history),
     )  # fmt: skip
-
-
-def _gap_of(solution: Solution, history: History) -> np.ndarray:
-    """(n,) what the gap adds in the solution, with the sign of the torque as read."""
-    return history.sign * solution.measured_rig().gap_arcsec / 2
-
-
-def largest_torque_Nm(history: History) -> float:
-    """Largest |torque|."""
-    return float(np.abs(history.torque_Nm).max())

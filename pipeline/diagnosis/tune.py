@@ -34,7 +34,13 @@ def tuned(race: Race, chosen: Sequence[int]) -> Tuned:
     blocks = [race.x[:, t.at] for t in terms]
     first = value = _value(race, blocks)
     for _ in range(STEPS):
-        keys = [(j, k) for j, t in enumerate(terms) if t.cause for k in t.cause.tunable if shapes[j].get(k, 0.0) > 0]
+        keys = [
+            (j, k)
+            for j, t in enumerate(terms)
+            if t.cause
+            for k in t.cause.tunable
+            if shapes[j].get(k, 0.0) > 0
+        ]
         if not keys:
             break
         step = _step(race, terms, shapes, blocks, keys)

@@ -7,14 +7,17 @@ from math import log
 
 import numpy as np
 
+from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, owner_rms, solved
 from pipeline.diagnosis.terms import Race
 
-NAMING_NATS = 3.0
-"""A cause must raise the score by this over the best set without it."""
+NAMING_NATS, SECOND_NATS = 3.0, 7.0
+"""A cause must raise the score by this over the best set without it: one of several by more, as the
+others' misfit may feed it."""
 MINOR_SHARE = 0.045
-"""An effect below this share of the main one's rms may be only that one's shape misfit."""
+"""An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
+has but one shape."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 """The contract's limits for a rival."""
 
@@ -58,13 +61,14 @@ def weigh(race: Race) -> Weighed:
     for _ in range(4):
         without = {c: _without(race, best, c) for c in best.named(race)}
         evidence = {c: best.score - w.score for c, w in without.items()}
-        weak = [c for c, e in evidence.items() if e < NAMING_NATS]
+        limit = NAMING_NATS if len(evidence) == 1 else SECOND_NATS
+        weak = [c for c, e in evidence.items() if e < limit]
         if not weak:
             break
         best = without[min(weak, key=lambda c: evidence[c])]
     solution = solved(race, best.terms)
     rms = owner_rms(solution, sorted(best.owners(race)))
-    largest = max((rms[c] for c in best.named(race)), default=0.0)
+    largest = max((rms[c] for c in best.named(race) if not causes()[c].exact), default=0.0)
     named = sorted(
         (c for c in best.named(race) if rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
     )

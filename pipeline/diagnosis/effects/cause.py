@@ -84,6 +84,8 @@ class Cause(ABC):
     """Of the magnitude."""
     positive: ClassVar[bool] = False
     """Whether physics forbids negative amplitudes."""
+    exact: ClassVar[bool] = False
+    """Whether the columns are the cause's only shape, so that it leaves no misfit."""
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes`."""
     reveals: ClassVar[str]

@@ -16,6 +16,7 @@ class ClearanceOffset(Cause):
     id = "clearance_offset"
     title = "clearance other than simulated"
     unit = "arcsec"
+    exact = True
     reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -11,7 +11,7 @@ from pipeline.diagnosis.effects.operators import lags
 from pipeline.diagnosis.effects.torque_program import longest_hold_s, ramp_s
 from pipeline.diagnosis.record import History
 
-EXPONENTS = (0.0, 0.2, 0.4)
+EXPONENTS = (0.0, 0.15, 0.3, 0.5)
 PER_DECADE = 3
 """Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
 DECADE_ROWS = np.array([0.1, 1.0])
@@ -28,7 +28,7 @@ class Creep(Cause):
     title = "creep (twist that grows while torque is held)"
     unit = "%"
     positive = True
-    tunable = ("shortest_s",)
+    tunable = ("shortest_s", "longest_s", "exponent")
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -47,6 +47,10 @@ class Creep(Cause):
             if tau > 0.3 * ramp:
                 found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
         return found
+
+    def possible(self, shape: Shape) -> bool:
+        low, high = shape["shortest_s"], shape["longest_s"]
+        return low <= high and high > 0.3 * shape["hold_s"] and shape["exponent"] <= 0.8
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, weight = self._kelvin(shape)

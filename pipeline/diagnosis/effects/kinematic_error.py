@@ -12,11 +12,12 @@ from pipeline.diagnosis.record import History
 
 
 class KinematicError(Cause):
-    """Angle a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
+    """Angle Σ a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
 
     id = "kinematic_error"
     title = "kinematic error (position error periodic in the wave generator's angle)"
     unit = "arcsec"
+    exact = True
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -9,23 +9,32 @@ import numpy as np
 from pipeline.diagnosis.effects.cause import Element, Rig, Shape
 from pipeline.diagnosis.record import History
 
-HARMONICS = (1, 2, 3, 4, 6)
-"""Per turn: eccentricity, the two lobes, and their multiples."""
+HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4), (3,), (6,))
+"""Per turn, and which come together: eccentricity, the two lobes, and their multiples."""
+KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
 def harmonic_shapes(rig: Rig) -> list[Shape]:
-    """One shape per harmonic, where the input angle was recorded."""
-    return [] if rig.history.input_angle_deg is None else [{"harmonic": n} for n in HARMONICS]
+    """Sets of harmonics, where the input angle was recorded."""
+    if rig.history.input_angle_deg is None:
+        return []
+    return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS]
 
 
 def harmonic(shape: Shape, history: History) -> np.ndarray:
-    """(n, 2) cosine and sine of the harmonic."""
+    """(n, 2m) cosine and sine of each of the shape's m harmonics."""
     if history.input_angle_deg is None:
         raise ValueError("a periodic cause needs the input angle")
-    turn = shape["harmonic"] * np.radians(history.input_angle_deg)
-    return np.column_stack([np.cos(turn), np.sin(turn)])
+    turn = np.radians(history.input_angle_deg)
+    orders = [shape[k] for k in KEYS if k in shape]
+    return np.column_stack([f(n * turn) for n in orders for f in (np.cos, np.sin)])
 
 
 def largest_amplitude(elements: Sequence[Element]) -> float:
-    """Zero-to-peak amplitude of the largest harmonic."""
-    return max(float(np.hypot(*e.amplitudes)) for e in elements)
+    """Zero-to-peak amplitude of the largest harmonic; elements may share harmonics."""
+    total: dict[float, np.ndarray] = {}
+    for e in elements:
+        pairs = np.array(e.amplitudes).reshape(-1, 2)
+        for order, pair in zip([e.shape[k] for k in KEYS if k in e.shape], pairs, strict=True):
+            total[order] = total.get(order, np.zeros(2)) + pair
+    return max(float(np.hypot(*pair)) for pair in total.values())

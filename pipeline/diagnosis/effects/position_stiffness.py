@@ -12,11 +12,12 @@ from pipeline.diagnosis.record import History
 
 
 class PositionStiffness(Cause):
-    """Twist T·(a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
+    """Twist T·Σ (a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
 
     id = "position_stiffness"
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
+    exact = True
     reveals = "the same sweep at many wave generator angles"
 
     def shapes(self, rig: Rig) -> list[Shape]:

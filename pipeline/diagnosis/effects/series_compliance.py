@@ -16,6 +16,7 @@ class SeriesCompliance(Cause):
     id = "series_compliance"
     title = "elastic part left out of the simulation"
     unit = "%"
+    exact = True
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 
     def shapes(self, rig: Rig) -> list[Shape]:
