@@ -175,7 +175,7 @@ def fixes_harmonics(position_deg: np.ndarray) -> bool:
     """Whether zero and harmonics 1, 2, 4 each follow from the positions: 7 unknowns, well apart."""
     columns = _harmonic_columns(np.unique(position_deg))
     least = np.linalg.svd(columns, compute_uv=False)
-    return len(columns) >= columns.shape[1] and bool(least[-1] > 0.3 * np.sqrt(len(columns)))
+    return len(columns) >= columns.shape[1] and bool(least[-1] > 0.2 * np.sqrt(len(columns)))
 
 
 def tells_harmonics(position_deg: np.ndarray, cycle: np.ndarray) -> bool:

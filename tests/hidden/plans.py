@@ -97,6 +97,12 @@ TRAPS: dict[str, Trap] = {
         ("series_compliance",),
         frozenset({"series_compliance", "direction_asymmetry"}),
     ),
+    "torque one way only, in time": Trap(  # one side of the gap: its growth moves the zero
+        Plan(wave=("triangle", "sine"), one_sided=True, places=("none",), air=("none",),
+             several_rates=False, with_columns=("time_s", "cycle"), cycles=(3, 8)),
+        ("wear", "sensor_drift"),
+        frozenset({"wear", "sensor_drift"}),
+    ),
 }  # fmt: skip
 
 

@@ -64,6 +64,8 @@ def main() -> None:
     print()
     print(breakdown(found))
     print()
+    narrowed = "".join(f" --{k} {v!r}" for k in ("kind", "cause") if (v := getattr(asked, k)))
+    print(f"Seed s:n again: python tests/hidden/run.py --seed s --first n --records 1{narrowed}")
     print(failures(found))
 
 

@@ -13,8 +13,6 @@ from hidden.mark import Mark, mark
 from hidden.score import breakdown, failures, figures, table
 
 FIXED_SEED = 20
-PER_RECORD_S = 3.0
-"""The issue's bound for 3,000 rows; records with several units have more rows and a bound in step."""
 
 
 def marks(seed: int, count: int) -> list[Mark]:
