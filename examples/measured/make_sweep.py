@@ -69,7 +69,9 @@ def lines(rng: np.random.Generator) -> list[str]:
 def main() -> None:
     """Print the file."""
     out = sys.stdout
-    out.write("# MADE UP, not measured: written by make_sweep.py, which says what is hidden in it\n")
+    out.write(
+        "# MADE UP, not measured: written by make_sweep.py, which says what is hidden in it\n"
+    )
     out.write("# gear of examples/xb1-40.toml, wave generator locked, soaked at six temperatures\n")
     out.write("cycle,time_s,temperature_C,torque_Nm,angle_arcsec\n")
     out.write("\n".join(lines(np.random.default_rng(SEED))) + "\n")
