@@ -55,8 +55,12 @@ class Diagnosis:
     model: ExtendedModel | None = None
 
 
-def diagnose_file(design: Design, csv: Path, K_b: float, K_e: float) -> Diagnosis:
-    """Read a measurement and diagnose it; stiffnesses in N·m/rad.
+def diagnose_file(
+    design: Design, csv: Path, K_b: float, K_e: float, K_error: float = 0.0
+) -> Diagnosis:
+    """Read a measurement and diagnose it.
+
+    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series.
 
     Raises
     ------
@@ -64,7 +68,7 @@ def diagnose_file(design: Design, csv: Path, K_b: float, K_e: float) -> Diagnosi
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
     measurement = read_measurement(csv)
-    prediction = prediction_of(design, K_b, K_e)
+    prediction = prediction_of(design, K_b, K_e, K_error)
     if isinstance(measurement, Sweep):
         return diagnose_sweep(design, measurement, prediction)
     raise NotImplementedError

@@ -62,13 +62,14 @@ def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
     after = _predicted(prepared, train, causes)
     calibrated = _predicted(prepared, train, ())
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
+    before = _less_zero(reading, train, test, history)
+    left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
     return Gain(
         label,
-        _rms(_less_zero(reading, train, test, history)[test]),
-        _rms(calibrated[test]),
-        _rms(after[test]),
-        prepared.noise.std_arcsec,
+        *(_rms(values) for values in left.values()),
+        noise_floor=prepared.noise.std_arcsec,
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
+        left=left,
     )
 
 

@@ -136,6 +136,30 @@ def _sweep(table: Table) -> Sweep:
     n = len(table)
     if n < FEWEST_SWEEP_ROWS:
         raise table.refuse(n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}")
+    found = history_of(table)
+    return Sweep(
+        table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
+        table.line, "cycle" in table.numbers, table.ignored,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class NamedHistory:
+    """A file's history, the names of its units, and the file's own cycle numbers of each."""
+
+    history: History
+    units: tuple[str, ...]
+    cycles: tuple[tuple[float, ...], ...]
+
+
+def history_of(table: Table) -> NamedHistory:
+    """What the rig did, by a table with `torque_Nm`.
+
+    Raises
+    ------
+    MeasurementError : time or cycles that run backwards within a unit; cycles that are no numbers.
+    """
+    n = len(table)
     names = tuple(dict.fromkeys(table.labels.get("unit", ("",))))
     code = {name: i for i, name in enumerate(names)}
     unit = np.array([code[u] for u in table.labels.get("unit", ("",) * n)])
@@ -162,10 +186,7 @@ def _sweep(table: Table) -> Sweep:
         table.numbers.get("temperature_C"),
         table.numbers.get("input_angle_deg"),
     )  # fmt: skip
-    return Sweep(
-        table.path, history, table.numbers["angle_arcsec"], names, tuple(own), table.line,
-        recorded, table.ignored,
-    )  # fmt: skip
+    return NamedHistory(history, names, tuple(own))
 
 
 def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:

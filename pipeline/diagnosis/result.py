@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
 
@@ -47,6 +50,8 @@ class Gain:
     noise_floor: float
     unit: str = "arcsec"
     held_out_rows: tuple[int, ...] = ()
+    left: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False, repr=False)
+    """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,15 @@ CHANNELS = ("time_s", "temperature_C", "input_angle_deg")
 
 
 def example_history(largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int = 4) -> History:
-    """A record with every channel: triangles with a hold at either end, warming, at many positions."""
+    """A record with every channel: triangles with a hold at either end, warming, at many positions.
+
+    A little noise on the torque, always the same: shapes may be given its size.
+    """
     quarter = np.arange(1, 11) / 10
     one = np.concatenate([quarter, np.ones(12), 1 - 2 * np.arange(1, 21) / 20, -np.ones(12), quarter - 1])
     n = len(one) * cycles
-    torque = largest_Nm * np.tile(one, cycles)
+    noise = np.random.default_rng(0).normal(0.0, 0.002, n)
+    torque = largest_Nm * (np.tile(one, cycles) + noise)
     time = np.arange(1, n + 1) * ramp_s / 10
     cycle = np.repeat(np.arange(cycles), len(one))
     return History(
@@ -81,6 +85,6 @@ def _known(cause: Cause) -> tuple[frozenset[frozenset[str]], dict[str, frozenset
     fixed = {}
     for name in set().union(*names) - set(cause.tunable):
         one, other = ({shape[name] for shape in shapes if name in shape} for shapes in tried)
-        if one == other:
+        if one == other and all(float(v).is_integer() for v in one):
             fixed[name] = frozenset(one)
     return names, fixed
