@@ -121,8 +121,12 @@ def _stiffness(levels: list[MeshLevel], error: float, c: float, symmetry: str) -
         model="solid",
         symmetry=symmetry,
         method=(
-            f"recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by {c:.2f}"
-            + (f" from the last two of {len(levels)} meshes" if len(levels) > 1 else " as usual")
+            f"recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by {c:.2f}, "
+            + (
+                f"from the last two of {len(levels)} meshes"
+                if len(levels) > 1
+                else "the usual factor"
+            )
             + "; K = finest mesh less the scaled estimate"
         ),
         levels=tuple(levels),

@@ -30,7 +30,7 @@ from geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
-PLAN_EDGE = 0.8
+PLAN_EDGE = 1.2
 """Largest edge in the plan beside a hole, in hole radii."""
 ROUNDS = 60
 ON_SURFACE = 1e-6
