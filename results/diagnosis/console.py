@@ -1,0 +1,52 @@
+"""A diagnosis as a person reads it in a terminal."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from results.diagnosis.words import (
+    VERDICTS,
+    capital,
+    channel_words,
+    figures_text,
+    magnitude_words,
+    sure_words,
+    title_of,
+)
+
+WIDTH = 96
+
+
+def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
+    """Verdict, causes, gain and what to measure next."""
+    outcome = diagnosis.outcome
+    lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
+    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {outcome.summary}")
+    for cause in outcome.causes:
+        lines.append(f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}")
+        if cause.alternatives:
+            lines.append(f"      or: {', '.join(map(title_of, cause.alternatives))}")
+    for u in outcome.unexplained:
+        lines.append(f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}")
+    gain = outcome.gain
+    if gain is not None:
+        lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
+        for words, value in (
+            ("simulation as it stands", gain.rmse_before),
+            ("stiffness and gap calibrated", gain.rmse_calibrated),
+            ("with the causes found", gain.rmse_after),
+            ("noise of the reading", gain.noise_floor),
+        ):
+            lines.append(f"    {words:<60} {figures_text(value)}")
+    if outcome.next_measurement is not None:
+        after = outcome.next_measurement
+        lines += _wrapped(f"Measure next ({channel_words(after.vary)}): {after.why}")
+    lines += [f"  note: {note}" for note in outcome.notes]
+    lines.append(f"files in {folder}")
+    return "\n".join(lines)
+
+
+def _wrapped(text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  ")

@@ -1,0 +1,61 @@
+"""All files of a diagnosis: made first, written when everything is there."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from pathlib import Path
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.model_file import Provenance
+from pipeline.diagnosis.model_text import model_text
+from pipeline.diagnosis.record import Sweep
+from results.atomic import write_bytes
+from results.diagnosis.record import EXTENDED_MODEL, Record
+from results.figures.diagnosis.draw import draw_figures
+from results.records import as_json, program_version
+from results.report.diagnosis import Stiffnesses, diagnosis_pdf
+
+DIAGNOSIS = "diagnosis.json"
+REPORT = "report.pdf"
+
+
+def write_diagnosis(
+    folder: Path, diagnosis: Diagnosis, record: Record, used: Stiffnesses
+) -> list[Path]:
+    """Write diagnosis.json, the extended model, the figures and the report into `folder`.
+
+    Nothing is written before all of it is computed; a failure leaves what was there.
+    """
+    made: dict[str, bytes] = {DIAGNOSIS: (as_json(record) + "\n").encode()}
+    if diagnosis.model is not None:
+        made[EXTENDED_MODEL] = _model(diagnosis, used).encode()
+    with tempfile.TemporaryDirectory(prefix="flexspline-diagnosis-") as scratch:
+        figures = draw_figures(diagnosis, Path(scratch))
+        made |= {f.path.name: f.path.read_bytes() for f in figures}
+        made[REPORT] = diagnosis_pdf(diagnosis, figures, used, Path(scratch))
+    for name, data in made.items():
+        write_bytes(folder / name, data)
+    return [folder / name for name in made]
+
+
+def _model(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+    assert diagnosis.model is not None
+    measurement = diagnosis.measurement
+    first: dict[str, float] = {}
+    timed = True
+    if isinstance(measurement, Sweep):
+        first = {u: c[0] for u, c in zip(measurement.units, measurement.cycles, strict=True)}
+        timed = measurement.history.time_s is not None
+    provenance = Provenance(
+        program=f"flexspline {program_version()}",
+        design=diagnosis.design.name,
+        measurement=measurement.path.name,
+        measurement_sha256=hashlib.sha256(measurement.path.read_bytes()).hexdigest(),
+        verdict=diagnosis.outcome.verdict,
+        K_b_Nm_per_rad=used.K_b_Nm_per_rad,
+        K_e_Nm_per_rad=used.K_e_Nm_per_rad,
+        time_recorded=timed,
+        first_cycle=first,
+    )
+    return model_text(diagnosis.model, provenance, diagnosis.outcome.causes, diagnosis.outcome.gain)

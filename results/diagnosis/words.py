@@ -1,0 +1,89 @@
+"""Plain words for what a diagnosis found: one place, read by console, figures and report."""
+
+from __future__ import annotations
+
+from math import floor, log10
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.result import NamedCause
+from results.quantities import grouped
+
+CHANNELS = {
+    "torque_Nm": "torque",
+    "angle": "the angle itself",
+    "direction": "direction of loading",
+    "cycle": "load cycle",
+    "time_s": "time",
+    "temperature_C": "temperature",
+    "input_angle_deg": "wave generator angle",
+    "unit": "unit under test",
+    "torque_rate": "rate of torque",
+    "torque_amplitude": "amplitude of torque",
+    "hold": "holds at constant torque",
+}
+"""Channel or thing to vary, as a person says it."""
+VERDICTS = {
+    "consistent": "The simulation holds",
+    "named": "Found, and named",
+    "ambiguous": "Something is missing; these data cannot tell what",
+    "unknown": "Something is there that no known cause explains",
+    "insufficient": "Too little data to say",
+}
+SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
+"""Nats of evidence, and how sure that is in words."""
+
+
+def channel_words(name: str) -> str:
+    """A channel's name in words; an unknown one as it is."""
+    return CHANNELS.get(name, name)
+
+
+def sure_words(cause: NamedCause) -> str:
+    """How sure a cause is, in words, from its evidence; rivals lower it."""
+    if cause.alternatives:
+        return "not decided"
+    return next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
+
+
+def odds_words(nats: float) -> str:
+    """Evidence as odds: what "e to the nats to 1" means to a person."""
+    exponent = nats / 2.302585092994046
+    if exponent > 6:
+        return "more than a million to 1"
+    return f"about {grouped(float(f'{10**exponent:.1g}'), 0)} to 1"
+
+
+def unit_words(unit: str) -> str:
+    """A unit for print; a ratio has none."""
+    return "" if unit == "1" else unit
+
+
+def plus_minus(value: float, std: float) -> str:
+    """Value and standard deviation with the same decimals, two digits of the deviation."""
+    scale = std if std > 0 else abs(value) / 100
+    places = 0 if scale <= 0 else min(8, max(0, 1 - floor(log10(scale))))
+    return f"{grouped(value, places)} ± {grouped(std, places)}"
+
+
+def magnitude_words(cause: NamedCause) -> str:
+    """Magnitude, deviation and unit."""
+    return f"{plus_minus(cause.magnitude, cause.magnitude_std)} {unit_words(cause.unit)}".rstrip()
+
+
+def title_of(cause_id: str) -> str:
+    """A cause's title; an id outside the causes of sweeps as it is."""
+    cause = causes().get(cause_id)
+    return cause.title if cause else cause_id
+
+
+def capital(text: str) -> str:
+    """First letter large."""
+    return text[:1].upper() + text[1:]
+
+
+def figures_text(value: float, digits: int = 3) -> str:
+    """A number with so many significant digits."""
+    if value == 0:
+        return "0"
+    places = max(0, digits - 1 - floor(log10(abs(value))))
+    return grouped(value, places)

@@ -1,0 +1,163 @@
+"""What each cause adds to the angle, against the channel in which it shows best."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pipeline.diagnosis.result import NamedCause
+from results.diagnosis.words import capital, channel_words, magnitude_words, odds_words, sure_words
+from results.figures.diagnosis.panels import DPI, FALLING, RISING
+from results.figures.diagnosis.seen import Channel, Seen, thinned
+from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+VIEWS = {
+    "thermal_clearance": ("temperature_C", "gap"),
+    "wear": ("cycle", "gap"),
+    "sensor_drift": ("time_s", "angle"),
+    "creep": ("time_s", "angle"),
+    "kinematic_error": ("input_angle_deg", "angle"),
+    "position_stiffness": ("input_angle_deg", "compliance"),
+}
+"""Channel in which a cause shows best, and as what; all others as angle over torque."""
+YLABELS = {
+    "angle": "added angle in arcsec",
+    "gap": "added gap in arcsec",
+    "compliance": "added compliance\nin arcsec per N·m",
+}
+FAR = 0.4
+"""Share of the largest torque beyond which angle over torque is a compliance."""
+PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
+OFFSET = "torque_offset"
+SHORT = 62
+
+
+@dataclass(frozen=True)
+class Part:
+    """A panel: an owner of terms, and the words beside it."""
+
+    owner: str
+    title: str
+    lines: tuple[str, ...]
+    channel: Channel
+    view: str = "angle"
+
+
+def parts(shown: Seen) -> list[Part]:
+    """Named causes, then structure that has no name."""
+    weighed = shown.explained.weighed
+    found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
+    told = {p.owner for p in found}
+    for owner, rms in sorted(weighed.rms.items(), key=lambda item: -item[1]):
+        if owner in told or rms < shown.noise_arcsec / 3:
+            continue
+        key = owner.removeprefix("?")
+        words = channel_words(key)
+        lines = (f"{rms:.2g} arcsec rms", f"lies in: {words}", "no known cause explains it")
+        found.append(Part(owner, f"Without a name: structure in {words}", lines, shown.channel(key)))
+    return found
+
+
+def _named(shown: Seen, cause: NamedCause) -> Part:
+    key, view = VIEWS.get(cause.id, ("torque_Nm", "angle"))
+    channel = shown.channel(key)
+    lines = [
+        magnitude_words(cause),
+        f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
+        f"{sure_words(cause)}:",
+        odds_words(cause.evidence_nats),
+    ]
+    if cause.alternatives:
+        lines[2:] = ["not decided: rivals", "explain it as well"]
+    return Part(
+        cause.id, capital(cause.title), tuple(lines), channel, view if channel.key == key else "angle"
+    )
+
+
+def write_contributions(path: Path, shown: Seen) -> None:
+    """One panel per part: pale, what was measured with all other parts taken off; dark, the model."""
+    found = parts(shown)
+    height = TOP + len(found) * PANEL + (len(found) - 1) * BETWEEN + BOTTOM
+    with styled():
+        from matplotlib.lines import Line2D
+
+        figure = new_figure(8.0, height, DPI)
+        for i, part in enumerate(found):
+            low = BOTTOM + (len(found) - 1 - i) * (PANEL + BETWEEN)
+            axes = figure.add_axes((0.105, low / height, 0.565, PANEL / height))
+            _panel(axes, shown, part)
+            axes.set_title(part.title[:SHORT], fontsize=10.5, pad=7, x=0.0)
+            for k, line in enumerate(part.lines):
+                figure.text(
+                    0.705, (low + PANEL - 0.2 - 0.27 * k) / height, line, va="center",
+                    fontsize=10.5 if k == 0 else 9.5, weight="bold" if k == 0 else "normal",
+                    color=INK if k < 2 else MUTED,
+                )  # fmt: skip
+        figure.text(
+            0.035, 1 - 0.26 / height, "What each part adds to the simulated angle", fontsize=12, weight="bold",
+            va="center",
+        )  # fmt: skip
+        handles = [
+            Line2D([], [], color=RISING, marker="o", lw=0, ms=4, label="measured less all other parts, torque rising"),
+            Line2D([], [], color=FALLING, marker="o", lw=0, ms=4, label="the same, torque falling"),
+            Line2D([], [], color=INK, marker="o", lw=0, ms=3, label="model"),
+        ]
+        figure.legend(
+            handles=handles, loc="center left", bbox_to_anchor=(0.025, 1 - 0.59 / height), ncols=3,
+            fontsize=9, handletextpad=0.1, columnspacing=1.0, borderpad=0,
+        )  # fmt: skip
+        save_png(figure, path)
+
+
+def _panel(axes: Axes, shown: Seen, part: Part) -> None:
+    if part.owner == OFFSET:
+        _offset(axes, shown)
+        return
+    added, torque = shown.solution.added(part.owner), shown.history.torque_Nm
+    factor, chosen = np.ones(len(torque)), shown.kept
+    if part.view == "gap":
+        factor = 2 * np.sign(torque)
+    elif part.view == "compliance":
+        chosen = chosen & (np.abs(torque) > FAR * shown.largest_Nm)
+        factor = 1 / np.where(chosen, torque, 1.0)
+    model, measured = factor * added, factor * (added + shown.left)
+    x = part.channel.values
+    for rises, colour in ((True, RISING), (False, FALLING)):
+        rows = thinned(chosen & (shown.rises == rises))
+        axes.plot(x[rows], measured[rows], "o", ms=2.4, mew=0, color=colour, alpha=0.35, rasterized=True)
+    rows = thinned(chosen)
+    axes.plot(x[rows], model[rows], "o", ms=2.0, mew=0, color=INK, rasterized=True)
+    low, high = np.quantile(measured[chosen], [0.002, 0.998])
+    room = 0.1 * max(high - low, 1e-9)
+    axes.set_ylim(low - room, high + room)
+    axes.set_xlabel(part.channel.label)
+    axes.set_ylabel(YLABELS[part.view])
+    axes.grid(True)
+    if part.channel.levels:
+        axes.set_xticks(range(len(part.channel.levels)), part.channel.levels)
+
+
+def _offset(axes: Axes, shown: Seen) -> None:
+    """Near zero torque: where the gap is crossed, by the reading and by the torque put right."""
+    prepared = shown.explained.prepared
+    read, history = prepared.sweep.history.torque_Nm, shown.history
+    gap = shown.solution.measured_rig().gap_arcsec
+    offset = shown.explained.offset_Nm
+    angle = shown.left + history.sign * gap / 2
+    reach = max(4 * abs(offset), 3 * prepared.band_Nm)
+    rows = thinned((np.abs(read) < reach) & ~prepared.outlier)
+    for rises, colour in ((True, RISING), (False, FALLING)):
+        own = rows[shown.rises[rows] == rises]
+        axes.plot(read[own], angle[own], "o", ms=2.8, mew=0, color=colour, alpha=0.6)
+    t = np.linspace(-reach, reach, 601)
+    axes.plot(t, np.sign(t) * gap / 2, color=PALETTE[2], lw=1.2, ls=(0, (4, 3)))
+    axes.plot(t, np.sign(t - offset) * gap / 2, color=INK, lw=1.4)
+    axes.set_xlabel("torque reading in N·m (dashed: the gap if the reading were right)")
+    axes.set_ylabel("angle, gap alone,\nin arcsec")
+    axes.grid(True)

@@ -1,0 +1,99 @@
+"""Which figures a diagnosis has; one place that tells kinds of measurement apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.leftover import channel_tests
+from pipeline.diagnosis.record import Sweep
+from results.diagnosis.words import channel_words
+from results.figures.diagnosis.contributions import parts, write_contributions
+from results.figures.diagnosis.held_out import write_held_out
+from results.figures.diagnosis.overview import write_overview
+from results.figures.diagnosis.panels import write_channels
+from results.figures.diagnosis.seen import Seen, seen
+
+SIGNIFICANT = 1e-4
+"""p-value below which a panel says that structure is left."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A figure: its file, and a caption that says what to see."""
+
+    path: Path
+    caption: str
+
+
+def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[Drawn]:
+    """Draw every figure that has something to show into `folder`."""
+    if isinstance(diagnosis.measurement, Sweep):
+        shown = seen(diagnosis)
+        return [] if shown is None else _sweep(shown, folder)
+    return []
+
+
+def _sweep(shown: Seen, folder: Path) -> list[Drawn]:
+    outcome = shown.diagnosis.outcome
+    found = []
+
+    def drawn(name: str, caption: str) -> Path:
+        found.append(Drawn(folder / f"{name}.png", caption))
+        return folder / f"{name}.png"
+
+    write_overview(drawn("measured_and_predicted", (
+        "Above, the measured angle on the simulated line; below, their difference. A difference inside the "
+        "band is what the design's own uncertainty allows; a pattern in it is not."
+    )), shown)  # fmt: skip
+    simulated = shown.bare.residual()
+    write_channels(
+        drawn("residual_simulation", (
+            "What the simulation leaves, its stiffness and gap calibrated as far as the design's uncertainty "
+            "allows, against every channel recorded. If nothing were missing, all points would lie in the "
+            "grey band and the lines on zero. Lines apart for rising and falling torque mean friction or "
+            "lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes."
+        )),
+        shown, simulated, "What the simulation leaves, against every channel", "measured − simulated, ″",
+    )  # fmt: skip
+    if parts(shown):
+        write_contributions(drawn("causes", (
+            "Each part of the extended model alone. Pale: the measurement with all other parts taken off. "
+            "Dark: what the model adds. The pale points should scatter evenly about the dark ones."
+        )), shown)  # fmt: skip
+    gain = outcome.gain
+    if gain is not None and gain.left and outcome.causes:
+        write_held_out(drawn("held_out", (
+            "Error on rows that were kept out of the fit. As far as the last bar comes down to the dashed "
+            "line, the extended model predicts as well as the instrument reads."
+        )), gain)  # fmt: skip
+    write_channels(
+        drawn("residual_model", _left_caption(shown)),
+        shown, shown.left, "What the best model leaves, against every channel", "measured − model, ″",
+        _told(shown),
+    )  # fmt: skip
+    return found
+
+
+def _told(shown: Seen) -> dict[str, str]:
+    """Of each channel, whether structure is left in it."""
+    return {
+        t.channel: f"structure left, {t.rms_arcsec:.2g}″" if t.p_value < SIGNIFICANT else "nothing left"
+        for t in channel_tests(shown.explained.prepared, shown.solution)
+    }
+
+
+def _left_caption(shown: Seen) -> str:
+    if shown.diagnosis.outcome.verdict == "unknown":
+        where = ", ".join(
+            dict.fromkeys(channel_words(u.channel) for u in shown.diagnosis.outcome.unexplained)
+        )
+        return (
+            f"What remains after the best model, unnamed structure included. The structure that no cause "
+            f"explains lies in: {where}; the figure before shows its course."
+        )
+    return (
+        "What remains after the best model: the points should fill the grey band evenly and the lines stay "
+        "near zero. Each panel says whether a test finds anything left."
+    )

@@ -1,0 +1,64 @@
+"""Before and after, on rows that were not used for fitting."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from pipeline.diagnosis.result import Gain
+from results.diagnosis.words import figures_text
+from results.figures.diagnosis.panels import DPI
+from results.figures.diagnosis.seen import MOST_POINTS
+from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+
+STEPS = (
+    ("before", "simulation as it stands", PALETTE[2]),
+    ("calibrated", "calibrated", PALETTE[1]),
+    ("after", "with the causes found", PALETTE[0]),
+)
+
+
+def write_held_out(path: Path, gain: Gain) -> None:
+    """Residuals row by row at the left, their rms at the right."""
+    with styled():
+        figure = new_figure(8.0, 3.6, DPI)
+        rows = figure.add_axes((0.095, 0.155, 0.51, 0.66))
+        bars = figure.add_axes((0.715, 0.155, 0.265, 0.66))
+        count = len(next(iter(gain.left.values())))
+        step = max(1, -(-count // MOST_POINTS))
+        for name, words, colour in STEPS:
+            values = gain.left[name]
+            rows.plot(
+                np.arange(1, count + 1)[::step], values[::step], "o", ms=2.8, mew=0, color=colour,
+                alpha=0.7, label=words, rasterized=True,
+            )  # fmt: skip
+        high = 1.1 * max(float(np.quantile(np.abs(v), 0.998)) for v in gain.left.values())
+        rows.set_ylim(-high, high)
+        rows.set_xlim(0, count + 1)
+        rows.axhline(0, color=MUTED, lw=0.8)
+        rows.grid(axis="y")
+        rows.set_xlabel("held-out row, in order")
+        rows.set_ylabel(f"measured − predicted, {gain.unit}")
+        sizes = [gain.rmse_before, gain.rmse_calibrated, gain.rmse_after]
+        bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in STEPS], edgecolor=INK, lw=0.6)
+        for i, size in enumerate(sizes):
+            bars.annotate(
+                figures_text(size), (i, size), (0, 4), textcoords="offset points", ha="center", va="bottom"
+            )
+        bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
+        bars.set_xlim(-0.5, 2.6)
+        bars.set_xticks(range(3), ["as it\nstands", "cali-\nbrated", "with\ncauses"])
+        bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
+        bars.set_ylabel(f"rms error, {gain.unit}")
+        bars.set_title(
+            f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6
+        )
+        figure.text(
+            0.035, 0.945, f"Error on {gain.held_out}, not used for fitting", fontsize=12, weight="bold", va="center"
+        )
+        figure.legend(
+            *rows.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,
+            fontsize=9, markerscale=2.0, handletextpad=0.1, columnspacing=1.2,
+        )  # fmt: skip
+        save_png(figure, path)

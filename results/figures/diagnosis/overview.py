@@ -1,0 +1,71 @@
+"""Measured against predicted: the torque-angle curve, and its difference from the simulation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from results.figures.diagnosis.panels import DPI, FALLING, RISING
+from results.figures.diagnosis.seen import Seen, thinned
+from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+
+
+def write_overview(path: Path, shown: Seen) -> None:
+    """Two panels over the torque that was read: angle, and measured less simulated."""
+    prediction, history = shown.diagnosis.prediction, shown.history
+    torque = history.torque_Nm
+    inside = ~shown.kept
+    model = shown.nominal - shown.left
+    with styled():
+        figure = new_figure(8.0, 6.0, DPI)
+        above = figure.add_axes((0.095, 0.475, 0.875, 0.455))
+        below = figure.add_axes((0.095, 0.095, 0.875, 0.325))
+        angle = prediction.angle_arcsec(history) + shown.nominal
+        for sign in (-1.0, 1.0):
+            t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)
+            line = prediction.compliance * t + sign * prediction.gap_arcsec / 2
+            spread = np.hypot(prediction.gap_std_arcsec / 2, prediction.compliance_std * t)
+            first = sign > 0
+            above.fill_between(
+                t, line - spread, line + spread, color=PALETTE[0], alpha=0.13, lw=0,
+                label="its stated uncertainty, 1σ" if first else None,
+            )  # fmt: skip
+            above.plot(t, line, color=PALETTE[0], lw=1.6, label="simulation" if first else None)
+            below.fill_between(t, -spread, spread, color=PALETTE[0], alpha=0.13, lw=0)
+        below.axhline(0, color=PALETTE[0], lw=1.6)
+        for rises, colour, words in ((True, RISING, "rising"), (False, FALLING, "falling")):
+            rows = thinned((shown.rises == rises) & ~inside)
+            for axes, values in ((above, angle), (below, shown.nominal)):
+                axes.plot(
+                    torque[rows], values[rows], "o", ms=2.6, mew=0, color=colour, alpha=0.55,
+                    rasterized=True, label=f"measured, torque {words}",
+                )  # fmt: skip
+        rows = thinned(shown.kept)
+        if shown.diagnosis.outcome.causes:
+            below.plot(
+                torque[rows], model[rows], ".", ms=2.0, mew=0, color=INK, label="extended model",
+                rasterized=True,
+            )  # fmt: skip
+        crossing = thinned(inside)
+        for axes, values in ((above, angle), (below, shown.nominal)):
+            axes.plot(
+                torque[crossing], values[crossing], "x", ms=3.2, mew=0.8, color=ACCENT, alpha=0.7,
+                label="not used: gap crossed, or outlier",
+            )  # fmt: skip
+            axes.axvline(0, color=MUTED, lw=0.6)
+            axes.grid(True)
+            axes.set_xlim(-1.04 * shown.largest_Nm, 1.04 * shown.largest_Nm)
+        high = 1.12 * float(np.quantile(np.abs(shown.nominal[shown.kept]), 0.999))
+        below.set_ylim(-high, high)
+        above.tick_params(labelbottom=False)
+        above.set_ylabel("output angle in arcsec")
+        below.set_ylabel("measured − simulated,\narcsec")
+        below.set_xlabel("output torque in N·m")
+        above.set_title("Measured and simulated angle, wave generator locked")
+        above.legend(loc="upper left", fontsize=9, markerscale=2.0)
+        if shown.diagnosis.outcome.causes:
+            handles, names = below.get_legend_handles_labels()
+            at = names.index("extended model")
+            below.legend([handles[at]], [names[at]], loc="upper right", fontsize=9, markerscale=4.0)
+        save_png(figure, path)

@@ -1,0 +1,153 @@
+"""Residual against every channel, one panel each, loading and unloading told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from results.figures.diagnosis.seen import Channel, Seen, thinned
+from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+RISING, FALLING = PALETTE[1], PALETTE[2]
+"""Colours of the two branches."""
+DPI = 150
+WIDTH = 8.0
+PANEL, TOP, BOTTOM, BETWEEN = 2.05, 0.95, 0.62, 0.72
+"""Inches: height of a panel; above all, below all, and between rows of panels."""
+BINS = 14
+FEWEST = 4
+LEVELS = 16
+APART = 0.04
+"""Share of a channel's range that, empty, parts clusters."""
+
+
+def write_channels(
+    path: Path,
+    shown: Seen,
+    left_arcsec: np.ndarray,
+    title: str,
+    ylabel: str,
+    told: Mapping[str, str] | None = None,
+    reach: float | None = None,
+) -> None:
+    """Write the panels.
+
+    Parameters
+    ----------
+    left_arcsec : (n,) what is drawn. told : a word for a channel's panel, by its key.
+    reach : half height of the axes [arcsec]; by the data where None.
+    """
+    channels = shown.channels
+    rows = -(-len(channels) // 2)
+    height = TOP + rows * PANEL + (rows - 1) * BETWEEN + BOTTOM
+    high = reach or _reach(shown, left_arcsec)
+    with styled():
+        figure = new_figure(WIDTH, height, DPI)
+        for i, channel in enumerate(channels):
+            row, column = divmod(i, 2)
+            alone = len(channels) == 1
+            axes = figure.add_axes((
+                0.095 + 0.475 * column,
+                (BOTTOM + (rows - 1 - row) * (PANEL + BETWEEN)) / height,
+                0.875 if alone else 0.40,
+                PANEL / height,
+            ))  # fmt: skip
+            _panel(axes, shown, channel, left_arcsec, high)
+            axes.set_ylabel(ylabel if column == 0 else "")
+            if told and channel.key in told:
+                axes.text(
+                    0.985, 0.03, told[channel.key], transform=axes.transAxes, ha="right", va="bottom",
+                    fontsize=9, color=INK,
+                    bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.5},
+                )  # fmt: skip
+        figure.text(0.035, 1 - 0.28 / height, title, fontsize=12, weight="bold", va="center")
+        branch_legend(figure, 1 - 0.62 / height, shown)
+        save_png(figure, path)
+
+
+def branch_legend(figure: Figure, y: float, shown: Seen) -> None:
+    """One legend for all panels: branches, sides of the gap, noise."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=RISING, marker="o", ms=4, lw=1.8, label="torque rising"),
+        Line2D([], [], color=FALLING, marker="o", ms=4, lw=1.8, label="torque falling"),
+    ]
+    if len(shown.channels) > 1:
+        handles += [
+            Line2D([], [], color=MUTED, lw=1.8, label="mean, T > 0"),
+            Line2D([], [], color=MUTED, lw=1.8, ls=(0, (2.5, 1.5)), label="mean, T < 0"),
+        ]
+    handles.append(Patch(color="#e4e7ea", label=f"noise ± 2σ (σ = {shown.noise_arcsec:.2g}″)"))
+    figure.legend(
+        handles=handles, loc="center left", bbox_to_anchor=(0.025, y), ncols=len(handles),
+        fontsize=9, columnspacing=1.3, handlelength=1.7, handletextpad=0.5, borderpad=0,
+    )  # fmt: skip
+
+
+def _panel(
+    axes: Axes, shown: Seen, channel: Channel, left: np.ndarray, high: float
+) -> None:
+    noise = 2 * shown.noise_arcsec
+    axes.axhspan(-noise, noise, color="#e4e7ea", lw=0, zorder=0)
+    axes.axhline(0, color=MUTED, lw=0.8)
+    values = channel.values
+    levels = np.unique(values)
+    few = len(levels) <= LEVELS
+    step = float(np.diff(levels).min()) if few and len(levels) > 1 else 0.0
+    for rises, colour, side in ((True, RISING, -1), (False, FALLING, 1)):
+        branch = shown.kept & (shown.rises == rises)
+        rows = thinned(branch)
+        moved = 0.12 * side * step if channel.key != "torque_Nm" else 0.0
+        axes.plot(
+            values[rows] + moved, np.clip(left[rows], -high, high), "o", ms=2.2, mew=0, color=colour,
+            alpha=0.35, rasterized=True, clip_on=False,
+        )  # fmt: skip
+        for sign, style in ((1, "-"), (-1, (0, (2.5, 1.5)))):
+            own = branch & (np.sign(shown.history.torque_Nm) == sign)
+            x, y = means(values[own], left[own], few)
+            axes.plot(x + moved, y, color=colour, lw=1.8, ls=style if channel.key != "torque_Nm" else "-")
+    axes.set_ylim(-high, high)
+    axes.set_xlabel(channel.label)
+    axes.grid(axis="y")
+    if channel.levels:
+        axes.set_xticks(range(len(channel.levels)), channel.levels)
+    elif channel.key == "cycle" and few:
+        axes.set_xticks(levels)
+    if step and channel.key != "torque_Nm":
+        axes.set_xlim(levels[0] - 0.5 * step, levels[-1] + 0.5 * step)
+
+
+def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Mean of y in bins of x: levels or clusters where they are few, else bins of equal count."""
+    if len(x) < FEWEST:
+        return np.empty(0), np.empty(0)
+    sorted_x = np.sort(x)
+    gaps = np.flatnonzero(np.diff(sorted_x) > APART * np.ptp(x))
+    if few:
+        where, codes = np.unique(x, return_inverse=True)
+    elif 1 < len(gaps) < LEVELS:  # a bin across a gap would put its mean where nothing was measured
+        where = np.arange(len(gaps) + 1, dtype=float)
+        codes = np.searchsorted((sorted_x[gaps] + sorted_x[gaps + 1]) / 2, x)
+    else:
+        edges = np.unique(np.quantile(x, np.linspace(0, 1, BINS + 1)[1:-1]))
+        codes = np.searchsorted(edges, x, side="right")
+        where = np.arange(codes.max() + 1, dtype=float)
+    count = np.bincount(codes, minlength=len(where))
+    good = count >= (1 if few else FEWEST)
+    mean_x = np.bincount(codes, x, len(where)) / np.maximum(count, 1)
+    mean_y = np.bincount(codes, y, len(where)) / np.maximum(count, 1)
+    return mean_x[good], mean_y[good]
+
+
+def _reach(shown: Seen, left: np.ndarray) -> float:
+    size = float(np.quantile(np.abs(left[shown.kept]), 0.998))
+    return 1.15 * max(size, 3 * shown.noise_arcsec)

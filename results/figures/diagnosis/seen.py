@@ -1,0 +1,146 @@
+"""What the figures of a torque sweep show: residuals, branches and channels as plain arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.record import History, Sweep
+from pipeline.diagnosis.solution import Solution, solved
+from pipeline.diagnosis.sweep import Explained
+
+MOST_POINTS = 4000
+"""Drawn in one panel; of more, every k-th is drawn."""
+STILL = 0.02
+"""Share of the largest torque below which a reversal is noise."""
+LABELS = {
+    "torque_Nm": "output torque in N·m",
+    "time_s": "time in s",
+    "cycle": "load cycle",
+    "temperature_C": "temperature in °C",
+    "input_angle_deg": "wave generator angle in °",
+    "unit": "unit under test",
+}
+LONGEST_NAME = 12
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A recorded channel: its axis label, values (n,), and names of its levels where it has any."""
+
+    key: str
+    label: str
+    values: np.ndarray
+    levels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A sweep's diagnosis as arrays over its rows."""
+
+    diagnosis: Diagnosis
+    explained: Explained
+
+    @property
+    def solution(self) -> Solution:
+        return self.explained.weighed.solution
+
+    @property
+    def history(self) -> History:
+        """As the gear felt it: a shifted torque reading is put right."""
+        return self.explained.prepared.rig.history
+
+    @property
+    def kept(self) -> np.ndarray:
+        return self.explained.prepared.kept
+
+    @property
+    def largest_Nm(self) -> float:
+        return float(np.abs(self.history.torque_Nm).max())
+
+    @property
+    def noise_arcsec(self) -> float:
+        return self.explained.prepared.noise.std_arcsec
+
+    @cached_property
+    def rises(self) -> np.ndarray:
+        """(n,) whether torque rises."""
+        return rising(self.history, STILL * self.largest_Nm) >= 0
+
+    @cached_property
+    def left(self) -> np.ndarray:
+        """(n,) measured less the best model."""
+        return self.solution.residual()
+
+    @cached_property
+    def bare(self) -> Solution:
+        """The simulation alone, calibrated within its stated uncertainty."""
+        return solved(self.solution.race, ())
+
+    @cached_property
+    def nominal(self) -> np.ndarray:
+        """(n,) measured less simulated angle, the zero of each unit fitted."""
+        out = self.explained.prepared.target.copy()
+        for rows in self.history.unit_slices:
+            own = rows[self.kept[rows]]
+            out[rows] -= out[own if len(own) else rows].mean()
+        return out
+
+    @property
+    def channels(self) -> list[Channel]:
+        """Channels that were recorded and vary."""
+        sweep, h = self.explained.prepared.sweep, self.history
+        found = [Channel("torque_Nm", LABELS["torque_Nm"], h.torque_Nm)]
+        if sweep.history.time_s is not None and h.time_s is not None:
+            found.append(_time(h.time_s))
+        if h.cycle.max() > 0:
+            found.append(Channel("cycle", LABELS["cycle"], _own_numbers(sweep)))
+        if h.temperature_C is not None:
+            found.append(Channel("temperature_C", LABELS["temperature_C"], h.temperature_C))
+        if h.input_angle_deg is not None:
+            found.append(Channel("input_angle_deg", LABELS["input_angle_deg"], h.input_angle_deg))
+        if len(sweep.units) > 1:
+            names = unit_names(sweep.units)
+            found.append(Channel("unit", LABELS["unit"], h.unit.astype(float), names))
+        return [c for c in found if np.ptp(c.values) > 0]
+
+    def channel(self, key: str) -> Channel:
+        """The channel of that name; torque where it was not recorded."""
+        return next((c for c in self.channels if c.key == key), self.channels[0])
+
+
+def seen(diagnosis: Diagnosis) -> Seen | None:
+    """None where no race was run."""
+    return None if diagnosis.explained is None else Seen(diagnosis, diagnosis.explained)
+
+
+def thinned(rows: np.ndarray) -> np.ndarray:
+    """Row numbers of a mask, no more than can be told apart."""
+    found = np.flatnonzero(rows)
+    return found[:: max(1, -(-len(found) // MOST_POINTS))]
+
+
+def unit_names(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names short and plain enough for an axis; else their numbers."""
+    good = all(n.isascii() and n.isprintable() and len(n) <= LONGEST_NAME for n in names)
+    return tuple(n.replace("$", r"\$") if good else f"{i + 1}" for i, n in enumerate(names))
+
+
+def _time(seconds: np.ndarray) -> Channel:
+    passed = seconds - seconds.min()
+    longest = passed.max()
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if longest > 3 * size:
+            return Channel("time_s", f"time in {unit}", passed / size)
+    return Channel("time_s", LABELS["time_s"], passed)
+
+
+def _own_numbers(sweep: Sweep) -> np.ndarray:
+    """(n,) cycle as the file numbers it."""
+    history = sweep.history
+    first = np.array([c[0] for c in sweep.cycles])
+    return history.cycle + first[history.unit]
