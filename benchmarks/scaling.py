@@ -20,34 +20,29 @@ from measure import run
 
 from fea.types import TetMesh
 
-FAR_MM = (2.4, 1.2, 0.8, 0.55, 0.43)
-SECTORS_DEG = (90.0, 360.0)
+FAR_MM = {90.0: (2.4, 1.2, 0.8, 0.55, 0.43, 0.4), 360.0: (2.4, 1.2, 0.8, 0.7)}
+"""Edge lengths for the quarter and for the whole cup."""
 NEAR_SHARE = 0.4
 MEMORY = 8 * 2**30
 """Address space of a run [bytes]: one that would need more fails."""
 
 
-def growth(far_mm: tuple[float, ...] = FAR_MM) -> list[dict[str, Any]]:
+def growth() -> list[dict[str, Any]]:
     """Unknowns, seconds and peak memory of the quarter and the whole cup at each edge length."""
     found = []
-    for far in far_mm:
+    for sector, far in ((sector, far) for sector, lengths in FAR_MM.items() for far in lengths):
         wedge = wedge_mesh(far)
-        for sector in SECTORS_DEG:
-            with tempfile.TemporaryDirectory() as name:
-                folder = Path(name)
-                np.savez(
-                    folder / "mesh.npz", nodes=wedge.nodes, cells=wedge.cells, facets=wedge.facets,
-                    facet_patch=wedge.facet_patch, patches=np.array(wedge.patches), sector=sector,
-                    sector_deg=wedge.sector_deg,
-                )  # fmt: skip
-                one = run(
-                    [sys.executable, str(Path(__file__).resolve()), "mesh.npz"],
-                    folder,
-                    None,
-                    MEMORY,
-                )
-            found.append({"far_mm": far, "sector_deg": sector} | one)
-            print(found[-1], flush=True)
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            np.savez(
+                folder / "mesh.npz", nodes=wedge.nodes, cells=wedge.cells, facets=wedge.facets,
+                facet_patch=wedge.facet_patch, patches=np.array(wedge.patches), sector=sector,
+                sector_deg=wedge.sector_deg,
+            )  # fmt: skip
+            command = [sys.executable, str(Path(__file__).resolve()), "mesh.npz"]
+            one = run(command, folder, None, MEMORY)
+        found.append({"far_mm": far, "sector_deg": sector} | one)
+        print(found[-1], flush=True)
     return sorted(found, key=lambda r: r.get("unknowns", 0))
 
 

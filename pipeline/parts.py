@@ -13,7 +13,7 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import swept_edges, swept_mesh
+from fea.solid.swept import can_be_swept, swept_edges, swept_mesh
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Elastic, Stiffness, TetMesh
 from geometry.design import Design
@@ -141,13 +141,15 @@ class PartModel:
             )
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
-        """The sector's mesh to a specification."""
+        """The sector's mesh to a specification: swept where that works, else by fTetWild."""
 
         def make() -> MeshedPart:
-            with self.shop.progress.stage(f"mesh of the {self.name}"):
-                swept = swept_mesh(self.shop.design, self.name, self.sector.degrees, spec)
-            if swept is not None:
-                return MeshedPart(swept, self._swept_edges)
+            if can_be_swept(self.shop.design, self.name):
+                with self.shop.progress.stage(f"mesh of the {self.name}"):
+                    swept = swept_mesh(self.shop.design, self.name, self.sector.degrees, spec)
+                if swept is not None:
+                    return MeshedPart(swept, self._swept_edges)
+                self.shop.progress.note("  the swept mesh fails a check: fTetWild instead")
             surface = self._surface
             with self.shop.progress.stage(f"mesh of the {self.name}"):
                 return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)

@@ -51,17 +51,24 @@ def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> 
     ------
     SolidError : the mesh would be too large.
     """
+    if not can_be_swept(design, part):
+        return None
     outline = meridian(design, part)
     column = column_of(design, part, outline)
-    holes = (design.shaft if part == "shaft" else design.flexspline).bolts is not None
-    keyed = part == "shaft" and design.shaft.keyway is not None
-    if keyed or (holes and column is None) or min(s.start[0] for s in outline.segments) < SAME:
-        return None
     try:
         polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading)
         return _curved(design, part, outline, column, sector_deg, polar, tets)
     except (MeshQualityError, MeshingError):
         return None
+
+
+def can_be_swept(design: Design, part: str) -> bool:
+    """Whether the part is a body of revolution off the axis, or one with holes in a plain column."""
+    outline = meridian(design, part)
+    holes = (design.shaft if part == "shaft" else design.flexspline).bolts is not None
+    keyed = part == "shaft" and design.shaft.keyway is not None
+    off_axis = min(s.start[0] for s in outline.segments) > SAME
+    return off_axis and not keyed and (not holes or column_of(design, part, outline) is not None)
 
 
 def _prisms(
