@@ -32,6 +32,21 @@ Out = Annotated[
         "--out", metavar="DIR", help="Where files go; default beside the input, NAME.out/"
     ),
 ]
+MeasuredFile = Annotated[
+    Path, typer.Argument(metavar="MEASURED.csv", help="Torque sweep, end points or specimens.")
+]
+TorqueFile = Annotated[
+    Path, typer.Argument(metavar="TORQUE.csv", help="A history with torque_Nm, as measured data.")
+]
+ModelPath = Annotated[
+    Path, typer.Option("--model", metavar="MODEL.toml", help="An extended model of `diagnose`.")
+]
+Kb = Annotated[
+    float | None, typer.Option("--Kb", metavar="X", help="K_b in N·m/rad, instead of FEA")
+]
+Ke = Annotated[
+    float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 
 
@@ -48,10 +63,14 @@ def _tell(line: str) -> None:
 def _answered(path: Path | None = None) -> Iterator[None]:
     """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
     from geometry.errors import ComputationError, DesignError
+    from pipeline.diagnosis.errors import MeasurementError, ModelFileError
 
     where = f"{path}: " if path else ""
     try:
         yield
+    except (MeasurementError, ModelFileError) as error:  # they name their own file
+        _tell(f"flexspline: {error}")
+        raise typer.Exit(2) from None
     except DesignError as error:
         _tell(f"flexspline: {where}{error}")
         raise typer.Exit(2) from None
@@ -152,12 +171,8 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
 @app.command()
 def backlash(
     design: DesignFile,
-    kb: Annotated[
-        float | None, typer.Option("--Kb", metavar="X", help="K_b in N·m/rad, instead of FEA")
-    ] = None,
-    ke: Annotated[
-        float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
-    ] = None,
+    kb: Kb = None,
+    ke: Ke = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -212,6 +227,41 @@ def export(
         files += write_decks(job.shop, job.folder) if deck else []
         record = {**heading(job.design), "files": [str(f) for f in files]}
         print(as_json(record) if json else "\n".join(record["files"]))
+
+
+@app.command()
+def diagnose(
+    design: DesignFile,
+    measured: MeasuredFile,
+    kb: Kb = None,
+    ke: Ke = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """What the simulation gets wrong, and why, from measured data."""
+    with _answered(design):
+        from results.diagnosis.command import diagnose_and_write
+
+        job = _job(design, out)
+        given = (_stiffness_option("--Kb", kb), _stiffness_option("--Ke", ke))
+        print(diagnose_and_write(job.shop, measured, given, job.folder, json))
+
+
+@app.command()
+def predict(
+    design: DesignFile,
+    torque: TorqueFile,
+    model: ModelPath,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """The angle for a torque history, by an extended model."""
+    with _answered(design):
+        from geometry.load import load_design
+        from results.diagnosis.prediction import predict_and_write
+
+        gear, folder = load_design(design), _folder(design, out)
+        print(predict_and_write(gear, model, torque, folder, json, _tell))
 
 
 @app.command()

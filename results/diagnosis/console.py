@@ -12,6 +12,7 @@ from results.diagnosis.words import (
     channel_words,
     figures_text,
     magnitude_words,
+    sentence,
     sure_words,
     title_of,
 )
@@ -23,7 +24,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     """Verdict, causes, gain and what to measure next."""
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
-    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {outcome.summary}")
+    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {sentence(outcome)}")
     for cause in outcome.causes:
         lines.append(f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}")
         if cause.alternatives:

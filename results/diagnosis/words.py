@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, log10
 
 from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.result import NamedCause
+from pipeline.diagnosis.result import NamedCause, Outcome
 from results.quantities import grouped
 
 CHANNELS = {
@@ -87,3 +87,11 @@ def figures_text(value: float, digits: int = 3) -> str:
         return "0"
     places = max(0, digits - 1 - floor(log10(abs(value))))
     return grouped(value, places)
+
+
+def sentence(outcome: Outcome) -> str:
+    """The verdict in one sentence; magnitudes with as many digits as their deviation bears."""
+    if outcome.verdict != "named":
+        return outcome.summary
+    listed = "; ".join(f"{c.title}, {magnitude_words(c)}" for c in outcome.causes)
+    return f"The simulation leaves out {listed}."

@@ -19,6 +19,7 @@ from results.diagnosis.words import (
     figures_text,
     magnitude_words,
     odds_words,
+    sentence,
     sure_words,
     title_of,
 )
@@ -76,7 +77,7 @@ def payload(
         "version": program_version(),
         "verdict": outcome.verdict,
         "heading": VERDICTS[outcome.verdict],
-        "sentence": outcome.summary,
+        "sentence": sentence(outcome),
         "measured": measured(diagnosis),
         "compared": compared(diagnosis, used),
         "causes": [_cause(c) for c in outcome.causes],
@@ -177,5 +178,12 @@ def _gain(gain: Gain, found: bool) -> dict[str, Any]:
         "held_out": gain.held_out,
         "unit": gain.unit,
         "rows": [[name, figures_text(float(value))] for name, value in rows],
-        "share": f"{100 * min(1.0, share):.0f}" if found and share > 0 else "",
+        "share": _percent(share) if found and share > 0 else "",
     }
+
+
+def _percent(share: float) -> str:
+    """Never rounded up to all: 99.97 % is 99.9 %."""
+    if share >= 1:
+        return "100"
+    return f"{int(1000 * share) / 10:.1f}" if share > 0.99 else f"{100 * share:.0f}"

@@ -18,9 +18,9 @@ def write_overview(path: Path, shown: Seen) -> None:
     inside = ~shown.kept
     model = shown.nominal - shown.left
     with styled():
-        figure = new_figure(8.0, 6.0, DPI)
-        above = figure.add_axes((0.095, 0.475, 0.875, 0.455))
-        below = figure.add_axes((0.095, 0.095, 0.875, 0.325))
+        figure = new_figure(8.0, 4.9, DPI)
+        above = figure.add_axes((0.095, 0.475, 0.875, 0.445))
+        below = figure.add_axes((0.095, 0.115, 0.875, 0.325))
         angle = prediction.angle_arcsec(history) + shown.nominal
         for sign in (-1.0, 1.0):
             t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)

@@ -19,7 +19,7 @@ RISING, FALLING = PALETTE[1], PALETTE[2]
 """Colours of the two branches."""
 DPI = 150
 WIDTH = 8.0
-PANEL, TOP, BOTTOM, BETWEEN = 2.05, 0.95, 0.62, 0.72
+PANEL, TOP, BOTTOM, BETWEEN = 1.8, 0.95, 0.62, 0.72
 """Inches: height of a panel; above all, below all, and between rows of panels."""
 BINS = 14
 FEWEST = 4
