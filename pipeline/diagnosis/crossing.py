@@ -126,7 +126,9 @@ def first_offset(
     at_zero = misfit(0.0)
     best = int(np.argmin(table))
     count = len(x) / step
+    if not np.isfinite(table[best]) or table[best] <= 0:
+        return 0.0
     nats = count / 2 * np.log(at_zero / table[best]) / 4  # neighbours are not independent
-    if not np.isfinite(table[best]) or abs(places[best]) < band_Nm / 2 or nats < FIRST_NATS:
+    if abs(places[best]) < band_Nm / 2 or nats < FIRST_NATS:
         return 0.0
     return float(places[best])

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from pipeline.diagnosis.effects.operators import rising
+from pipeline.diagnosis.effects.operators import rising, steadied
+from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.solution import Solution
 from pipeline.diagnosis.sweep import Prepared
 
@@ -60,9 +61,11 @@ def channel_tests(prepared: Prepared, solution: Solution) -> list[ChannelTest]:
 def _channels(prepared: Prepared) -> dict[str, np.ndarray]:
     h = prepared.rig.history
     side = rising(h, 0.02 * prepared.rig.torque_Nm)
+    # bins of the raw reading would sort a hold's rows by the torque's noise, which the angle shows
+    torque = steadied(h, 3 * torque_noise_Nm(h))
     found: dict[str, np.ndarray] = {
-        "torque_Nm": h.torque_Nm,
-        "direction": h.torque_Nm + 4 * prepared.rig.torque_Nm * side,
+        "torque_Nm": torque,
+        "direction": torque + 4 * prepared.rig.torque_Nm * side,
         "cycle": h.cycle.astype(float),
     }
     if prepared.sweep.history.time_s is not None and h.time_s is not None:

@@ -30,8 +30,8 @@ ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
 TUNINGS = 3
 OFFSET_ROUNDS = 4
-OFFSET_NATS = 6.0
-OFFSET_LEAST = 0.004
+OFFSET_NATS = 9.0
+OFFSET_LEAST = 0.012
 """Of the largest torque: a smaller offset moves nothing that counts."""
 FEWEST_KEPT = 12
 

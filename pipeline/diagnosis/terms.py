@@ -9,6 +9,7 @@ from math import log
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Rig, Shape
+from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.noise import Noise, stretches_of
 from pipeline.diagnosis.unnamed import Unnamed, competitors
 
@@ -54,12 +55,13 @@ class Columns:
     terms: tuple[Term, ...]
 
 
-NOISE_WINDOWS = (2, 6)
-"""Rows on each side over which the torque is taken as straight."""
+CORNER = 4.0
+NOISE_WINDOWS = (2, 7)
+"""Rows on each side over which the torque is taken as a parabola."""
 
 
 def jitter(history: History, width: int) -> np.ndarray:
-    """(n,) torque less a straight line through its neighbours: its noise, and little else.
+    """(n,) torque less a parabola through its neighbours: its noise, and little else.
 
     With noise in the torque reading, whatever knows the true torque better explains the angle better.
     These columns take that away from every term, so that no cause is found in the torque's noise.
@@ -69,19 +71,15 @@ def jitter(history: History, width: int) -> np.ndarray:
         n = len(rows)
         torque = history.torque_Nm[rows]
         t = np.arange(n, dtype=float) if history.time_s is None else history.time_s[rows]
-        t = (t - t[0]) / max(np.ptp(t), 1e-12)
-        low, high = np.maximum(np.arange(n) - width, 0), np.minimum(np.arange(n) + width + 1, n)
-
-        def summed(values: np.ndarray, low: np.ndarray = low, high: np.ndarray = high) -> np.ndarray:
-            total = np.concatenate([[0.0], np.cumsum(values)])
-            return total[high] - total[low]
-
-        count = (high - low).astype(float)
-        mean_t, mean = summed(t) / count, summed(torque) / count
-        spread = summed(t * t) / count - mean_t**2
-        slope = (summed(t * torque) / count - mean_t * mean) / np.maximum(spread, 1e-15)
-        out[rows] = torque - mean - slope * (t - mean_t)
-    return out
+        near = np.clip(np.arange(n)[:, None] + np.arange(-width, width + 1), 0, n - 1)
+        x = t[near] - t[:, None]
+        x /= np.maximum(np.abs(x).max(axis=1, keepdims=True), 1e-12)
+        basis = np.stack([np.ones_like(x), x, x * x], axis=2)
+        gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
+        right = np.einsum("nwi,nw->ni", basis, torque[near])
+        out[rows] = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
+    # beyond its noise it is a corner of the programme, not noise
+    return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
 
 
 def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
@@ -127,7 +125,7 @@ def columns_of(rig: Rig, known: dict[str, Cause]) -> Columns:
 def _competitor(rival: Unnamed, rivals: Sequence[Unnamed], at: int, rig: Rig) -> Term:
     alike = sum(r.channel == rival.channel for r in rivals)
     k = rival.columns.shape[1]
-    prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec / np.sqrt(k))
+    prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec)
     return Term(None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike))
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.effects.operators import lags, rising, stops
-from pipeline.diagnosis.effects.torque_program import ramp_s
+from pipeline.diagnosis.effects.operators import lags, rising, steadied, stops
+from pipeline.diagnosis.effects.torque_program import ramp_s, torque_noise_Nm
 from pipeline.diagnosis.prediction import REFERENCE_C
 
 NEW_SHARE = 0.25
@@ -22,7 +22,10 @@ SPLINE = 6
 LEADS = "output leads torque"
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 LEADING_LAGS = (0.05, 0.15, 0.4)
+SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 STEPS = 25
+TELLING = 7
+"""Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 MOST_LEVELS = 8
 """Columns of one competitor at most."""
 RIPPLES = range(3, 33)
@@ -44,21 +47,23 @@ class Unnamed:
 def competitors(rig: Rig) -> list[Unnamed]:
     """All flexible terms that a rig's record has the channels for.
 
-    Columns have unit rms, less what zero, compliance and gap can be.
+    Columns have unit rms. Ripples, waves and curves come less what zero, compliance and gap can be.
     """
     h = rig.history
     # a wave in time with the torque's own period is the torque without its noise, and would win by that
     free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
     inverse = np.linalg.pinv(free)
     found = []
-    for make in (_torque, _angle, _direction, _leading, _time, _cycle, _temperature, _position, _unit):
+    for make in (_torque, _softening, _angle, _direction, _leading, _time, _cycle, _temperature, _position, _unit):
         for channel, what, columns in make(rig):
-            rest = columns - free @ (inverse @ columns)
+            rest = columns
+            if make in (_torque, _angle, _time, _direction) and what != CHANGING:
+                rest = columns - free @ (inverse @ columns)
             was = np.sqrt(((columns - columns.mean(axis=0)) ** 2).mean(axis=0))
             rms = np.sqrt((rest**2).mean(axis=0))
             good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
-                found.append(Unnamed(channel, what, rest[:, good] / rms[good], make is _leading))
+                found.append(Unnamed(channel, what, rest[:, good] / rms[good], make in (_leading, _softening)))
     return found
 
 
@@ -68,12 +73,15 @@ Made = Iterator[tuple[str, str, np.ndarray]]
 def _torque(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     yield "torque_Nm", "a smooth function of torque", _splines(torque, SPLINE)
-    soft = np.abs(torque) ** np.array([[1.5], [2.0], [3.0]]) * np.sign(torque)
-    yield "torque_Nm", "softening", -soft.T[:, :1]
-    yield "torque_Nm", "softening", -soft.T[:, 1:2]
-    yield "torque_Nm", "softening", -soft.T[:, 2:]
     yield "torque_Nm", "a curve of torque, equal for both signs", (torque**2)[:, None]
     yield from _ripples(torque, "torque_Nm", "a ripple over torque")
+
+
+def _softening(rig: Rig) -> Made:
+    """Stiffness that falls with load: no known cause, and anchored where the load is small."""
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    for power in SOFTENING:
+        yield "torque_Nm", "stiffness that falls with load", (np.abs(torque) ** power * rig.history.sign)[:, None]
 
 
 def _angle(rig: Rig) -> Made:
@@ -98,13 +106,18 @@ def _leading(rig: Rig) -> Made:
     """Loops run through the wrong way round: friction and lag with their sign reversed."""
     yield "direction", LEADS, rising(rig.history, 0.02 * rig.torque_Nm)[:, None]
     thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
-    for r, state in zip(thresholds, stops(rig.history, thresholds, np.zeros(len(thresholds))).T, strict=True):
+    torque = steadied(rig.history, 2 * torque_noise_Nm(rig.history))
+    states = stops(rig.history, torque, thresholds, np.zeros(len(thresholds))).T
+    for r, state in zip(thresholds, states, strict=True):
         yield "direction", LEADS, (state / r)[:, None]
         yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
     ramp = ramp_s(rig.history)
     for share in LEADING_LAGS if ramp > 0 else ():
-        lagging = lags(rig.history.torque_Nm, rig.history, np.array([share * ramp]))[:, 0]
-        yield "direction", LEADS, (rig.history.torque_Nm - lagging)[:, None]
+        lagging = lags(torque, rig.history, np.array([share * ramp]))[:, 0]
+        yield "direction", LEADS, (torque - lagging)[:, None]
+
+
+CHANGING = "a stiffness that changes with time"
 
 
 def _time(rig: Rig) -> Made:
@@ -115,7 +128,8 @@ def _time(rig: Rig) -> Made:
         t[rows] = (rig.history.time_s[rows] - rig.history.time_s[rows[0]]) / rig.duration_s
     torque = rig.history.torque_Nm / rig.torque_Nm
     yield "time_s", "a smooth function of time", _splines(2 * t - 1, SPLINE)
-    yield "time_s", "a stiffness that changes with time", torque[:, None] * _splines(2 * t - 1, 3)
+    for count in (1, 2, 3):
+        yield "time_s", CHANGING, torque[:, None] * np.column_stack([t**k for k in range(1, count + 1)])
     for k in WAVES:
         turn = np.pi * k * t
         yield "time_s", "a wave in time", np.column_stack([np.cos(turn), np.sin(turn)])
@@ -134,8 +148,9 @@ def _cycle(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     yield "cycle", "a zero of its own in each cycle", levels
     yield "cycle", "a stiffness of its own in each cycle", levels * torque[:, None]
-    ramp = rig.history.cycle / (rig.cycles - 1) - 0.5
-    yield "cycle", "a stiffness that changes from cycle to cycle", (ramp * torque)[:, None]
+    ramp = rig.history.cycle / (rig.cycles - 1)
+    for power in (1.0, 0.5):
+        yield "cycle", "a stiffness that changes from cycle to cycle", (ramp**power * torque)[:, None]
     yield "cycle", "a gap of its own in each cycle", levels * rig.history.sign[:, None]
 
 
@@ -158,8 +173,9 @@ def _position(rig: Rig) -> Made:
         return
     torque = rig.history.torque_Nm / rig.torque_Nm
     levels = _levels(np.mod(angle, 360.0))
-    yield "input_angle_deg", "a zero of its own at each position", levels
-    yield "input_angle_deg", "a stiffness of its own at each position", levels * torque[:, None]
+    if len(np.unique(np.mod(angle, 360.0))) > TELLING:
+        yield "input_angle_deg", "a zero of its own at each position", levels
+        yield "input_angle_deg", "a stiffness of its own at each position", levels * torque[:, None]
     yield "input_angle_deg", "a gap of its own at each position", levels * rig.history.sign[:, None]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import dahl, stops
+from pipeline.diagnosis.effects.operators import dahl, steadied, stops
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.record import History
 
@@ -16,7 +16,7 @@ THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
 SPREAD_ELEMENTS = 14
-NOISE_WIDTHS = 6.0
+NOISE_WIDTHS = 2.0
 LOOP_ROWS = 201
 DEADBAND = 0.001
 """Reversals of torque below this share of the largest (or twice its noise) are noise."""
@@ -48,7 +48,7 @@ class FrictionHysteresis(Cause):
         largest = rig.torque_Nm
         deadband = max(DEADBAND * largest, 2 * torque_noise_Nm(rig.history))
         found: list[Shape] = []
-        # an element as narrow as the torque's noise would follow that noise, and be fitted to it
+        # an element narrower than the torque's noise cannot be seen
         least = NOISE_WIDTHS * torque_noise_Nm(rig.history) / largest
         shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-3]]
         for share in shares:
@@ -63,7 +63,7 @@ class FrictionHysteresis(Cause):
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return shape["threshold_Nm"] >= 3 * shape["deadband_Nm"]
+        return shape["threshold_Nm"] >= shape["deadband_Nm"]
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return self.columns_of_all([shape], history)[0]
@@ -78,7 +78,8 @@ class FrictionHysteresis(Cause):
             start = np.concatenate([np.full(len(r), s["start"]) for s, (r, _) in zip(stopped, parts, strict=True)])
             # the even and exponential spreads repeat thresholds; each pair is run once
             pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
-            run = stops(history, pairs[:, 0], pairs[:, 1])
+            torque = steadied(history, shapes[0]["deadband_Nm"])
+            run = stops(history, torque, pairs[:, 0], pairs[:, 1])
             at = 0
             for s, (r, weight) in zip(stopped, parts, strict=True):
                 mine = where[at : at + len(r)]

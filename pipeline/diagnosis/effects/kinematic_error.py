@@ -27,7 +27,7 @@ class KinematicError(Cause):
         return harmonic(shape, history)
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.3 * rig.scale_arcsec
+        return 0.15 * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return largest_amplitude(elements)

@@ -8,9 +8,9 @@ from pipeline.diagnosis.record import History
 
 
 def stops(
-    history: History, thresholds_Nm: np.ndarray, start: np.ndarray
+    history: History, torque_Nm: np.ndarray, thresholds_Nm: np.ndarray, start: np.ndarray
 ) -> np.ndarray:
-    """(n, m) states of elastic-perfectly plastic elements, each driven by torque.
+    """(n, m) states of elastic-perfectly plastic elements, each driven by `torque_Nm` (n,).
 
     s_i = clip(s_{i−1} + T_i − T_{i−1}, −r, r), from s = start·r before each unit's first row's T = 0.
     Rate-independent: only the order of torques counts.
@@ -21,8 +21,8 @@ def stops(
     out = np.empty((len(history), len(thresholds_Nm)))
     high, low = thresholds_Nm, -thresholds_Nm
     for rows in history.unit_slices:
-        state = np.clip(start * high + history.torque_Nm[rows[0]], low, high)
-        steps = np.diff(history.torque_Nm[rows], prepend=history.torque_Nm[rows[0]])
+        state = np.clip(start * high + torque_Nm[rows[0]], low, high)
+        steps = np.diff(torque_Nm[rows], prepend=torque_Nm[rows[0]])
         block = np.empty((len(rows), len(high)))
         for i, step in enumerate(steps):
             state = np.minimum(np.maximum(state + step, low), high)
@@ -34,7 +34,16 @@ def stops(
 def play(history: History, width_Nm: float) -> np.ndarray:
     """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone."""
     width = np.array([max(width_Nm, 1e-12)])
-    return history.torque_Nm - stops(history, width, np.zeros(1))[:, 0]
+    return history.torque_Nm - stops(history, history.torque_Nm, width, np.zeros(1))[:, 0]
+
+
+def steadied(history: History, width_Nm: float) -> np.ndarray:
+    """(n,) torque without reversals smaller than twice `width_Nm`: its running extremes.
+
+    Not smoothed: corners stay where they are. An operator with a memory, driven by the raw reading,
+    would follow the reading's noise and be fitted to it.
+    """
+    return play(history, width_Nm) + width_Nm * rising(history, width_Nm)
 
 
 def within_cycle(history: History) -> np.ndarray:
@@ -65,7 +74,7 @@ def dahl(history: History, stiffness_Nm: np.ndarray, deadband_Nm: float) -> np.n
     Exact for torque that is monotone between rows. Source: Dahl, A solid friction model, Aerospace
     Corporation TOR-158(3107-18) (1968).
     """
-    moved = play(history, deadband_Nm) + deadband_Nm * rising(history, deadband_Nm)
+    moved = steadied(history, deadband_Nm)
     out = np.empty((len(moved), len(stiffness_Nm)))
     for rows in history.unit_slices:
         steps = np.diff(moved[rows], prepend=0.0)

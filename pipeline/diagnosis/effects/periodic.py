@@ -9,16 +9,25 @@ import numpy as np
 from pipeline.diagnosis.effects.cause import Element, Rig, Shape
 from pipeline.diagnosis.record import History
 
-HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4), (3,), (6,))
+HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
 """Per turn, and which come together: eccentricity, the two lobes, and their multiples."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
 def harmonic_shapes(rig: Rig) -> list[Shape]:
-    """Sets of harmonics, where the input angle was recorded."""
-    if rig.history.input_angle_deg is None:
+    """Sets of harmonics, where the input angle was recorded.
+
+    At positions that are multiples of a harmonic's period it is the same everywhere; such a harmonic is
+    left out, unless there is but one position.
+    """
+    angle = rig.history.input_angle_deg
+    if angle is None:
         return []
-    return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS]
+    places = np.radians(np.unique(np.mod(angle, 360.0)))
+    seen = {n for n in (1, 2, 4) if len(places) == 1 or np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > 0.1}
+    return [
+        dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)
+    ]
 
 
 def harmonic(shape: Shape, history: History) -> np.ndarray:

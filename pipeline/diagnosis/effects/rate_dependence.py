@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import lags
-from pipeline.diagnosis.effects.torque_program import ramp_s
+from pipeline.diagnosis.effects.operators import lags, steadied
+from pipeline.diagnosis.effects.torque_program import ramp_s, torque_noise_Nm
 from pipeline.diagnosis.record import History
 
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
@@ -34,11 +34,14 @@ class RateDependence(Cause):
         if ramp <= 0:
             return []
         rate = rig.torque_Nm / ramp
+        common = {
+            "rate_Nm_per_s": rate, "ramp_s": ramp, "deadband_Nm": 2 * torque_noise_Nm(rig.history),
+        }  # fmt: skip
         found: list[Shape] = [
-            {"lag_s": s * ramp, "exponent": 1.0, "rate_Nm_per_s": rate, "ramp_s": ramp} for s in LAG_SHARES
+            {"lag_s": s * ramp, "exponent": 1.0, **common} for s in LAG_SHARES
         ]
         found += [
-            {"lag_s": LAG_SHARES[1] * ramp, "exponent": n, "rate_Nm_per_s": rate, "ramp_s": ramp} for n in EXPONENTS
+            {"lag_s": LAG_SHARES[1] * ramp, "exponent": n, **common} for n in EXPONENTS
         ]
         return found
 
@@ -48,7 +51,8 @@ class RateDependence(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, n = shape["lag_s"], shape["exponent"]
-        rate = (history.torque_Nm - lags(history.torque_Nm, history, np.array([tau]))[:, 0]) / tau
+        torque = steadied(history, shape["deadband_Nm"])
+        rate = (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
         if n != 1.0:
             unit = shape["rate_Nm_per_s"]
             rate = unit * np.sign(rate) * np.abs(rate / unit) ** n

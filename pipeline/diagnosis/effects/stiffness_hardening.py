@@ -12,10 +12,10 @@ from pipeline.diagnosis.record import History
 LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
 """Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
-KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.8)
-SCALES = (0.1, 0.2, 0.35, 0.6, 1.0)
-POWERS = (0.5, 0.7, 0.85)
-LIMITS = {0: (0.1, 0.85), 1: (0.09, 1.0), 2: (0.45, 0.88), 3: (1.0, 1.0), 4: (0.09, 1.2), 5: (0.08, 0.5)}
+KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.75)
+SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
+POWERS = (0.5, 0.6, 0.72)
+LIMITS = {0: (0.1, 0.78), 1: (0.1, 0.7), 2: (0.48, 0.76), 3: (1.0, 1.0), 4: (0.1, 0.7), 5: (0.08, 0.5)}
 """Of the parameter, by law."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
 """Between which shares of the largest torque the contract takes chord stiffness."""

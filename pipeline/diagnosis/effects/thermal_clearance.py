@@ -28,7 +28,13 @@ class ThermalClearance(Cause):
         if rig.history.temperature_C is None:
             return []
         varies = rig.duration_s > 0 and np.ptp(rig.history.temperature_C) > 0.5
-        return [{"lag_s": 0.0}, *({"lag_s": s * rig.duration_s} for s in LAGS if varies)]
+        longest = LAGS[-1] * rig.duration_s
+        lags_s = [0.0, *(s * rig.duration_s for s in LAGS if varies)]
+        return [{"lag_s": lag, "longest_lag_s": longest} for lag in lags_s]
+
+    def possible(self, shape: Shape) -> bool:
+        """A lag as long as the record makes any temperature a constant, which is another cause."""
+        return shape["lag_s"] <= shape["longest_lag_s"]
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         if history.temperature_C is None:

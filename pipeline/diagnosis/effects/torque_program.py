@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pipeline.diagnosis.record import History
@@ -10,27 +12,34 @@ STILL = 0.08
 """A hold's torque moves at less than this share of the ramps' rate,"""
 MOVING = 0.3
 """and just before and after it at more than this."""
+BESIDE = 5
+"""Rows that are just before or after."""
 SPAN = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
-FEWEST = 5
-WINDOW = 3
+FEWEST = 3
+CLEAR = 8.0
+"""Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+LARGEST_NOISE = 0.02
+"""Of the largest torque: what looks like more is no noise."""
 
 
-def local_rates(history: History, rows: np.ndarray) -> np.ndarray:
-    """(m,) slope of torque over time [N·m/s] at one unit's rows, over three rows on each side."""
+@dataclass(frozen=True)
+class Rates:
+    """Torque rate [N·m/s] from each row of one unit to `width` rows later, (m,)."""
+
+    width: int
+    values: np.ndarray
+
+
+def rates_of(history: History, rows: np.ndarray) -> Rates:
+    """Rates along one unit's rows, over a width that its torque noise allows."""
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
-    n = len(rows)
-    low, high = np.maximum(np.arange(n) - WINDOW, 0), np.minimum(np.arange(n) + WINDOW, n - 1)
-    half = (high - low) // 2
-    # difference of the means of the later and the earlier rows: as good as a fit, and simple
-    total = np.concatenate([[0.0], np.cumsum(torque)])
-    clock = np.concatenate([[0.0], np.cumsum(t)])
-    count = np.maximum(half, 1)
-    later = (total[high + 1] - total[high + 1 - count]) / count
-    early = (total[low + count] - total[low]) / count
-    step = (clock[high + 1] - clock[high + 1 - count]) / count - (clock[low + count] - clock[low]) / count
-    return (later - early) / np.maximum(step, 1e-12)
+    noise = torque_noise_Nm(history)
+    step = np.quantile(np.abs(np.diff(torque)), 0.75) if len(rows) > 1 else 0.0
+    width = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, max(1, len(rows) // 20)))
+    span = np.maximum(t[width:] - t[:-width], 1e-12)
+    return Rates(width, (torque[width:] - torque[:-width]) / span)
 
 
 def ramp_rate(history: History) -> float:
@@ -39,9 +48,9 @@ def ramp_rate(history: History) -> float:
         return 0.0
     found = []
     for rows in history.unit_slices:
-        if len(rows) < 2 * WINDOW or np.ptp(history.time_s[rows]) == 0:
+        if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
             continue
-        rate = np.abs(local_rates(history, rows))
+        rate = np.abs(rates_of(history, rows).values)
         fast = np.quantile(rate, 0.95)
         moving = rate[rate > MOVING * fast]
         if len(moving):
@@ -54,23 +63,25 @@ def holds(history: History) -> list[np.ndarray]:
     fast = ramp_rate(history)
     if fast == 0:
         return []
-    largest = float(np.abs(history.torque_Nm).max())
     noise = torque_noise_Nm(history)
-    span = SPAN * largest + 6 * noise
+    span = SPAN * float(np.abs(history.torque_Nm).max()) + 6 * noise
     found = []
     for rows in history.unit_slices:
-        if len(rows) < 2 * WINDOW:
+        if len(rows) < 2 * FEWEST:
             continue
         assert history.time_s is not None
-        gap = np.median(np.diff(history.time_s[rows]))
-        still = max(STILL * fast, 3 * noise / (np.sqrt(WINDOW) * WINDOW * max(gap, 1e-12)))
-        rate = np.abs(local_rates(history, rows))
-        edges = np.diff(np.r_[0, (rate < min(still, MOVING * fast)).astype(int), 0])
+        rates = rates_of(history, rows)
+        width, rate = rates.width, np.abs(rates.values)
+        t = history.time_s[rows]
+        floor = 4 * noise / np.maximum(t[width:] - t[:-width], 1e-12)
+        limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
+        edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
         for i, j in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-            before, after = rate[max(0, i - FEWEST) : i], rate[j : j + FEWEST]
+            before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
-            if j - i >= FEWEST and sharp and np.ptp(history.torque_Nm[rows[i:j]]) < span:
-                found.append(rows[i:j])
+            hold = rows[i : j + width]
+            if len(hold) >= FEWEST and sharp and np.ptp(history.torque_Nm[hold]) < span:
+                found.append(hold)
     return found
 
 
@@ -88,11 +99,17 @@ def ramp_s(history: History) -> float:
 
 
 def torque_noise_Nm(history: History) -> float:
-    """White noise of the torque reading: median of third differences, which ramps do not enter."""
+    """White noise of the torque reading [N·m].
+
+    The lesser of two estimates: from the median of third differences, which ramps do not enter, and
+    from the smallest fifth of the steps between rows, which lie in holds if there are any.
+    """
     found = []
     for rows in history.unit_slices:
         torque = history.torque_Nm[rows]
         if len(torque) >= 8:
-            third = np.abs(np.diff(torque, 3))
-            found.append(np.median(third) / 0.6745 / np.sqrt(20))
-    return float(np.median(found)) if found else 0.0
+            third = np.median(np.abs(np.diff(torque, 3))) / 0.6745 / np.sqrt(20)
+            first = np.quantile(np.abs(np.diff(torque)), 0.2) / 0.2533 / np.sqrt(2)
+            found.append(min(third, first))
+    largest = float(np.abs(history.torque_Nm).max())
+    return min(float(np.median(found)), LARGEST_NOISE * largest) if found else 0.0

@@ -1,0 +1,167 @@
+"""The predicted total of one unit as a distribution, and the least unlikely way to a measured one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, inf, radians
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ndtr
+
+from geometry.design import Design
+from pipeline.backlash import ARCSEC_PER_RAD, gap_angle
+from pipeline.bearing_play import involute_clearance, small_displacement_clearance
+
+REACH = 6.0
+"""Standard deviations of the play that are integrated."""
+NODES = 200
+COVERED = 0.95
+"""Of the interval that is called the envelope."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """The least unlikely play and flank clearance that give a total; distances in standard deviations.
+
+    `distance` is from the design, all sources together; inf where the design states no uncertainty
+    and the total is another.
+    """
+
+    flank_clearance_um: float
+    radial_clearance_um: float
+    distance: float
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """The four-term sum at one torque, with the play's curve and its end.
+
+    Attributes
+    ----------
+    total_arcsec : 2T·compliance + gap.
+    play_um, play_weight : (k,) nodes of the play's distribution, none beyond c_max.
+    play_arcsec : (k,) what each adds beyond the design's play.
+    straight_std_arcsec : of flank clearance, Young's modulus and reading, which enter as a sum.
+    """
+
+    design: Design
+    torque_Nm: float
+    total_arcsec: float
+    play_um: np.ndarray
+    play_weight: np.ndarray
+    play_arcsec: np.ndarray
+    straight_std_arcsec: float
+
+    @property
+    def std_arcsec(self) -> float:
+        """Of the total, the play's curvature included."""
+        return hypot(self.straight_std_arcsec, float(np.sqrt(self.play_weight @ self.play_arcsec**2)))
+
+    def above(self, total_arcsec: float) -> float:
+        """Probability that a good unit's total is larger."""
+        off = total_arcsec - self.total_arcsec - self.play_arcsec
+        if self.straight_std_arcsec == 0:
+            return float(self.play_weight @ (off < 0))
+        return float(self.play_weight @ ndtr(-off / self.straight_std_arcsec))
+
+    def p_value(self, total_arcsec: float) -> float:
+        """Two-sided: twice the smaller tail."""
+        if self.std_arcsec == 0:
+            return 1.0 if np.isclose(total_arcsec, self.total_arcsec) else 0.0
+        above = self.above(total_arcsec)
+        return min(1.0, 2 * min(above, 1 - above))
+
+    @property
+    def interval_arcsec(self) -> tuple[float, float]:
+        """Holds COVERED of good units."""
+        if self.std_arcsec == 0:
+            return self.total_arcsec, self.total_arcsec
+        tail, reach = (1 - COVERED) / 2, 12 * self.std_arcsec
+        ends = self.total_arcsec - reach, self.total_arcsec + reach
+        low, high = (
+            float(brentq(lambda x, q=q: self.above(x) - q, *ends)) for q in (1 - tail, tail)
+        )
+        return low, high
+
+    @property
+    def play_end_arcsec(self) -> float:
+        """The most that play adds beyond the design's, where the involute model ends; inf: no end."""
+        design = self.design
+        if design.bearing.bearing_play_model != "involute":
+            return inf
+        return _play_arcsec(design, design.gear.bearing_play_limit_um) - _play_arcsec(
+            design, design.bearing.radial_clearance_um
+        )
+
+    def limit_arcsec(self, flank_stds: float = 1.0) -> float:
+        """The total with the play where the model ends and flank clearance so many deviations up."""
+        flank = _flank_arcsec(self.design, self.design.uncertainty.flank_clearance_um)
+        return self.total_arcsec + self.play_end_arcsec + flank_stds * flank
+
+    def explanation(self, total_arcsec: float) -> Explanation:
+        """How far the clearances must be from the design to give a total, and where they are then."""
+        design, doubt = self.design, self.design.uncertainty
+        j, c = design.gear.flank_clearance_um, design.bearing.radial_clearance_um
+        off = total_arcsec - self.total_arcsec
+        if self.straight_std_arcsec == 0:
+            return Explanation(j, c, 0.0 if abs(off) < 1e-9 else inf)
+        rest = off - self.play_arcsec
+        steps = np.zeros_like(rest)
+        if doubt.radial_clearance_um > 0:
+            steps = (self.play_um - c) / doubt.radial_clearance_um
+        distance = np.hypot(steps, rest / self.straight_std_arcsec)
+        best = int(np.argmin(distance))
+        flank = _flank_arcsec(design, doubt.flank_clearance_um)
+        share = (flank / self.straight_std_arcsec) ** 2
+        taken = rest[best] * share / _flank_arcsec(design, 1.0)
+        return Explanation(j + float(taken), float(self.play_um[best]), float(distance[best]))
+
+
+def envelope(
+    design: Design, compliance: float, gap_arcsec: float, torque_Nm: float, reading_std_arcsec: float
+) -> Envelope:
+    """Of a design at ±T [N·m]; `compliance` [arcsec per N·m].
+
+    Young's modulus and flank clearance enter the sum linearly and are normal. Play enters by the
+    design's model: normal about c, and only as far as c_max, where the involute model ends.
+    """
+    doubt = design.uncertainty
+    c, s = design.bearing.radial_clearance_um, doubt.radial_clearance_um
+    if s > 0:
+        top = REACH
+        if design.bearing.bearing_play_model == "involute":
+            top = min(REACH, (design.gear.bearing_play_limit_um - c) / s)
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        at = -REACH + (top + REACH) * (x + 1) / 2
+        weight = w * np.exp(-(at**2) / 2)
+        play = c + s * at
+    else:
+        play, weight = np.array([c]), np.ones(1)
+    here = _play_arcsec(design, c)
+    added = np.array([_play_arcsec(design, float(p)) for p in play]) - here
+    windup = 2 * torque_Nm * compliance
+    straight = hypot(
+        windup * doubt.youngs_modulus_pct / 100,
+        _flank_arcsec(design, doubt.flank_clearance_um),
+        reading_std_arcsec,
+    )
+    return Envelope(
+        design, torque_Nm, windup + gap_arcsec, play, weight / weight.sum(), added, straight
+    )
+
+
+def _flank_arcsec(design: Design, clearance_um: float) -> float:
+    g = design.gear
+    return ARCSEC_PER_RAD * gap_angle(
+        clearance_um * 1e-3, g.module_mm, g.teeth_flexspline, radians(g.pressure_angle_deg)
+    )
+
+
+def _play_arcsec(design: Design, play_um: float) -> float:
+    alpha = radians(design.gear.pressure_angle_deg)
+    if design.bearing.bearing_play_model == "involute":
+        opened = involute_clearance(play_um * 1e-3, design.gear.centre_distance_mm, alpha)
+    else:
+        opened = small_displacement_clearance(play_um * 1e-3, alpha)
+    return _flank_arcsec(design, opened * 1e3)

@@ -1,0 +1,95 @@
+"""From weighed end points to extended models, and what they are worth on units left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline.diagnosis.effects.cause import Element, Rig
+from pipeline.diagnosis.end_points.finding import UnitFinding
+from pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
+from pipeline.diagnosis.end_points.race import Hypothesis
+from pipeline.diagnosis.end_points.terms import Term, terms_of
+from pipeline.diagnosis.model import ExtendedModel
+from pipeline.diagnosis.prediction import Prediction
+from pipeline.diagnosis.record import EndPoints
+from pipeline.diagnosis.result import Gain
+
+FEWEST_UNITS = 3
+"""To hold out one and still see what is common."""
+
+
+def extended(
+    weighed: Weighed, fleet: Fleet, names: Sequence[str], prediction: Prediction
+) -> ExtendedModel:
+    """The calibrated simulation with the terms of a hypothesis; a unit's own gap beside the common one."""
+    elements: dict[str, tuple[Element, ...]] = {}
+    for term, amplitude in zip(weighed.terms, weighed.mean, strict=True):
+        elements[term.cause] = elements.get(term.cause, ()) + term.elements(float(amplitude))
+    return ExtendedModel(
+        prediction.compliance,
+        prediction.gap_arcsec + weighed.common[0],
+        {n: float(fleet.mid[fleet.unit == u].mean()) for u, n in enumerate(names)},
+        elements,
+        {n: (0.0, float(weighed.own[u])) for u, n in enumerate(names)},
+    )
+
+
+def rivals_for_unit(
+    points: EndPoints, rig: Rig, prediction: Prediction, unit: UnitFinding, ids: Sequence[str]
+) -> list[ExtendedModel]:
+    """One model for each cause, its amplitude such that the unit's excess is explained by it alone.
+
+    Of a cause's shapes, the first whose sign is possible.
+    """
+    excess = unit.total_arcsec - unit.predicted_arcsec
+    row = points.torque_Nm == unit.torque_Nm
+    found = []
+    for cause in ids:
+        for term in terms_of(points, rig):
+            column = float(term.column[row][0])
+            if term.cause != cause or term.channel != "total" or column == 0:
+                continue
+            amplitude = excess / column
+            if amplitude < 0 and term.positive:
+                continue
+            found.append(_model(prediction, term, amplitude))
+            break
+    return found
+
+
+def _model(prediction: Prediction, term: Term, amplitude: float) -> ExtendedModel:
+    elements = {term.cause: term.elements(amplitude)}
+    return ExtendedModel(prediction.compliance, prediction.gap_arcsec, {}, elements, {})
+
+
+def gain_of(fleet: Fleet, best: Hypothesis, names: Sequence[str]) -> Gain | None:
+    """Each unit in turn predicted from the others; errors of totals [arcsec].
+
+    None for what is one unit's own, which no other unit can predict, and for fewer than three units.
+    """
+    if fleet.units < FEWEST_UNITS or best.own is not None:
+        return None
+    terms = [t for t in best.best.terms if t.channel == "total"]
+    calibrated, after = fleet.deviation.copy(), fleet.deviation.copy()
+    for u in range(fleet.units):
+        out = fleet.unit == u
+        _, unit = np.unique(fleet.unit[~out], return_inverse=True)
+        rest = replace(
+            fleet, deviation=fleet.deviation[~out], mid=fleet.mid[~out], torque=fleet.torque[~out], unit=unit
+        )
+        calibrated[out] -= weigh(rest, ()).common[0]
+        trained = weigh(rest, [replace(t, column=t.column[~out]) for t in terms])
+        after[out] -= trained.common[0]
+        for term, amplitude in zip(terms, trained.mean, strict=True):
+            after[out] -= amplitude * term.column[out]
+    return Gain(
+        f"each of {len(names)} units in turn", _rms(fleet.deviation), _rms(calibrated), _rms(after),
+        best.best.reading, held_out_rows=tuple(range(len(fleet.deviation))),
+    )  # fmt: skip
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))

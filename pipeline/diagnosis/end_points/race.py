@@ -1,0 +1,88 @@
+"""The race of hypotheses: which causes, of all units or of one, explain the end points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import log
+
+import numpy as np
+from scipy.special import logsumexp
+
+from pipeline.diagnosis.effects.cause import Element, Rig
+from pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
+from pipeline.diagnosis.end_points.terms import Term, terms_of
+from pipeline.diagnosis.record import EndPoints
+
+SUSPECTS = 5
+"""Units that may have a cause of their own: those furthest from the prediction."""
+PAIR_NATS = -2.0
+"""Log prior odds of two causes against one."""
+UNNAMED_NATS = -2.0
+UNNAMED = "?torque_Nm"
+FREE = 100.0
+"""So many times wider a prior leaves an amplitude to the likelihood."""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Some causes, of all units (`own` is None) or of one, with all their shapes.
+
+    `score` is log evidence and log prior together; `penalised` the largest log likelihood less
+    ½ log n for each amplitude; `best` its likeliest shapes.
+    """
+
+    causes: tuple[str, ...]
+    own: int | None
+    score: float
+    penalised: float
+    best: Weighed
+
+
+def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> list[Hypothesis]:
+    """All hypotheses, the likeliest first; the null has no causes and score 0."""
+    terms = terms_of(points, rig)
+    several = several_torques(fleet)
+    if not several:  # a zero per unit absorbs what shifts mid positions, and a curve needs torques
+        terms = [t for t in terms if t.channel == "total"]
+    else:
+        curve = (fleet.torque / rig.torque_Nm) ** 2
+        terms.append(Term(UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,))))
+    ids = list(dict.fromkeys(t.cause for t in terms))
+    null = weigh(fleet, ())
+    found = [Hypothesis((), None, 0.0, null.likelihood, null)]
+    for cause in ids:
+        mine = [t for t in terms if t.cause == cause]
+        odds = (UNNAMED_NATS if cause == UNNAMED else 0.0) - log(len(ids))
+        found.append(_of(fleet, [(t,) for t in mine], None, odds, null))
+        for u in suspects if fleet.units > 1 and cause != UNNAMED else ():
+            rows = fleet.unit == u
+            one = [(t.of(rows),) for t in mine]
+            found.append(_of(fleet, one, u, odds - log(fleet.units), null))
+    for a, b in combinations(ids, 2) if several else ():
+        pairs = [(s, t) for s in terms if s.cause == a for t in terms if t.cause == b]
+        odds = PAIR_NATS - log(len(ids) ** 2 / 2) + (UNNAMED_NATS if UNNAMED in (a, b) else 0.0)
+        found.append(_of(fleet, pairs, None, odds, null))
+    return sorted(found, key=lambda h: -h.score)
+
+
+def several_torques(fleet: Fleet) -> bool:
+    """Whether some unit was measured at more than one torque."""
+    return any(len(np.unique(fleet.torque[fleet.unit == u])) > 1 for u in range(fleet.units))
+
+
+def _of(
+    fleet: Fleet, sets: Sequence[tuple[Term, ...]], own: int | None, odds: float, null: Weighed
+) -> Hypothesis:
+    weighed = [weigh(fleet, terms) for terms in sets]
+    scores = [w.evidence for w in weighed]
+    best = weighed[int(np.argmax(scores))]
+    score = float(logsumexp(scores)) - log(len(scores)) - null.evidence + odds
+    free = weigh(fleet, [replace(t, spread=FREE * t.spread) for t in best.terms])
+    allowed = all(not t.positive or m > 0 for t, m in zip(best.terms, free.mean, strict=True))
+    penalty = len(best.terms) * log(max(len(fleet.deviation), 2)) / 2
+    return Hypothesis(
+        tuple(t.cause for t in best.terms), own, score,
+        free.likelihood - penalty if allowed else -np.inf, best,
+    )  # fmt: skip

@@ -1,0 +1,95 @@
+"""What can move end points apart or sideways, in the few shapes that end points can show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from pipeline.diagnosis.effects.friction_hysteresis import SINGLE
+from pipeline.diagnosis.prediction import Prediction
+from pipeline.diagnosis.record import EndPoints, History
+
+HARDENING = ({"law": 0, "parameter": 0.2}, {"law": 0, "parameter": 0.45}, {"law": 0, "parameter": 0.8},
+             {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0})  # fmt: skip
+HELD = (0, 2)
+"""Stiffness as simulated at full load, or near zero."""
+FRICTION_SHARES = (0.04, 0.3, 0.6)
+"""Thresholds as shares of the largest torque."""
+SIDES = (-1.0, 1.0)
+"""Torque raised to ±T leaves friction holding back; torque come down to ±T, holding forward."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """One hypothesis: a column for the totals or the mid positions of the rows.
+
+    Attributes
+    ----------
+    cause : its id. channel : "total" or "mid". column : (n,) arcsec per unit of amplitude.
+    spread : prior standard deviation of the amplitude. positive : whether physics forbids less than 0.
+    element : an element with amplitude 1, for models.
+    """
+
+    cause: str
+    channel: str
+    column: np.ndarray
+    spread: float
+    positive: bool
+    element: Element
+
+    def of(self, unit_rows: np.ndarray) -> Term:
+        """The same of one unit alone; `unit_rows` (n,) mask."""
+        return replace(self, column=np.where(unit_rows, self.column, 0.0))
+
+    def elements(self, amplitude: float) -> tuple[Element, ...]:
+        """The cause's elements at an amplitude."""
+        return (Element(self.element.shape, tuple(a * amplitude for a in self.element.amplitudes)),)
+
+
+def rig_of(points: EndPoints, prediction: Prediction) -> Rig:
+    """A rig that goes straight to +T and to −T of every row."""
+    largest = float(points.torque_Nm.max())
+    none = np.zeros(2, int)
+    return Rig(prediction, History(np.array([largest, -largest]), none, none))
+
+
+def terms_of(points: EndPoints, rig: Rig) -> list[Term]:
+    """All hypotheses for a file's rows."""
+    torque, largest = points.torque_Nm, rig.torque_Nm
+    ones = np.ones_like(torque)
+    clearance, series = causes()["clearance_offset"], causes()["series_compliance"]
+    hardening, asymmetry = causes()["stiffness_hardening"], causes()["direction_asymmetry"]
+    friction = causes()["friction_hysteresis"]
+    found = [
+        Term(clearance.id, "total", ones, clearance.spread({}, rig), False, Element({}, (1.0,))),
+        Term(series.id, "total", 2 * torque, series.spread({}, rig), False, Element({}, (1.0,))),
+        Term(asymmetry.id, "mid", torque, asymmetry.spread({}, rig), False,
+             Element({"exponent": 1.0, "rounding_Nm": 0.0, "largest_torque_Nm": largest}, (1.0,))),
+    ]  # fmt: skip
+    for law in HARDENING:
+        for held in HELD:
+            shape = {**law, "held": held, "largest_torque_Nm": largest}
+            found.append(Term(
+                hardening.id, "total", 2 * _at(hardening, shape, torque), hardening.spread(shape, rig),
+                True, Element(shape, (1.0,)),
+            ))  # fmt: skip
+    for share in FRICTION_SHARES:
+        shape = {
+            "threshold_Nm": share * largest, "spread": SINGLE, "loaded": 0, "held": 1, "start": 0,
+            "largest_torque_Nm": largest, "deadband_Nm": 0.0,
+        }  # fmt: skip
+        width = 2 * np.minimum(1.0, torque / (share * largest))
+        for side in SIDES:
+            found.append(Term(
+                friction.id, "total", side * width, friction.spread(shape, rig), True,
+                Element(shape, (1.0,)),
+            ))  # fmt: skip
+    return found
+
+
+def _at(cause: Cause, shape: Shape, torque: np.ndarray) -> np.ndarray:
+    none = np.zeros(len(torque), int)
+    return cause.columns(shape, History(torque, none, none))[:, 0]
