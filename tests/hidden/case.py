@@ -25,7 +25,7 @@ class Case:
     expected : causes that an `ambiguous` verdict must mention; tolerated : those that it may.
     seed : (run's seed, number) from which `cases.draw_case` makes the case again.
     foreign : which foreign effect is hidden, if one is. absorbed : share of it, in quadrature, that
-        the best two named causes could absorb together.
+        the best named cause could absorb.
     unsized : causes whose magnitude the record's positions do not fix, true law or not.
     said : the law, the programme, the noise in one line.
     """

@@ -35,7 +35,7 @@ class Mark:
     first : named or ambiguous, and the first cause is a true one. exact : named, all of the
     truth and nothing else. wrong : named, with confidence, something that is not there; a cause
     whose own alternatives list a true one is not a confident name.
-    near : a foreign effect of which named causes absorb most (more than twice what they leave).
+    near : a foreign effect of which one named cause absorbs more than twice what it leaves.
     seconds : per 3,000 rows where there are more.
     gain : share of the error above the noise removed; oracle : what the true form would remove.
     """
