@@ -139,20 +139,39 @@ def _deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
 
 
 @app.command()
-def run(design: DesignFile, out: Out = None, json: Json = False) -> None:
+def run(
+    design: DesignFile,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", metavar="MODEL.toml", help="Add what this extended model found."),
+    ] = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
     """The whole way: CAD, mesh, K_b, K_e, backlash, pictures and report.pdf."""
     with _answered(design):
+        from pipeline.diagnosis.model_file import read_model_file
+
+        measured = read_model_file(model) if model is not None else None
         job = _job(design, out)
         from pipeline.chain import run as run_chain
+        from pipeline.diagnosis.extended_backlash import extended_backlash
         from results.pictures import write_pictures
-        from results.records import run_record
+        from results.records import extended_record, run_record
         from results.report.build import write_run_report
 
         result = run_chain(job.shop)
-        pictures = write_pictures(job.shop, result, job.folder)
+        extended = measured and extended_backlash(
+            result.backlash, measured.model, job.design.load.torque_Nm
+        )
+        pictures = write_pictures(job.shop, result, job.folder, extended)
         with job.shop.progress.stage("report"):
-            write_run_report(job.folder / "report.pdf", result, pictures)
-        _deliver(job.folder, run_record(result, job.wall_s), json)
+            name = measured.path.name if measured else ""
+            write_run_report(job.folder / "report.pdf", result, pictures, name)
+        record = run_record(result, job.wall_s)
+        if measured and extended:
+            record |= extended_record(extended, name)
+        _deliver(job.folder, record, json)
 
 
 @app.command()

@@ -13,20 +13,23 @@ import numpy as np
 from pipeline.backlash import angle_rad
 from pipeline.cache import Cache
 from pipeline.chain import RunResult
+from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from pipeline.parts import Workshop
 from pipeline.rim import wave_generator_amplitude
 from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 2
+DRAWING = 3
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 
 
-def write_pictures(shop: Workshop, result: RunResult, folder: Path) -> Mapping[str, Path]:
+def write_pictures(
+    shop: Workshop, result: RunResult, folder: Path, extended: ExtendedBacklash | None = None
+) -> Mapping[str, Path]:
     """Draw (or take from the cache) every picture of a run into `folder`; name to path."""
     paths = {}
-    for name, inputs, draw in _pictures(shop, result):
+    for name, inputs, draw in _pictures(shop, result, extended):
         path = folder / f"{name}.png"
         with shop.progress.stage(f"picture {name}"):
             write_bytes(path, _drawn(shop.cache, name, inputs, draw))
@@ -47,12 +50,13 @@ def _drawn(
 
 
 def _pictures(
-    shop: Workshop, result: RunResult
+    shop: Workshop, result: RunResult, extended: ExtendedBacklash | None
 ) -> list[tuple[str, Mapping[str, Any], Callable[[Path], None]]]:
     design, found, fields = result.design, result.stiffnesses, result.fields
     torque = {"torque_Nm": design.load.torque_Nm, "wall": design.flexspline.wall_thickness_mm}
     w0 = wave_generator_amplitude(design)
     sums = {"backlash": asdict(result.backlash), **torque}
+    added = None if extended is None else asdict(extended)
     K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad
     bounded = {"K_b_Nm_per_rad": found.flexspline, "K_e_Nm_per_rad": found.shaft}
 
@@ -83,7 +87,7 @@ def _pictures(
     def budget(path: Path) -> None:
         from results.figures.budget import write_budget
 
-        write_budget(path, result.backlash)
+        write_budget(path, result.backlash, extended)
 
     def line(path: Path) -> None:
         from results.figures.torque_angle import write_torque_angle
@@ -104,7 +108,7 @@ def _pictures(
         ("flexspline_torque", {**part("flexspline"), **torque}, stress("flexspline")),
         ("shaft_torque", {**part("shaft"), **torque}, stress("shaft")),
         ("wave_generator", {**part("flexspline"), "w0_mm": w0}, ellipse),
-        ("backlash_budget", sums, budget),
+        ("backlash_budget", {**sums, "extended": added}, budget),
         ("torque_angle", {**sums, "K": [K_b, K_e]}, line),
         ("convergence", {k: asdict(v) for k, v in bounded.items()}, convergence),
     ]

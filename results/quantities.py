@@ -240,6 +240,14 @@ QUANTITIES: tuple[Quantity, ...] = (
             ("std", "Standard deviation of the total", "s_bl"),
         )
     ),
+    Quantity(
+        "extended.total_arcsec",
+        "extended_total_arcsec",
+        "arcsec",
+        "Backlash with the extended model",
+        "Δ_ext",
+        decimals=1,
+    ),
     Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
     Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),
     Quantity("solver.dofs", "solver_dofs", "", "Unknowns, finest mesh", kind="count"),

@@ -13,6 +13,7 @@ from fea.types import SolidField, Stiffness, StressPeak
 from geometry.design import Design
 from pipeline.backlash import Backlash
 from pipeline.chain import RunResult, Stiffnesses
+from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from results.atomic import write_bytes
 
 Record = dict[str, Any]
@@ -112,6 +113,18 @@ def run_record(result: RunResult, wall_s: float) -> Record:
         **backlash_record(result.backlash),
         "warnings": list(result.warnings),
         "stage_s": {name: round(s, 3) for name, s in result.stage_seconds.items()},
+    }
+
+
+def extended_record(extended: ExtendedBacklash, model: str) -> Record:
+    """What an extended model adds to the backlash; `model` is its file's name."""
+    return {
+        "extended": {
+            "model": model,
+            "calibration_arcsec": extended.calibration_arcsec,
+            "causes_arcsec": dict(extended.causes_arcsec),
+            "total_arcsec": extended.total_arcsec,
+        }
     }
 
 

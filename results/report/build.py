@@ -12,7 +12,9 @@ from results.report.versions import library_versions
 from results.report.write import write_report
 
 
-def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]) -> None:
+def write_run_report(
+    path: Path, result: RunResult, pictures: Mapping[str, Path], extended_model: str = ""
+) -> None:
     """`report.pdf` of `flexspline run`; `pictures` as `results.pictures` names them."""
     found, fields, design = result.stiffnesses, result.fields, result.design
     content = ReportContent(
@@ -42,5 +44,6 @@ def write_run_report(path: Path, result: RunResult, pictures: Mapping[str, Path]
         warnings=result.warnings,
         stage_seconds=result.stage_seconds,
         versions=library_versions(),
+        extended_model=extended_model,
     )
     write_report(path, content)

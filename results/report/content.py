@@ -42,6 +42,7 @@ class ReportContent:
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
     versions : name and version of the libraries that computed and drew.
+    extended_model : name of the extended model's file whose terms the budget shows; "" for none.
     issued : date as it shall be printed; "" prints none, and the same content gives the same file.
     """
 
@@ -62,6 +63,7 @@ class ReportContent:
     warnings: tuple[str, ...] = ()
     stage_seconds: Mapping[str, float] | None = None
     versions: Mapping[str, str] | None = None
+    extended_model: str = ""
     issued: str = ""
 
     @property

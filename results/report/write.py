@@ -71,6 +71,7 @@ def payload(content: ReportContent) -> dict[str, Any]:
         "solves": tables.solves(content),
         "fatigue": limits.fatigue(content),
         "assumptions": limits.assumptions(content),
+        "extended": content.extended_model,
         "warnings": list(content.warnings),
         "stages": [[name, f"{s:.1f}"] for name, s in (content.stage_seconds or {}).items()],
         "elapsed": f"{sum((content.stage_seconds or {}).values()):.1f}",
