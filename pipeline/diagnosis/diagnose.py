@@ -12,6 +12,8 @@ import numpy as np
 from geometry.design import Design
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element
+from pipeline.diagnosis.end_points.diagnose import diagnose_end_points
+from pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from pipeline.diagnosis.holdout import gain_of
 from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest, channel_tests
 from pipeline.diagnosis.model import ExtendedModel
@@ -53,6 +55,7 @@ class Diagnosis:
     outcome: Outcome
     explained: Explained | None = None
     model: ExtendedModel | None = None
+    end_points: EndPointAnalysis | None = None
 
 
 def diagnose_file(
@@ -71,6 +74,9 @@ def diagnose_file(
     prediction = prediction_of(design, K_b, K_e, K_error)
     if isinstance(measurement, Sweep):
         return diagnose_sweep(design, measurement, prediction)
+    if isinstance(measurement, EndPoints):
+        outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
+        return Diagnosis(design, measurement, prediction, outcome, model=model, end_points=analysis)
     raise NotImplementedError
 
 
@@ -261,7 +267,7 @@ def _next(
     if rival is not None and rivals:
         models.append(_rival_model(explained, rival))
     if not rivals:
-        vary = FALLBACK[cause.id]
+        vary = FALLBACK.get(cause.id, "torque_Nm")
         return NextMeasurement(vary, f"to confirm {cause.title}: {causes()[cause.id].reveals}", 0.0)
     return to_tell_apart(explained.prepared, models, cause.id, rivals)
 

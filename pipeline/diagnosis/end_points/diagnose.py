@@ -31,7 +31,8 @@ from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import EndPoints
 from pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Unexplained, Verdict
 
-NAMING_NATS = 3.0
+NAMING_NATS = 4.0
+"""The simulation within its uncertainty is a rival too, by the contract's limit of evidence."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of an angle reading that a file may show [arcsec]."""
@@ -66,7 +67,9 @@ def diagnose_end_points(
         verdict, found, unexplained = _decided(hypotheses, rig, names, prediction)
     if verdict == "ambiguous":
         worst = units[furthest[0]]
-        rivals = rivals_for_unit(points, rig, prediction, worst, (found[0].id, *found[0].alternatives))
+        rivals = rivals_for_unit(
+            points, rig, prediction, worst, (found[0].id, *found[0].alternatives)
+        )
         plans = tuple(separations(worst.torque_Nm, rivals, prediction, null.reading))
     kept = best.best if verdict == "named" else null
     analysis = EndPointAnalysis(
@@ -111,7 +114,11 @@ def _resolution(angles: np.ndarray) -> float:
 
 
 def _units(
-    points: EndPoints, fleet: Fleet, names: Sequence[str], envelopes: Sequence[Envelope], null: Weighed
+    points: EndPoints,
+    fleet: Fleet,
+    names: Sequence[str],
+    envelopes: Sequence[Envelope],
+    null: Weighed,
 ) -> tuple[UnitFinding, ...]:
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
@@ -123,7 +130,13 @@ def _units(
         i, p = rows[int(np.argmin(p_values))], min(p_values)
         of = at[float(points.torque_Nm[i])]
         off = float(total[i]) - of.total_arcsec
-        z = off / of.std_arcsec if of.std_arcsec > 0 else float(np.sign(off)) * np.inf if off else 0.0
+        z = (
+            off / of.std_arcsec
+            if of.std_arcsec > 0
+            else float(np.sign(off)) * np.inf
+            if off
+            else 0.0
+        )
         found.append(UnitFinding(
             name, of.torque_Nm, float(total[i]), of.total_arcsec, of.std_arcsec, float(fleet.mid[i]),
             z, p, float(-np.expm1(looked * np.log1p(-min(p, 1 - 1e-15)))), float(null.own[u]),
@@ -147,7 +160,11 @@ def _decided(
         rms = float(np.sqrt(np.mean((term.column * amplitude) ** 2)))
         without = max(h.score for h in hypotheses if UNNAMED not in h.causes)
         p = float(np.exp(min(0.0, without - best.score)))
-        return "unknown", (), (Unexplained("torque_Nm", rms, p, "a curve of the totals over torque"),)
+        return (
+            "unknown",
+            (),
+            (Unexplained("torque_Nm", rms, p, "a curve of the totals over torque"),),
+        )
     named = [h for h in hypotheses if h.causes and UNNAMED not in h.causes]
     best = named[0]
     weights = np.exp([h.score - max(0.0, best.score) for h in hypotheses])
@@ -157,6 +174,7 @@ def _decided(
         rivals = [
             h for h in named
             if cause not in h.causes and kept <= set(h.causes) and len(h.causes) <= len(best.causes)
+            and _channels(h) == _channels(best)
             and (best.score - h.score < RIVAL_EVIDENCE or best.penalised - h.penalised < RIVAL_LIKELIHOOD)
         ]  # fmt: skip
         alternatives = dict.fromkeys(c for h in rivals for c in h.causes if c not in best.causes)
@@ -175,6 +193,11 @@ def _decided(
     return "named" if sure else "ambiguous", tuple(found), ()
 
 
+def _channels(h: Hypothesis) -> set[str]:
+    """Whether totals or mid positions are explained: what moves one cannot stand for the other."""
+    return {t.channel for t in h.best.terms}
+
+
 def _magnitude(best: Weighed, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
     """The contract's magnitude and its standard deviation, to first order in the amplitude."""
     term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
@@ -183,15 +206,22 @@ def _magnitude(best: Weighed, i: int, rig: Rig, prediction: Prediction) -> tuple
     if term.cause == "series_compliance":
         return 100 * mean / prediction.compliance, 100 * std / prediction.compliance
     cause = causes()[term.cause]
-    low, here, high = (cause.magnitude(term.elements(a), rig) for a in (mean - std / 2, mean, mean + std / 2))
+    low, here, high = (
+        cause.magnitude(term.elements(a), rig) for a in (mean - std / 2, mean, mean + std / 2)
+    )
     return here, abs(high - low)
 
 
 def _next(
-    verdict: Verdict, plans: Sequence[PlanSeparation], worst: UnitFinding, found: Sequence[NamedCause]
+    verdict: Verdict,
+    plans: Sequence[PlanSeparation],
+    worst: UnitFinding,
+    found: Sequence[NamedCause],
 ) -> NextMeasurement | None:
     if verdict == "unknown":
-        return NextMeasurement("torque_Nm", "closed torque sweeps show the whole curve, not its ends", 0.0)
+        return NextMeasurement(
+            "torque_Nm", "closed torque sweeps show the whole curve, not its ends", 0.0
+        )
     if not plans or not found:
         return None
     best = plans[0]
@@ -201,7 +231,11 @@ def _next(
         "noise" if len(titles) > 1 else "it would confirm or clear the suspicion"
     )  # fmt: skip
     second = next((p for p in plans[1:] if p.vary == "torque_Nm"), None)
-    less = f" (end points at the same torques: {second.separation:.1f})" if second and len(titles) > 1 else ""
+    less = (
+        f" (end points at the same torques: {second.separation:.1f})"
+        if second and len(titles) > 1
+        else ""
+    )
     return NextMeasurement(
         best.vary, f"on unit {worst.unit}: {best.doing}; it tells {', '.join(titles)} apart: {apart}{less}",
         best.separation,

@@ -56,7 +56,9 @@ class Envelope:
     @property
     def std_arcsec(self) -> float:
         """Of the total, the play's curvature included."""
-        return hypot(self.straight_std_arcsec, float(np.sqrt(self.play_weight @ self.play_arcsec**2)))
+        return hypot(
+            self.straight_std_arcsec, float(np.sqrt(self.play_weight @ self.play_arcsec**2))
+        )
 
     def above(self, total_arcsec: float) -> float:
         """Probability that a good unit's total is larger."""
@@ -119,7 +121,11 @@ class Envelope:
 
 
 def envelope(
-    design: Design, compliance: float, gap_arcsec: float, torque_Nm: float, reading_std_arcsec: float
+    design: Design,
+    compliance: float,
+    gap_arcsec: float,
+    torque_Nm: float,
+    reading_std_arcsec: float,
 ) -> Envelope:
     """Of a design at ±T [N·m]; `compliance` [arcsec per N·m].
 

@@ -167,5 +167,7 @@ def _linear(
     constant = len(y) * log(2 * pi) + logdet
     evidence = -(quadratic - float(right @ solved) + np.linalg.slogdet(inner)[1] + constant) / 2
     left = y - columns @ mean
-    likelihood = -(float(left @ weighted(left[:, None])[:, 0]) + constant + float(solved @ solved)) / 2
+    likelihood = (
+        -(float(left @ weighted(left[:, None])[:, 0]) + constant + float(solved @ solved)) / 2
+    )
     return float(evidence), likelihood, mean, cov, left

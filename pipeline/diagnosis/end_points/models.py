@@ -78,7 +78,11 @@ def gain_of(fleet: Fleet, best: Hypothesis, names: Sequence[str]) -> Gain | None
         out = fleet.unit == u
         _, unit = np.unique(fleet.unit[~out], return_inverse=True)
         rest = replace(
-            fleet, deviation=fleet.deviation[~out], mid=fleet.mid[~out], torque=fleet.torque[~out], unit=unit
+            fleet,
+            deviation=fleet.deviation[~out],
+            mid=fleet.mid[~out],
+            torque=fleet.torque[~out],
+            unit=unit,
         )
         calibrated[out] -= weigh(rest, ()).common[0]
         trained = weigh(rest, [replace(t, column=t.column[~out]) for t in terms])

@@ -84,6 +84,8 @@ def separations(
             for b in angles[i + 1 :]:
                 off = (a - b) / noise
                 seen = free.T @ off / noise
-                apart.append(float(np.sqrt(max(off @ off - seen @ np.linalg.solve(inner, seen), 0.0))))
+                apart.append(
+                    float(np.sqrt(max(off @ off - seen @ np.linalg.solve(inner, seen), 0.0)))
+                )
         found.append(PlanSeparation(plan.vary, plan.doing, min(apart, default=0.0)))
     return sorted(found, key=lambda s: -s.separation)

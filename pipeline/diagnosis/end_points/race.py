@@ -21,6 +21,9 @@ PAIR_NATS = -2.0
 """Log prior odds of two causes against one."""
 UNNAMED_NATS = -2.0
 UNNAMED = "?torque_Nm"
+CONCAVE = {"clearance_offset", "friction_hysteresis", "stiffness_hardening"}
+"""All rise steeply and level off with torque: of two at once, end points would fit the second to the
+first one's shape. A pair has at most one of them."""
 FREE = 100.0
 """So many times wider a prior leaves an amplitude to the likelihood."""
 
@@ -48,7 +51,9 @@ def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> 
         terms = [t for t in terms if t.channel == "total"]
     else:
         curve = (fleet.torque / rig.torque_Nm) ** 2
-        terms.append(Term(UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,))))
+        terms.append(
+            Term(UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,)))
+        )
     ids = list(dict.fromkeys(t.cause for t in terms))
     null = weigh(fleet, ())
     found = [Hypothesis((), None, 0.0, null.likelihood, null)]
@@ -61,6 +66,8 @@ def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> 
             one = [(t.of(rows),) for t in mine]
             found.append(_of(fleet, one, u, odds - log(fleet.units), null))
     for a, b in combinations(ids, 2) if several else ():
+        if {a, b} <= CONCAVE:
+            continue
         pairs = [(s, t) for s in terms if s.cause == a for t in terms if t.cause == b]
         odds = PAIR_NATS - log(len(ids) ** 2 / 2) + (UNNAMED_NATS if UNNAMED in (a, b) else 0.0)
         found.append(_of(fleet, pairs, None, odds, null))

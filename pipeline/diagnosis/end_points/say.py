@@ -26,7 +26,7 @@ def summary_of(
             return "Every unit's total agrees with the simulation within its stated uncertainty."
         case "named":
             listed = "; ".join(
-                f"{causes()[c.id].title}, {c.magnitude:.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
+                f"{c.title}, {c.magnitude:.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
                 for c in found
             )  # fmt: skip
             return f"The simulation leaves out: {listed}."
@@ -34,8 +34,16 @@ def summary_of(
             return "The totals depend on torque in a way that no known cause explains."
         case _:
             others = ", ".join(causes()[a].title for a in found[0].alternatives)
-            rival = f"{title} cannot be told from {others}" if others else f"{title} is only a suspicion"
-            where = f"{who} beyond the predicted envelope" if beyond else "The totals differ from the prediction"
+            rival = (
+                f"{title} cannot be told from {others}"
+                if others
+                else f"{title} is only a suspicion"
+            )
+            where = (
+                f"{who} beyond the predicted envelope"
+                if beyond
+                else "The totals differ from the prediction"
+            )
             why = "" if several else ", because each unit was measured at one torque"
             return f"{where}, and these end points cannot tell why: {rival}{why}."
 

@@ -13,7 +13,8 @@ from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import EndPoints, History
 
 HARDENING = ({"law": 0, "parameter": 0.2}, {"law": 0, "parameter": 0.45}, {"law": 0, "parameter": 0.8},
-             {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0})  # fmt: skip
+             {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0}, {"law": 4, "parameter": 0.1},
+             {"law": 4, "parameter": 0.3}, {"law": 4, "parameter": 1.0})  # fmt: skip
 HELD = (0, 2)
 """Stiffness as simulated at full load, or near zero."""
 FRICTION_SHARES = (0.04, 0.3, 0.6)
