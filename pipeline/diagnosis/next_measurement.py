@@ -137,7 +137,7 @@ def to_tell_apart(
     titles = " from ".join([causes()[cause].title, " or ".join(causes()[r].title for r in rivals)])
     chosen = best_plan(prepared, models)
     if chosen is None:
-        vary = FALLBACK[cause]
+        vary = FALLBACK.get(cause, "torque_Nm")
         return NextMeasurement(vary, f"to tell {titles}: {causes()[cause].reveals}", 0.0)
     plan, separation = chosen
     why = f"{plan.doing}: their predictions then differ by {separation:.0f} times the noise; it tells {titles}"
