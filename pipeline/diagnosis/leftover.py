@@ -55,7 +55,38 @@ def channel_tests(prepared: Prepared, solution: Solution) -> list[ChannelTest]:
         share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
         rms = float(np.sqrt(share)) * prepared.noise.std_arcsec
         found.append(ChannelTest(channel, rms, float(chi2_distribution.sf(statistic, freedom))))
-    return found
+    return [*found, _wave(prepared, left)]
+
+
+def _wave(prepared: Prepared, left: np.ndarray) -> ChannelTest:
+    """The strongest wave in time of any period: too fast for the competitors, or too slow.
+
+    In white noise each frequency's power is exponential with mean 1, and there are about as many
+    independent frequencies as half the rows. Source: Scargle, Astrophysical Journal 263, 835 (1982).
+    """
+    from scipy.signal import lombscargle
+
+    race = prepared.rig.history
+    assert race.time_s is not None
+    t = race.time_s[prepared.kept].astype(float)
+    block = len(t) // len(left)
+    t = t[: len(left) * block].reshape(-1, block).mean(axis=1)
+    for rows in _units(race.unit[prepared.kept][: len(left) * block : block]):
+        t[rows] -= t[rows[0]]
+    length = np.ptp(t)
+    if length <= 0:
+        return ChannelTest("time_s", 0.0, 1.0)
+    count = max(8, len(left) // 2)
+    turns = 2 * np.pi * np.arange(1, 2 * count + 1) / (2 * length)
+    power = lombscargle(t, left - left.mean(), turns) / np.var(left)
+    top = float(power.max())
+    p_value = float(-np.expm1(count * np.log1p(-np.exp(-min(top, 700.0)))))
+    share = 2 * top / len(left)
+    return ChannelTest("time_s", float(np.sqrt(min(share, 1.0))) * prepared.noise.std_arcsec, p_value)
+
+
+def _units(unit: np.ndarray) -> list[np.ndarray]:
+    return [np.flatnonzero(unit == u) for u in np.unique(unit)]
 
 
 def _channels(prepared: Prepared) -> dict[str, np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.effects.operators import lags
-from pipeline.diagnosis.effects.torque_program import longest_hold_s, ramp_s
+from pipeline.diagnosis.effects.torque_program import hold_s, ramp_s
 from pipeline.diagnosis.record import History
 
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
@@ -32,7 +32,7 @@ class Creep(Cause):
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
     def shapes(self, rig: Rig) -> list[Shape]:
-        hold = longest_hold_s(rig.history)
+        hold = hold_s(rig.history)
         if rig.duration_s <= 0 or hold <= 0:
             return []
         ramp = ramp_s(rig.history)
@@ -60,7 +60,7 @@ class Creep(Cause):
         return 0.06 * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        """Growth over the last decade of a hold as long as the record's longest, % of elastic twist."""
+        """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""
         grown = 0.0
         for e in elements:
             tau, weight = self._kelvin(e.shape)

@@ -45,7 +45,7 @@ class ThermalClearance(Cause):
         return ((temperature - REFERENCE_C) * history.sign / 2)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.03 * rig.scale_arcsec
+        return 0.08 * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)

@@ -85,11 +85,12 @@ def holds(history: History) -> list[np.ndarray]:
     return found
 
 
-def longest_hold_s(history: History) -> float:
-    """Length of the longest hold, 0 without any."""
+def hold_s(history: History) -> float:
+    """Typical (median) length of a hold, 0 without any."""
     if history.time_s is None:
         return 0.0
-    return max((float(np.ptp(history.time_s[rows])) for rows in holds(history)), default=0.0)
+    lengths = [float(np.ptp(history.time_s[rows])) for rows in holds(history)]
+    return float(np.median(lengths)) if lengths else 0.0
 
 
 def ramp_s(history: History) -> float:

@@ -52,7 +52,12 @@ class Wear(Cause):
         return 0.5 * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        return sum(e.amplitudes[0] for e in elements) / max(1, rig.cycles - 1)
+        """Growth over the record, on the law's own clock, per cycle elapsed."""
+        total = 0.0
+        for e in elements:
+            elapsed = rig.cycles if e.shape["steady"] else max(1, rig.cycles - 1)
+            total += e.amplitudes[0] * float(self._growth(e.shape, np.array([elapsed]))[0]) / elapsed
+        return total
 
     @staticmethod
     def _growth(shape: Shape, cycle: np.ndarray) -> np.ndarray:
