@@ -9,6 +9,7 @@ import numpy as np
 
 from pipeline.diagnosis.table import Table, read_table
 
+LARGEST_CYCLE = 1_000_000
 FEWEST_SWEEP_ROWS = 4
 """One more than zero, stiffness and gap."""
 
@@ -172,6 +173,9 @@ def history_of(table: Table) -> NamedHistory:
         odd = np.flatnonzero((cycle != np.floor(cycle)) | (cycle < 0))
         if len(odd):
             raise table.refuse(int(odd[0]), f"cycle = {cycle[odd[0]]:g} is not a whole number from 0")
+        large = np.flatnonzero(cycle > LARGEST_CYCLE)
+        if len(large):
+            raise table.refuse(int(large[0]), f"cycle = {cycle[large[0]]:g} is beyond {LARGEST_CYCLE}")
     counted = np.zeros(n, int)
     own: list[tuple[float, ...]] = []
     for u in range(len(names)):

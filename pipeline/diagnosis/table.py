@@ -14,6 +14,8 @@ from pipeline.diagnosis.errors import MeasurementError
 
 LARGEST_BYTES = 200_000_000
 LARGEST_ROWS = 2_000_000
+LARGEST_NUMBER = 1e12
+"""Beyond this no rig reads; a slipped column or exponent does."""
 
 Factors = dict[str, float]
 TORQUE: Factors = {"Nm": 1.0, "Nmm": 1e-3}
@@ -102,7 +104,12 @@ def read_table(path: Path) -> Table:
                 raise MeasurementError(path, int(line[empty]), f"{header[j]} is empty")
             labels[column.name] = tuple(texts)
         else:
-            numbers[column.name] = _numbers(path, header[j], texts, line) * column.factor + column.shift
+            values = _numbers(path, header[j], texts, line)
+            large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
+            if len(large):
+                found = f"{header[j]} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
+                raise MeasurementError(path, int(line[large[0]]), found)
+            numbers[column.name] = values * column.factor + column.shift
     ignored = tuple(h for h, c in zip(header, columns, strict=True) if c is None)
     return Table(path, numbers, labels, line, ignored)
 

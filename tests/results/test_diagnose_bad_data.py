@@ -35,6 +35,8 @@ BAD = {
     "NaN": (rows("torque_Nm,angle_arcsec", "nan,3", *GOOD), ':2: torque_Nm = "nan"'),
     "infinity": (rows("torque_Nm,angle_arcsec", *GOOD, "inf,3"), 'torque_Nm = "inf"'),
     "a number beyond doubles": (rows("torque_Nm,angle_arcsec", *GOOD, "1e999,3"), '"1e999"'),
+    "a number beyond any rig": (rows("torque_Nm,angle_arcsec", *GOOD, "1,1e300"), ":42: angle_arcsec = 1e+300"),
+    "a cycle beyond any rig": (sweep_of("cycle", [10**9]), ":2: cycle = 1e+09 is beyond"),
     "an underscore": (rows("torque_Nm,angle_arcsec", *GOOD, "1_0,3"), '"1_0"'),
     "an empty field": (rows("torque_Nm,angle_arcsec", *GOOD, ",3"), "torque_Nm is empty"),
     "one row": (rows("torque_Nm,angle_arcsec", "0.5,3"), "1 data rows"),
