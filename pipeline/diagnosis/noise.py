@@ -14,6 +14,8 @@ from pipeline.diagnosis.record import History
 
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
+FINEST_ARCSEC = 0.005
+"""No instrument reads finer; a record without any noise would make every equation singular."""
 LAGS = 24
 OUTLIER_SIGMAS = 5.0
 LONGEST_OUTLIER = 2
@@ -106,7 +108,7 @@ def estimated(
             best = misfit, Noise(float(amount[0]), float(amount[1]), rho)
     assert best is not None
     found = best[1]
-    floor = 1e-6 * max(float(np.var(residual)), 1e-12)
+    floor = max(1e-6 * float(np.var(residual)), FINEST_ARCSEC**2)
     return Noise(found.white + floor, found.coloured, found.memory)
 
 
