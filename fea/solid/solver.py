@@ -18,6 +18,8 @@ LOST_ENERGY_LIMIT = 1e-6
 """Largest |u·(Ku − f)| over u·Ku, as in `fea.axisymmetric.harmonics`: the ‖Ku − f‖/‖f‖ of a thin part
 that a load bends is large by rounding alone (2e-8 for a roof of one layer), the energy is not."""
 
+PARDISO_OUT_OF_MEMORY = -2
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -70,6 +72,11 @@ def _direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     try:
         return solver.solve(upper, right)
     except PyPardisoError as error:
+        if error.value == PARDISO_OUT_OF_MEMORY:
+            raise SolveError(
+                f"the direct solver has no memory for {matrix.shape[0]} unknowns:"
+                " raise solver.tolerance_pct or solver.edge_length_mm"
+            ) from error
         raise SolveError(
             f"the direct solver stopped ({error}): part of the model may be unsupported"
         ) from error
