@@ -111,6 +111,7 @@ def timed(
     found = []
     for (case, accuracy, program, setting), runs in rounds.items():
         figures = repeated(runs)
+        figures.pop("setting", None)  # a run of the search carries it as a table
         before = searched.get((f"{case}, {program}", setting))
         if before and "best_s" in figures:
             figures["best_s"] = min(figures["best_s"], before["wall_s"])
