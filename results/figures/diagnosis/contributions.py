@@ -24,18 +24,20 @@ VIEWS = {
     "creep": ("time_s", "angle"),
     "kinematic_error": ("input_angle_deg", "angle"),
     "position_stiffness": ("input_angle_deg", "compliance"),
+    "?unit": ("torque_Nm", "angle"),
 }
 """Channel in which a cause shows best, and as what; all others as angle over torque."""
 YLABELS = {
     "angle": "added angle in arcsec",
     "gap": "added gap in arcsec",
-    "compliance": "added compliance\nin arcsec per N·m",
+    "compliance": "added arcsec per N·m",
 }
 FAR = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
 OFFSET = "torque_offset"
-SHORT = 62
+SHORT = 55
+"""Letters of a title that fit above a panel; of a longer one, what stands in brackets is left out."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ def parts(shown: Seen) -> list[Part]:
         key = owner.removeprefix("?")
         words = channel_words(key)
         lines = (f"{rms:.2g} arcsec rms", f"lies in: {words}", "no known cause explains it")
-        found.append(Part(owner, f"Without a name: structure in {words}", lines, shown.channel(key)))
+        found.append(Part(owner, f"Without a name: structure in {words}", lines, shown.channel(VIEWS.get(owner, (key, ""))[0])))
     return found
 
 
@@ -76,8 +78,12 @@ def _named(shown: Seen, cause: NamedCause) -> Part:
     if cause.alternatives:
         lines[2:] = ["not decided: rivals", "explain it as well"]
     return Part(
-        cause.id, capital(cause.title), tuple(lines), channel, view if channel.key == key else "angle"
+        cause.id, _short(cause.title), tuple(lines), channel, view if channel.key == key else "angle"
     )
+
+
+def _short(title: str) -> str:
+    return capital(title if len(title) <= SHORT else title.partition(" (")[0])
 
 
 def write_contributions(path: Path, shown: Seen) -> None:
@@ -92,7 +98,7 @@ def write_contributions(path: Path, shown: Seen) -> None:
             low = BOTTOM + (len(found) - 1 - i) * (PANEL + BETWEEN)
             axes = figure.add_axes((0.105, low / height, 0.565, PANEL / height))
             _panel(axes, shown, part)
-            axes.set_title(part.title[:SHORT], fontsize=10.5, pad=7, x=0.0)
+            axes.set_title(part.title, fontsize=10.5, pad=7, x=0.0)
             for k, line in enumerate(part.lines):
                 figure.text(
                     0.705, (low + PANEL - 0.2 - 0.27 * k) / height, line, va="center",
@@ -159,5 +165,5 @@ def _offset(axes: Axes, shown: Seen) -> None:
     axes.plot(t, np.sign(t) * gap / 2, color=PALETTE[2], lw=1.2, ls=(0, (4, 3)))
     axes.plot(t, np.sign(t - offset) * gap / 2, color=INK, lw=1.4)
     axes.set_xlabel("torque reading in N·m (dashed: the gap if the reading were right)")
-    axes.set_ylabel("angle, gap alone,\nin arcsec")
+    axes.set_ylabel("gap alone, arcsec")
     axes.grid(True)

@@ -47,15 +47,14 @@ def _sweep(shown: Seen, folder: Path) -> list[Drawn]:
         "Above, the measured angle on the simulated line; below, their difference. A difference inside the "
         "band is what the design's own uncertainty allows; a pattern in it is not."
     )), shown)  # fmt: skip
-    simulated = shown.bare.residual()
     write_channels(
         drawn("residual_simulation", (
-            "What the simulation leaves, its stiffness and gap calibrated as far as the design's uncertainty "
-            "allows, against every channel recorded. If nothing were missing, all points would lie in the "
+            "What the simulation leaves, its stiffness and gap calibrated by up to two standard deviations of "
+            "the design's uncertainty, against every channel recorded. If nothing were missing, all points would lie in the "
             "grey band and the lines on zero. Lines apart for rising and falling torque mean friction or "
             "lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes."
         )),
-        shown, simulated, "What the simulation leaves, against every channel", "measured − simulated, ″",
+        shown, shown.calibrated, "What the simulation leaves, against every channel", "residual in arcsec",
     )  # fmt: skip
     if parts(shown):
         write_contributions(drawn("causes", (
@@ -70,7 +69,7 @@ def _sweep(shown: Seen, folder: Path) -> list[Drawn]:
         )), gain)  # fmt: skip
     write_channels(
         drawn("residual_model", _left_caption(shown)),
-        shown, shown.left, "What the best model leaves, against every channel", "measured − model, ″",
+        shown, shown.left, "What the best model leaves, against every channel", "residual in arcsec",
         _told(shown),
     )  # fmt: skip
     return found

@@ -60,7 +60,7 @@ def write_overview(path: Path, shown: Seen) -> None:
         below.set_ylim(-high, high)
         above.tick_params(labelbottom=False)
         above.set_ylabel("output angle in arcsec")
-        below.set_ylabel("measured − simulated,\narcsec")
+        below.set_ylabel("difference in arcsec")
         below.set_xlabel("output torque in N·m")
         above.set_title("Measured and simulated angle, wave generator locked")
         above.legend(loc="upper left", fontsize=9, markerscale=2.0)

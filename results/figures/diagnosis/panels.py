@@ -24,6 +24,8 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.8, 0.95, 0.62, 0.72
 BINS = 14
 FEWEST = 4
 LEVELS = 16
+DODGE = 0.012
+"""Share of a channel's range by which the branches stand apart where it has levels."""
 APART = 0.04
 """Share of a channel's range that, empty, parts clusters."""
 
@@ -106,7 +108,8 @@ def _panel(
     for rises, colour, side in ((True, RISING, -1), (False, FALLING, 1)):
         branch = shown.kept & (shown.rises == rises)
         rows = thinned(branch)
-        moved = 0.12 * side * step if channel.key != "torque_Nm" else 0.0
+        moved = side * max(0.12 * step, DODGE * np.ptp(levels)) if step else 0.0
+        moved = 0.0 if channel.key == "torque_Nm" else moved
         axes.plot(
             values[rows] + moved, np.clip(left[rows], -high, high), "o", ms=2.2, mew=0, color=colour,
             alpha=0.35, rasterized=True, clip_on=False,

@@ -26,6 +26,8 @@ LABELS = {
     "unit": "unit under test",
 }
 LONGEST_NAME = 12
+ALLOWED = 2.0
+"""Standard deviations by which a calibration may move without being a finding."""
 
 
 @dataclass(frozen=True)
@@ -77,14 +79,29 @@ class Seen:
         return self.solution.residual()
 
     @cached_property
-    def bare(self) -> Solution:
-        """The simulation alone, calibrated within its stated uncertainty."""
-        return solved(self.solution.race, ())
+    def calibrated(self) -> np.ndarray:
+        """(n,) measured less the simulation alone, calibrated as far as its uncertainty goes.
+
+        Stiffness and gap, common and each unit's own, move by no more than ALLOWED of their stated
+        standard deviations; zeros are free.
+        """
+        race = self.solution.race
+        columns, prior = race.columns.base, race.columns.base_prior
+        mean = solved(race, ()).fit.mean[: columns.shape[1]].copy()
+        units = self.solution.units
+        limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
+        limit = ALLOWED * prior[limited]
+        mean[limited] = np.clip(mean[limited], -limit, limit)
+        left = race.target - columns[:, units:] @ mean[units:]
+        return self._zeroed(left)
 
     @cached_property
     def nominal(self) -> np.ndarray:
         """(n,) measured less simulated angle, the zero of each unit fitted."""
-        out = self.explained.prepared.target.copy()
+        return self._zeroed(self.explained.prepared.target)
+
+    def _zeroed(self, values: np.ndarray) -> np.ndarray:
+        out = values.copy()
         for rows in self.history.unit_slices:
             own = rows[self.kept[rows]]
             out[rows] -= out[own if len(own) else rows].mean()
