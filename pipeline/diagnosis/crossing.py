@@ -19,6 +19,7 @@ REACH = 0.35
 STEPS = 141
 WIDTHS = (0.5, 1.0, 2.0, 4.0)
 """Width of the crossing, in units of the torque noise."""
+EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 OUTLIER_SHARE = 0.01
 """Rows that the crossing's model does not claim."""
 
@@ -51,6 +52,8 @@ def crossing(
     largest = float(np.abs(torque_Nm).max())
     if gap_arcsec < 2 * noise_arcsec or largest == 0:
         return None
+    if not both_ways(torque_Nm):
+        return None
     near = np.abs(torque_Nm) < REACH * largest
     torque, left = torque_Nm[near], left_arcsec[near]
     offsets = np.linspace(-REACH, REACH, STEPS) * largest * 0.9
@@ -70,6 +73,12 @@ def crossing(
     mean = float(weight @ fine / weight.sum())
     std = float(np.sqrt(weight @ (fine - mean) ** 2 / weight.sum() + (fine[1] - fine[0]) ** 2 / 12))
     return Crossing(mean, std, float(along.max() - none))
+
+
+def both_ways(torque_Nm: np.ndarray) -> bool:
+    """Whether the torque goes far enough to both sides for a step between them to have a place."""
+    far = EACH_WAY * np.abs(torque_Nm).max()
+    return bool(min((torque_Nm > far).sum(), (torque_Nm < -far).sum()) >= FEWEST_EACH_WAY)
 
 
 def _log_likelihood(
@@ -99,6 +108,8 @@ def first_offset(
     step of free height; the step's place is the guess, if it is clearly better there than at zero.
     """
     largest = float(np.abs(history.torque_Nm).max())
+    if not both_ways(history.torque_Nm):
+        return 0.0
     x = history.torque_Nm / largest
     direction = rising(history, 0.02 * largest)
     units = [np.isin(np.arange(len(x)), rows).astype(float) for rows in history.unit_slices]

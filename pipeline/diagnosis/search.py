@@ -130,7 +130,7 @@ class Search:
             score = np.where(valid, gain + prior, -np.inf)
             for owner in set(group.owners):
                 mine = np.flatnonzero(group.is_owner[owner])
-                order = mine[np.argsort(-score[mine])][: PER_SINGLE if not c.terms else 2]
+                order = mine[np.argsort(-score[mine])][: None if not c.terms else 2]
                 for j in order:
                     term = int(group.members[j])
                     if np.isfinite(score[j]) and term not in c.terms:

@@ -9,6 +9,7 @@ import numpy as np
 from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Rig
+from pipeline.diagnosis.effects.operators import rising
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.noise import (
     Noise,
@@ -28,7 +29,7 @@ from pipeline.diagnosis.weighing import Weighed, weigh
 
 ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
-TUNINGS = 3
+TUNINGS, KINDS = 3, 3
 OFFSET_ROUNDS = 4
 OFFSET_NATS = 9.0
 OFFSET_LEAST = 0.012
@@ -77,7 +78,7 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     rig = Rig(prediction, history)
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
-    kept = np.abs(history.torque_Nm) > band
+    kept = (np.abs(history.torque_Nm) > band) & ~turning(history)
     count = sum(int(history.cycle[rows].max()) + 1 for rows in history.unit_slices)
     per_cycle = len(history) / count
     if int(kept.sum()) < FEWEST_KEPT:
@@ -95,6 +96,22 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     return Prepared(
         sweep, prediction, rig, columns_of(rig, causes()), target, kept, outlier, band, per_cycle, noise
     )
+
+
+def turning(history: History) -> np.ndarray:
+    """(n,) rows at which the torque turns, each with the one after it.
+
+    What a row there shows depends on how reading and turning fall together: friction has not turned
+    yet, a rate is half of what it was. A few rows of sparse records would decide between them.
+    """
+    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
+    out = np.zeros(len(history), bool)
+    for rows in history.unit_slices:
+        turned = np.flatnonzero(np.diff(direction[rows]) != 0) + 1
+        turned = turned[direction[rows][turned - 1] != 0]
+        for back in (0, 1):
+            out[rows[turned - back]] = True
+    return out
 
 
 def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
@@ -131,12 +148,30 @@ def _tuned_race(now: Race) -> Race:
 
 
 def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
-    """Best set of each cause that alone explains a good part of what the best set does."""
-    found = []
-    for owners, c in search.best.items():
-        if len(owners) == 1 and c.terms != best.terms and c.evidence > 0.5 * best.evidence:
-            found.append(c.terms)
-    return found
+    """Sets of one cause alone that explain a good part of what the best set does.
+
+    The best set of each cause, and its best few single shapes of different kinds: which kind is best
+    may change once each is tuned.
+    """
+    race_ = search.race
+    enough = 0.5 * best.evidence
+    found = {
+        c.terms
+        for owners, c in search.best.items()
+        if len(owners) == 1 and c.evidence > enough
+    }
+    kinds: dict[str, dict[tuple[float, ...], Candidate]] = {}
+    for c in sorted(search.weighed, key=lambda c: -c.evidence):
+        if len(c.terms) != 1 or c.evidence < enough:
+            continue
+        term = race_.terms[c.terms[0]]
+        assert term.cause is not None
+        kind = tuple(v for k, v in sorted(term.shape.items()) if k not in term.cause.tunable)
+        mine = kinds.setdefault(term.owner, {})
+        if len(mine) < KINDS:
+            mine.setdefault(kind, c)
+    found |= {c.terms for mine in kinds.values() for c in mine.values()}
+    return sorted(found - {best.terms})
 
 
 def _race(prepared: Prepared) -> Race:
@@ -145,7 +180,7 @@ def _race(prepared: Prepared) -> Race:
 
 def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
     history = prepared.rig.history
-    inside = np.abs(history.torque_Nm) > prepared.band_Nm
+    inside = (np.abs(history.torque_Nm) > prepared.band_Nm) & ~turning(history)
     spread = 1.4826 * float(np.median(np.abs(left[inside & ~prepared.outlier])))
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)

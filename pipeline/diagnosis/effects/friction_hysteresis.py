@@ -16,6 +16,8 @@ THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
 SPREAD_ELEMENTS = 14
+MOST_BENT = 2.0
+"""Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
 NOISE_WIDTHS = 2.0
 LOOP_ROWS = 201
 DEADBAND = 0.001
@@ -41,7 +43,7 @@ class FrictionHysteresis(Cause):
     title = "friction hysteresis"
     unit = "arcsec"
     positive = True
-    tunable = ("threshold_Nm",)
+    tunable = ("threshold_Nm", "exponent")
     reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -58,12 +60,13 @@ class FrictionHysteresis(Cause):
                 found.append({
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
-                    "deadband_Nm": deadband,
+                    "deadband_Nm": deadband, "exponent": float(spread == DAHL),
                 })  # fmt: skip
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return shape["threshold_Nm"] >= shape["deadband_Nm"]
+        return shape["threshold_Nm"] >= shape["deadband_Nm"] and shape["exponent"] <= MOST_BENT
+
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return self.columns_of_all([shape], history)[0]
@@ -92,7 +95,8 @@ class FrictionHysteresis(Cause):
         if not shapes:
             return []
         widths = np.array([s["threshold_Nm"] for s in shapes])
-        return list(dahl(history, widths, shapes[0]["deadband_Nm"]).T)
+        exponents = np.array([s["exponent"] for s in shapes])
+        return list(dahl(history, widths, exponents, shapes[0]["deadband_Nm"]).T)
 
     def _column(self, shape: Shape, state: np.ndarray, history: History) -> np.ndarray:
         r, largest = shape["threshold_Nm"], shape["largest_torque_Nm"]

@@ -68,21 +68,31 @@ def rising(history: History, width_Nm: float) -> np.ndarray:
     return out
 
 
-def dahl(history: History, stiffness_Nm: np.ndarray, deadband_Nm: float) -> np.ndarray:
-    """(n, m) states z of elements of Dahl's, dz/dT = (1 − z·sign dT)/d, from z = 0; d (m,) [N·m].
+def dahl(
+    history: History, stiffness_Nm: np.ndarray, exponent: np.ndarray, deadband_Nm: float
+) -> np.ndarray:
+    """(n, m) states z of elements of Dahl's, dz/dT = (1 − z·sign dT)^i/d, from z = 0.
 
-    Exact for torque that is monotone between rows. Source: Dahl, A solid friction model, Aerospace
-    Corporation TOR-158(3107-18) (1968).
+    Exact for torque that is monotone between rows. Parameters: d (m,) [N·m], i (m,). Source: Dahl, A
+    solid friction model, Aerospace Corporation TOR-158(3107-18) (1968).
     """
     moved = steadied(history, deadband_Nm)
     out = np.empty((len(moved), len(stiffness_Nm)))
+    bend = exponent - 1
+    straight = np.abs(bend) < 1e-3
+    safe = np.where(straight, 1.0, bend)
     for rows in history.unit_slices:
         steps = np.diff(moved[rows], prepend=0.0)
-        keep = np.exp(-np.abs(steps)[:, None] / stiffness_Nm)
+        way = np.abs(steps)[:, None] / stiffness_Nm
+        keep = np.exp(-way)
         side = np.sign(steps)
         state, block = np.zeros(len(stiffness_Nm)), np.empty((len(rows), len(stiffness_Nm)))
         for i in range(len(rows)):
-            state = side[i] + (state - side[i]) * keep[i]
+            if side[i] != 0:
+                rest = np.maximum(1 - state * side[i], 1e-12)
+                # y = 1 − z·sign dT falls as dy/dx = −y^i: y^(1−i) grows by (i − 1)·x
+                power = np.maximum(rest**-safe + safe * way[i], 1e-12) ** (-1 / safe)
+                state = side[i] * (1 - np.where(straight, rest * keep[i], power))
             block[i] = state
         out[rows] = block
     return out

@@ -27,9 +27,8 @@ class ThermalClearance(Cause):
     def shapes(self, rig: Rig) -> list[Shape]:
         if rig.history.temperature_C is None:
             return []
-        varies = rig.duration_s > 0 and np.ptp(rig.history.temperature_C) > 0.5
         longest = LAGS[-1] * rig.duration_s
-        lags_s = [0.0, *(s * rig.duration_s for s in LAGS if varies)]
+        lags_s = [0.0, *(s * rig.duration_s for s in LAGS if rig.duration_s > 0)]
         return [{"lag_s": lag, "longest_lag_s": longest} for lag in lags_s]
 
     def possible(self, shape: Shape) -> bool:

@@ -102,15 +102,22 @@ def ramp_s(history: History) -> float:
 def torque_noise_Nm(history: History) -> float:
     """White noise of the torque reading [N·m].
 
-    The lesser of two estimates: from the median of third differences, which ramps do not enter, and
-    from the smallest fifth of the steps between rows, which lie in holds if there are any.
+    The least of three estimates, each too large where its assumption fails: from rows off the straight
+    line in time between their neighbours (ramps), from third differences (curved programmes, evenly
+    sampled), and from the smallest fifth of the steps between rows (holds).
     """
     found = []
     for rows in history.unit_slices:
         torque = history.torque_Nm[rows]
-        if len(torque) >= 8:
-            third = np.median(np.abs(np.diff(torque, 3))) / 0.6745 / np.sqrt(20)
-            first = np.quantile(np.abs(np.diff(torque)), 0.2) / 0.2533 / np.sqrt(2)
-            found.append(min(third, first))
+        if len(torque) < 8:
+            continue
+        t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+        span = np.maximum(t[2:] - t[:-2], 1e-12)
+        share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
+        off = torque[1:-1] - (1 - share) * torque[:-2] - share * torque[2:]
+        line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / 0.6745
+        third = np.median(np.abs(np.diff(torque, 3))) / 0.6745 / np.sqrt(20)
+        first = np.quantile(np.abs(np.diff(torque)), 0.2) / 0.2533 / np.sqrt(2)
+        found.append(min(line, third, first))
     largest = float(np.abs(history.torque_Nm).max())
     return min(float(np.median(found)), LARGEST_NOISE * largest) if found else 0.0

@@ -1,0 +1,1 @@
+"""Specimens: measured stiffness of several parts of different dimensions against FE."""

@@ -1,0 +1,97 @@
+"""Design keys as dotted names: read, replaced, listed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.load import design_from
+
+STEP = re.compile(r"([A-Za-z_]\w*)(?:\[(\d+)\])?")
+HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
+"""Not in the meridian: no sensitivity without holes."""
+
+
+def value_at(design: Design, key: str) -> float | None:
+    """The number at a dotted key, None where it is absent or no number."""
+    try:
+        table, last = _reach(_tables(design), key)
+    except DesignError:
+        return None
+    value = table.get(last) if isinstance(table, dict) else None
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+def with_values(design: Design, values: Mapping[str, float]) -> Design:
+    """A checked design with other numbers at some keys; array elements are counted from 0.
+
+    Raises
+    ------
+    DesignError : no such key, a value out of range, or impossible geometry.
+    """
+    tables = _tables(design)
+    for key, value in values.items():
+        table, last = _reach(tables, key)
+        if isinstance(table.get(last), int) and value == int(value):
+            value = int(value)
+        table[last] = value
+    return design_from(tables)
+
+
+def lengths(design: Design, part: str) -> dict[str, float]:
+    """Dotted keys of all lengths above 0 [mm] that the part's meridian has."""
+    found: dict[str, float] = {}
+
+    def walk(prefix: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for name, inner in value.items():
+                if name != "keyway":
+                    walk(f"{prefix}.{name}", inner)
+        elif isinstance(value, list):
+            for i, inner in enumerate(value):
+                walk(f"{prefix}[{i}]", inner)
+        elif prefix.endswith("_mm") and not prefix.endswith(HOLES) and value > 0:
+            found[prefix] = float(value)
+
+    walk(part, _tables(design)[part])
+    return found
+
+
+def without_holes(design: Design) -> Design:
+    """The body of revolution that the flexspline and the shaft would be."""
+    tables = _tables(design)
+    for part in ("flexspline", "shaft"):
+        tables[part]["bolt_count"] = 0
+        for name in HOLES:
+            tables[part].pop(name, None)
+    tables["shaft"].pop("keyway", None)
+    return design_from(tables)
+
+
+def _tables(design: Design) -> dict[str, Any]:
+    return design.model_dump(mode="json", exclude_none=True)
+
+
+def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:
+    """The table that holds a key, and the key's last name."""
+    *path, last = key.split(".")
+    here: Any = tables
+    for name in path:
+        match = STEP.fullmatch(name)
+        try:
+            if name.isdigit() and isinstance(here, list):  # shaft.segment.1.length_mm
+                here = here[int(name)]
+                continue
+            if match is None:
+                raise KeyError
+            here = here[match[1]]
+            if match[2] is not None:
+                here = here[int(match[2])]
+        except (KeyError, IndexError, TypeError):
+            raise DesignError(key, None, "no such key in the design file") from None
+    if not isinstance(here, dict):
+        raise DesignError(key, None, "no such key in the design file")
+    return here, last

@@ -1,0 +1,239 @@
+"""What FE says of every specimen: compliance, and how it changes with each dimension and the load zone.
+
+The row's own stiffness comes from the design's model, holes included, or, where stiffnesses are given
+instead of FE, from them, scaled by the ratio of the hole-free axisymmetric model. Changes with a
+dimension and with the load zone always come from that model of the same meridian without holes, as
+relative changes: a hole changes the stiffness, hardly how it depends on a wall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from math import log
+
+import numpy as np
+
+from fea.axisymmetric.lobes import lobe_stiffness
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.types import Elastic
+from geometry.design import Design
+from geometry.errors import ComputationError, DesignError
+from geometry.meridian import meridian
+from pipeline.diagnosis.errors import MeasurementError
+from pipeline.diagnosis.record import Specimens
+from pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
+from pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
+from pipeline.parts import DRIVEN, Workshop
+
+FE_TOLERANCE = 1e-3
+"""Of the hole-free model: a step below changes K by more than ten times as much."""
+LOBE_TOLERANCE = 5e-3
+SMALLEST_STEP = 0.05
+"""Of a dimension: a tolerance can be so small a share of it that K's change would be the mesh's."""
+LARGEST_STEP = 0.3
+FEELS = 0.02
+"""A dimension matters where five tolerances change some specimen's compliance by this share."""
+PARTS = {"flexspline": ("flexspline",), "shaft": ("shaft",), "series": ("flexspline", "shaft")}
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """ln C of one part over x = ln((d + δ)/d), a quadratic through FE at three dimensions.
+
+    `nominal_mm`, `slope`, `curvature` (n,), 0 where the specimen has not the part; `tolerance_mm` ±.
+    """
+
+    key: str
+    part: str
+    nominal_mm: np.ndarray
+    tolerance_mm: float
+    slope: np.ndarray
+    curvature: np.ndarray
+
+    def log_change(self, off_mm: float) -> np.ndarray:
+        """(n,) change of ln C where the dimension is `off_mm` larger than drawn."""
+        x = np.log(np.maximum(1 + off_mm / self.nominal_mm, 1e-3))
+        return self.slope * x + self.curvature * x**2
+
+
+@dataclass(frozen=True)
+class Compliances:
+    """FE of all specimens; compliances (n,) in rad per N·m, 0 where the part is not in the row.
+
+    Attributes
+    ----------
+    flexspline, shaft : of each row's parts, load case as in the sum.
+    lobes_share : (n,) (C_lobes − C_uniform)/C of the flexspline, C that of the sum's load case.
+    base_zone : load zone that the simulation assumes: 0 uniform, 1 lobes.
+    """
+
+    flexspline: np.ndarray
+    shaft: np.ndarray
+    lobes_share: np.ndarray
+    base_zone: float
+    sensitivities: tuple[Sensitivity, ...]
+    designs: tuple[Design, ...]
+
+    @property
+    def total(self) -> np.ndarray:
+        """(n,) rad per N·m."""
+        return self.flexspline + self.shaft
+
+    def rows(self, chosen: np.ndarray) -> Compliances:
+        """Some of the specimens."""
+        return Compliances(
+            self.flexspline[chosen], self.shaft[chosen], self.lobes_share[chosen], self.base_zone,
+            tuple(
+                replace(s, nominal_mm=s.nominal_mm[chosen], slope=s.slope[chosen], curvature=s.curvature[chosen])
+                for s in self.sensitivities
+            ),
+            tuple(d for d, c in zip(self.designs, chosen, strict=True) if c),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Computes compliances. `K_b`, `K_e` [N·m/rad] belong to the nominal design.
+
+    `full`: rows are solved with their holes; else K_b and K_e are scaled by the hole-free model.
+    """
+
+    shop: Workshop
+    K_b: float
+    K_e: float
+    full: bool
+
+    def compliance(self, design: Design, part: str) -> float:
+        """Of one part of a design [rad per N·m], load case as in the sum."""
+        nominal = self.K_b if part == "flexspline" else self.K_e
+        mine, other = self._model(design, part), self._model(self.shop.design, part)
+        return mine / other / nominal
+
+    def _model(self, design: Design, part: str) -> float:
+        lobed = part == "flexspline" and design.solver.load_case == "lobes"
+        if self.full and not lobed:
+            return 1 / replace(self.shop, design=design).part(part).stiffness().K_Nm_per_rad
+        return self.plain(design, part, lobed)
+
+    def plain(self, design: Design, part: str, lobed: bool = False) -> float:
+        """Compliance [rad per N·m] of the part without holes."""
+        solid = replace(self.shop, design=design).part(part).shop.design
+        bare = without_holes(solid)
+        own = bare.shaft_material if part == "shaft" else bare.material.flexspline
+        material = Elastic.of(own)
+        shape = (bare.shaft if part == "shaft" else bare.flexspline).model_dump(mode="json")
+        tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
+
+        def make() -> float:
+            outline = meridian(bare, part)
+            if lobed:
+                return 1 / lobe_stiffness(outline, material, True, tolerance).K_Nm_per_rad
+            return 1 / torsional_stiffness(outline, material, DRIVEN[part], tolerance).K_Nm_per_rad
+
+        inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
+                  "tolerance": tolerance}  # fmt: skip
+        return float(self.shop.cache.get("specimen", inputs, make)[0])
+
+
+def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:
+    """The design of every row.
+
+    Raises
+    ------
+    MeasurementError : an override that makes no design; with the row's line.
+    """
+    found = []
+    for i in range(len(specimens.specimen)):
+        own = {key: float(values[i]) for key, values in specimens.overrides.items()}
+        try:
+            found.append(with_values(design, own))
+        except DesignError as fault:
+            raise MeasurementError(specimens.path, int(specimens.line[i]), str(fault)) from None
+    return tuple(found)
+
+
+def compliances(bench: Bench, designs: Sequence[Design], parts: Sequence[str]) -> Compliances:
+    """FE of all rows; `parts` as in the file. Equal designs are solved once."""
+    known: dict[tuple[str, str], float] = {}
+
+    def once(what: str, design: Design, part: str) -> float:
+        key = (what, design.model_dump_json() + part)
+        if key not in known:
+            lobed = what == "lobes"
+            known[key] = (
+                bench.compliance(design, part) if what == "own" else bench.plain(design, part, lobed)
+            )
+        return known[key]
+
+    n = len(designs)
+    own = {p: np.zeros(n) for p in ("flexspline", "shaft")}
+    zone = np.zeros(n)
+    base = 1.0 if bench.shop.design.solver.load_case == "lobes" else 0.0
+    for i, (design, part) in enumerate(zip(designs, parts, strict=True)):
+        bench.shop.progress.note(f"stiffness of specimen {i + 1} of {n}")
+        for p in PARTS[part]:
+            own[p][i] = once("own", design, p)
+        if own["flexspline"][i]:
+            uniform, lobes = once("plain", design, "flexspline"), once("lobes", design, "flexspline")
+            zone[i] = (lobes - uniform) / (lobes if base else uniform)
+    return Compliances(
+        own["flexspline"], own["shaft"], zone, base,
+        tuple(s for p in own for s in _sensitivities(bench, designs, own[p] > 0, p)), tuple(designs),
+    )  # fmt: skip
+
+
+def _sensitivities(
+    bench: Bench, designs: Sequence[Design], has: np.ndarray, part: str
+) -> list[Sensitivity]:
+    """Of every length of the part that all specimens with the part have."""
+    mine = [d for d, h in zip(designs, has, strict=True) if h]
+    if not mine:
+        return []
+    each = [lengths(d, part) for d in mine]
+    found = []
+    for key in each[0]:
+        if not all(key in e for e in each):
+            continue
+        nominal = np.ones(len(designs))
+        nominal[has] = [e[key] for e in each]
+        tolerance = general_tolerance_mm(float(nominal[has].max()), key.endswith("fillet_mm"))
+        slope, curvature = np.zeros(len(designs)), np.zeros(len(designs))
+        bench.shop.progress.note(f"sensitivity to {key}")
+        known: dict[str, tuple[float, float]] = {}
+        first = _log_slope(bench, mine[0], part, key, each[0][key], tolerance)
+        if abs(first[0]) * 5 * tolerance / each[0][key] < FEELS / 2:
+            continue  # a first look, so that a fillet does not cost two solves a specimen
+        for i in np.flatnonzero(has):
+            text = designs[i].model_dump_json()
+            if text not in known:
+                known[text] = _log_slope(bench, designs[i], part, key, float(nominal[i]), tolerance)
+            slope[i], curvature[i] = known[text]
+        s = Sensitivity(key, part, nominal, tolerance, slope, curvature)
+        if max(np.abs(s.log_change(5 * tolerance)).max(), np.abs(s.log_change(-tolerance)).max()) > FEELS:
+            found.append(s)
+    return found
+
+
+def _log_slope(
+    bench: Bench, design: Design, part: str, key: str, nominal: float, tolerance: float
+) -> tuple[float, float]:
+    """Slope and curvature of ln C over ln d; one-sided where the geometry has no room."""
+    step = min(max(tolerance, SMALLEST_STEP * nominal), LARGEST_STEP * nominal)
+    points: list[tuple[float, float]] = []
+    here = log(bench.plain(design, part))
+    for side in (-step, step):
+        try:
+            there = log(bench.plain(with_values(design, {key: nominal + side}), part))
+        except (DesignError, ComputationError):
+            continue
+        points.append((log(1 + side / nominal), there - here))
+    if not points:
+        return 0.0, 0.0
+    if len(points) == 1:
+        return points[0][1] / points[0][0], 0.0
+    (x1, y1), (x2, y2) = points
+    curvature = (y1 / x1 - y2 / x2) / (x1 - x2)
+    return y1 / x1 - curvature * x1, curvature
+
+
