@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from geometry.design import Design
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element
 from pipeline.diagnosis.end_points.diagnose import diagnose_end_points
@@ -23,8 +25,13 @@ from pipeline.diagnosis.record import EndPoints, Specimens, Sweep, read_measurem
 from pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Unexplained
 from pipeline.diagnosis.search import Candidate
 from pipeline.diagnosis.solution import Solution, solved
+from pipeline.diagnosis.specimens.diagnose import diagnose_specimens
+from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from pipeline.diagnosis.sweep import FEWEST_KEPT, Explained, diagnosed
 from pipeline.diagnosis.weighing import Weighed
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from pipeline.storage import cache_folder
 
 UNEXPLAINED_SHARE = 0.5
 """Of the named effects' rms: with more left unexplained the verdict is `unknown`."""
@@ -56,14 +63,17 @@ class Diagnosis:
     explained: Explained | None = None
     model: ExtendedModel | None = None
     end_points: EndPointAnalysis | None = None
+    specimens: SpecimenAnalysis | None = None
 
 
 def diagnose_file(
-    design: Design, csv: Path, K_b: float, K_e: float, K_error: float = 0.0
+    design: Design, csv: Path, K_b: float, K_e: float, K_error: float = 0.0, shop: Workshop | None = None
 ) -> Diagnosis:
     """Read a measurement and diagnose it.
 
-    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series.
+    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `shop`, where
+    they came from FE: specimens are then solved like the design; without it, given stiffnesses are
+    scaled from specimen to specimen by the hole-free model.
 
     Raises
     ------
@@ -77,7 +87,14 @@ def diagnose_file(
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model=model, end_points=analysis)
-    raise NotImplementedError
+    bench = shop or _quiet_shop(design)
+    outcome, found = diagnose_specimens(design, measurement, K_b, K_e, bench, full=shop is not None)
+    return Diagnosis(design, measurement, prediction, outcome, specimens=found)
+
+
+def _quiet_shop(design: Design) -> Workshop:
+    """For the hole-free model's ratios, where stiffnesses were given."""
+    return Workshop(design, Cache(cache_folder(), CACHED_TYPES), Progress())
 
 
 def diagnose_sweep(design: Design, sweep: Sweep, prediction: Prediction) -> Diagnosis:

@@ -102,6 +102,7 @@ class Specimens:
     stiffness_std_Nm_per_rad: np.ndarray | None
     overrides: dict[str, np.ndarray]
     line: np.ndarray
+    part_recorded: bool = True
 
 
 Measurement = Sweep | EndPoints | Specimens
@@ -256,5 +257,5 @@ def _specimens(table: Table) -> Specimens:
     return Specimens(
         table.path, table.labels["specimen"], part,
         table.numbers["stiffness_Nm_per_rad"], table.numbers.get("stiffness_std_Nm_per_rad"),
-        {k: v for k, v in table.numbers.items() if "." in k}, table.line,
+        {k: v for k, v in table.numbers.items() if "." in k}, table.line, "part" in table.labels,
     )  # fmt: skip

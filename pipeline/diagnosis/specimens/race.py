@@ -43,7 +43,9 @@ class Data:
     def rows(self, chosen: np.ndarray) -> Data:
         """Some of the specimens."""
         std = None if self.std is None else self.std[chosen]
-        return Data(self.fe.rows(chosen), self.log_compliance[chosen], std, self.solver, self.modulus_std)
+        return Data(
+            self.fe.rows(chosen), self.log_compliance[chosen], std, self.solver, self.modulus_std
+        )
 
     @property
     def noises(self) -> tuple[tuple[float, np.ndarray], ...]:
@@ -54,7 +56,8 @@ class Data:
         prior = np.array([-((log(s / USUAL_NOISE) / log(NOISE_FACTOR)) ** 2) / 2 for s in NOISES])
         prior -= logsumexp(prior)
         return tuple(
-            (float(p), np.full(n, float(np.hypot(s, self.solver)))) for p, s in zip(prior, NOISES, strict=True)
+            (float(p), np.full(n, float(np.hypot(s, self.solver))))
+            for p, s in zip(prior, NOISES, strict=True)
         )
 
 
@@ -78,7 +81,9 @@ class Fit:
     @property
     def named(self) -> tuple[str, ...]:
         """Ids of its findings: a dimension within its tolerance is none."""
-        return tuple(t.owner for t, v in zip(self.terms, self.mean[1:], strict=True) if _finding(t, v))
+        return tuple(
+            t.owner for t, v in zip(self.terms, self.mean[1:], strict=True) if _finding(t, v)
+        )
 
     @property
     def unnamed(self) -> tuple[Term, ...]:
@@ -119,7 +124,9 @@ def fit(data: Data, terms: Sequence[Term]) -> Fit:
         if done:
             break
     scores = np.array([p + _evidence(target, slope, s) for p, s in noises])
-    score = float(logsumexp(scores)) + sum(t.odds for t in terms) + PAIR_NATS * max(0, len(terms) - 1)
+    score = (
+        float(logsumexp(scores)) + sum(t.odds for t in terms) + PAIR_NATS * max(0, len(terms) - 1)
+    )
     covariance = np.linalg.inv(inner) * np.outer(spread, spread)
     allowed = True
     for t, v, c in zip(terms, at[1:], np.diag(covariance)[1:], strict=True):
@@ -188,7 +195,9 @@ def race(data: Data, terms: Sequence[Term]) -> Race:
     empty = fit(data, ())
     singles = {id(t): fit(data, (t,)) for t in terms}
     within = [f for t, f in ((t, singles[id(t)]) for t in terms) if t.within]
-    null = float(np.logaddexp(empty.score, logsumexp([f.score for f in within]) if within else -np.inf))
+    null = float(
+        np.logaddexp(empty.score, logsumexp([f.score for f in within]) if within else -np.inf)
+    )
     ranked = sorted(terms, key=lambda t: -singles[id(t)].score)
     chosen = ranked[:SECOND_FROM]
     top = [t for t in terms if t.named and t.kind != "geometry" and t not in chosen]

@@ -8,7 +8,7 @@ relative changes: a hole changes the stiffness, hardly how it depends on a wall.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import log
 
@@ -51,6 +51,13 @@ class Sensitivity:
     slope: np.ndarray
     curvature: np.ndarray
 
+    def rows(self, chosen: np.ndarray) -> Sensitivity:
+        """For some of the specimens."""
+        return replace(
+            self, nominal_mm=self.nominal_mm[chosen], slope=self.slope[chosen],
+            curvature=self.curvature[chosen],
+        )  # fmt: skip
+
     def log_change(self, off_mm: float) -> np.ndarray:
         """(n,) change of ln C where the dimension is `off_mm` larger than drawn."""
         x = np.log(np.maximum(1 + off_mm / self.nominal_mm, 1e-3))
@@ -84,10 +91,7 @@ class Compliances:
         """Some of the specimens."""
         return Compliances(
             self.flexspline[chosen], self.shaft[chosen], self.lobes_share[chosen], self.base_zone,
-            tuple(
-                replace(s, nominal_mm=s.nominal_mm[chosen], slope=s.slope[chosen], curvature=s.curvature[chosen])
-                for s in self.sensitivities
-            ),
+            tuple(s.rows(chosen) for s in self.sensitivities),
             tuple(d for d, c in zip(self.designs, chosen, strict=True) if c),
         )  # fmt: skip
 
@@ -153,8 +157,17 @@ def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:
     return tuple(found)
 
 
-def compliances(bench: Bench, designs: Sequence[Design], parts: Sequence[str]) -> Compliances:
-    """FE of all rows; `parts` as in the file. Equal designs are solved once."""
+def compliances(
+    bench: Bench,
+    designs: Sequence[Design],
+    parts: Sequence[str],
+    keys: Collection[str] | None = None,
+    zones: bool = True,
+) -> Compliances:
+    """FE of all rows; `parts` as in the file. Equal designs are solved once.
+
+    `keys` limits the dimensions whose sensitivity is wanted; `zones`: whether the load zone's is.
+    """
     known: dict[tuple[str, str], float] = {}
 
     def once(what: str, design: Design, part: str) -> float:
@@ -162,7 +175,9 @@ def compliances(bench: Bench, designs: Sequence[Design], parts: Sequence[str]) -
         if key not in known:
             lobed = what == "lobes"
             known[key] = (
-                bench.compliance(design, part) if what == "own" else bench.plain(design, part, lobed)
+                bench.compliance(design, part)
+                if what == "own"
+                else bench.plain(design, part, lobed)
             )
         return known[key]
 
@@ -171,20 +186,29 @@ def compliances(bench: Bench, designs: Sequence[Design], parts: Sequence[str]) -
     zone = np.zeros(n)
     base = 1.0 if bench.shop.design.solver.load_case == "lobes" else 0.0
     for i, (design, part) in enumerate(zip(designs, parts, strict=True)):
-        bench.shop.progress.note(f"stiffness of specimen {i + 1} of {n}")
+        if n > 1:
+            bench.shop.progress.note(f"stiffness of specimen {i + 1} of {n}")
         for p in PARTS[part]:
             own[p][i] = once("own", design, p)
-        if own["flexspline"][i]:
-            uniform, lobes = once("plain", design, "flexspline"), once("lobes", design, "flexspline")
+        if zones and own["flexspline"][i]:
+            uniform, lobes = (
+                once("plain", design, "flexspline"),
+                once("lobes", design, "flexspline"),
+            )
             zone[i] = (lobes - uniform) / (lobes if base else uniform)
     return Compliances(
         own["flexspline"], own["shaft"], zone, base,
-        tuple(s for p in own for s in _sensitivities(bench, designs, own[p] > 0, p)), tuple(designs),
+        tuple(s for p in own for s in _sensitivities(bench, designs, own[p] > 0, p, keys)),
+        tuple(designs),
     )  # fmt: skip
 
 
 def _sensitivities(
-    bench: Bench, designs: Sequence[Design], has: np.ndarray, part: str
+    bench: Bench,
+    designs: Sequence[Design],
+    has: np.ndarray,
+    part: str,
+    keys: Collection[str] | None,
 ) -> list[Sensitivity]:
     """Of every length of the part that all specimens with the part have."""
     mine = [d for d, h in zip(designs, has, strict=True) if h]
@@ -193,16 +217,17 @@ def _sensitivities(
     each = [lengths(d, part) for d in mine]
     found = []
     for key in each[0]:
-        if not all(key in e for e in each):
+        if not all(key in e for e in each) or (keys is not None and key not in keys):
             continue
         nominal = np.ones(len(designs))
         nominal[has] = [e[key] for e in each]
         tolerance = general_tolerance_mm(float(nominal[has].max()), key.endswith("fillet_mm"))
         slope, curvature = np.zeros(len(designs)), np.zeros(len(designs))
-        bench.shop.progress.note(f"sensitivity to {key}")
+        if keys is None:
+            bench.shop.progress.note(f"sensitivity to {key}")
         known: dict[str, tuple[float, float]] = {}
         first = _log_slope(bench, mine[0], part, key, each[0][key], tolerance)
-        if abs(first[0]) * 5 * tolerance / each[0][key] < FEELS / 2:
+        if keys is None and abs(first[0]) * 5 * tolerance / each[0][key] < FEELS / 2:
             continue  # a first look, so that a fillet does not cost two solves a specimen
         for i in np.flatnonzero(has):
             text = designs[i].model_dump_json()
@@ -210,7 +235,10 @@ def _sensitivities(
                 known[text] = _log_slope(bench, designs[i], part, key, float(nominal[i]), tolerance)
             slope[i], curvature[i] = known[text]
         s = Sensitivity(key, part, nominal, tolerance, slope, curvature)
-        if max(np.abs(s.log_change(5 * tolerance)).max(), np.abs(s.log_change(-tolerance)).max()) > FEELS:
+        felt = max(
+            np.abs(s.log_change(5 * tolerance)).max(), np.abs(s.log_change(-tolerance)).max()
+        )
+        if keys is not None or felt > FEELS:
             found.append(s)
     return found
 
@@ -235,5 +263,3 @@ def _log_slope(
     (x1, y1), (x2, y2) = points
     curvature = (y1 / x1 - y2 / x2) / (x1 - x2)
     return y1 / x1 - curvature * x1, curvature
-
-

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,13 +55,24 @@ class Term:
     within: bool = False
     centre: float = 0.0
 
+    def rows(self, chosen: np.ndarray) -> Term:
+        """For some of the specimens."""
+        s = self.sensitivity
+        return replace(
+            self,
+            column=None if self.column is None else self.column[chosen],
+            sensitivity=None if s is None else s.rows(chosen),
+        )
+
     @property
     def named(self) -> bool:
         """Whether it is a finding with a name."""
         return not self.owner.startswith("?") and not self.within
 
 
-def terms_of(fe: Compliances, overrides: Mapping[str, np.ndarray], one_material: bool) -> list[Term]:
+def terms_of(
+    fe: Compliances, overrides: Mapping[str, np.ndarray], one_material: bool
+) -> list[Term]:
     """All hypotheses for some specimens."""
     even = -float(np.log(KINDS))
     found = [
@@ -70,7 +81,9 @@ def terms_of(fe: Compliances, overrides: Mapping[str, np.ndarray], one_material:
     parts = tuple(p for p, c in (("flexspline", fe.flexspline), ("shaft", fe.shaft)) if c.any())
     groups = [parts] if one_material or len(parts) == 1 else [parts, ("flexspline",), ("shaft",)]
     found += [
-        Term("youngs_modulus", "modulus", MODULUS_SPREAD, even - float(np.log(len(groups))), parts=g)
+        Term(
+            "youngs_modulus", "modulus", MODULUS_SPREAD, even - float(np.log(len(groups))), parts=g
+        )
         for g in groups
     ]
     if (np.abs(fe.lobes_share) > 0.01).any():
@@ -103,7 +116,10 @@ def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[Term]:
             x = (values - values.mean()) / np.abs(values - values.mean()).max()
             bend = x**2 - (x**2).mean()
             slope = (x @ bend) / (x @ x)
-            shapes += [(f"?{key}", f"a trend over {key}", x), (f"?{key}", f"a bend over {key}", bend - slope * x)]
+            shapes += [
+                (f"?{key}", f"a trend over {key}", x),
+                (f"?{key}", f"a bend over {key}", bend - slope * x),
+            ]
     shapes += [("?specimen", f"specimen {i + 1} by itself", np.eye(n)[i]) for i in range(n)]
     odds = UNNAMED_NATS - float(np.log(len(shapes)))
     return [

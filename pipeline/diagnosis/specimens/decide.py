@@ -1,0 +1,163 @@
+"""From a race to causes, rivals and what is left over.
+
+Rules, with their numbers:
+- The null is the simulation with its modulus calibrated by the design's prior and at most one dimension
+  within ISO 2768-m. Nothing NAMING_NATS better than it: `consistent`.
+- A second term must be NAMING_NATS better than the explanation without it.
+- Rivals by the contract: another cause in a cause's place, within 4 nats of evidence or 6 of penalised
+  likelihood: `ambiguous`.
+- Unnamed structure of more than half the named causes' rms: `unknown`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.result import NamedCause, Unexplained, Verdict
+from pipeline.diagnosis.specimens.race import Fit, Race
+from pipeline.diagnosis.specimens.terms import Term, log_compliance
+
+NAMING_NATS = 3.0
+RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
+UNEXPLAINED_SHARE = 0.5
+ARCSEC_PER_RAD = 180 * 3600 / np.pi
+UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", "load_zone": "1"}
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The verdict with its causes; `rivals` are fits that stand for the alternatives."""
+
+    verdict: Verdict
+    chosen: Fit
+    found: tuple[NamedCause, ...]
+    unexplained: tuple[Unexplained, ...]
+    rivals: tuple[Fit, ...]
+
+
+def decide(race: Race, torque_Nm: float) -> Decision:
+    """The verdict; `torque_Nm` turns compliance into the angle that a cause is worth."""
+    best = next((f for f in race.fits if f.named or f.unnamed), None)
+    if best is None or best.score - race.null < NAMING_NATS:
+        within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
+        return Decision("consistent", within[0] if within else race.null_fit, (), (), ())
+    best = _reduced(race, best)
+    unexplained = tuple(_unexplained(race, best, t) for t in best.unnamed)
+    found = []
+    rivals: list[Fit] = []
+    for cause in best.named:
+        mine = [f for f in race.fits if _stands_for(f, best, cause)]
+        near = [
+            f for f in mine
+            if best.score - f.score < RIVAL_EVIDENCE or best.penalised - f.penalised < RIVAL_LIKELIHOOD
+        ]  # fmt: skip
+        alternatives = tuple(dict.fromkeys(c for f in near for c in f.named if c not in best.named))
+        rivals += [next(f for f in near if a in f.named) for a in alternatives]
+        found.append(_named(race, best, cause, alternatives, torque_Nm))
+    found.sort(key=lambda c: -c.rms_arcsec)
+    named_rms = float(np.hypot.reduce([100 * _rms(race, best, (c,)) for c in best.named] or [0.0]))
+    unnamed_rms = float(np.hypot.reduce([u.rms for u in unexplained] or [0.0]))
+    verdict: Verdict = "ambiguous" if rivals else "named"
+    if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
+        verdict = "unknown"
+    return Decision(verdict, best, tuple(found), unexplained, tuple(rivals))
+
+
+def _reduced(race: Race, best: Fit) -> Fit:
+    """Without terms that are not worth NAMING_NATS."""
+    if len(best.terms) < 2:
+        return best
+    for f in race.fits:
+        part = len(f.terms) == 1 and f.terms[0] in best.terms and (f.named or f.unnamed)
+        if part and best.score - f.score < NAMING_NATS and f.score - race.null > NAMING_NATS:
+            return f
+    return best
+
+
+def _stands_for(f: Fit, best: Fit, cause: str) -> bool:
+    """Whether a fit explains the data by another cause in the place of this one."""
+    others = set(best.named) - {cause}
+    return (
+        f.allowed and cause not in f.named and not f.unnamed and len(f.terms) <= len(best.terms)
+        and others <= set(f.named) and bool(set(f.named) - others)
+    )  # fmt: skip
+
+
+def _named(
+    race: Race, best: Fit, cause: str, alternatives: tuple[str, ...], torque_Nm: float
+) -> NamedCause:
+    weight = np.exp(np.array([f.score for f in race.fits]) - race.fits[0].score)
+    having = np.array([cause in f.named for f in race.fits])
+    without = max([race.null, *(f.score for f in race.fits if cause not in f.named)])
+    value, std = magnitude(race, best, cause)
+    title = (
+        f"{cause.removeprefix('geometry:')} other than drawn"
+        if ":" in cause
+        else causes_title(cause)
+    )
+    return NamedCause(
+        cause, title, float(weight @ having / weight.sum()), alternatives, value, std,
+        UNITS.get(cause, "mm"), best.score - without,
+        ARCSEC_PER_RAD * torque_Nm * _rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
+    )  # fmt: skip
+
+
+def causes_title(cause: str) -> str:
+    """What a person reads."""
+    own = {"youngs_modulus": "material softer or stiffer than stated",
+           "load_zone": "load that enters at the lobes, not evenly"}  # fmt: skip
+    if cause.startswith("geometry:"):
+        return f"{cause.removeprefix('geometry:')} other than drawn"
+    return own.get(cause) or causes()[cause].title
+
+
+def magnitude(race: Race, best: Fit, cause: str) -> tuple[float, float]:
+    """The contract's magnitude and its standard deviation, doubt between alike explanations included."""
+    alike = [f for f in race.fits if f.named == best.named and best.score - f.score < NAMING_NATS]
+    each = [_value(race, f, cause) for f in alike]
+    weight = np.exp([f.score - best.score for f in alike])
+    weight /= weight.sum()
+    value, std = _value(race, best, cause)
+    spread = float(np.sqrt(weight @ (np.array([v for v, _ in each]) - value) ** 2))
+    return value, float(np.hypot(std, spread))
+
+
+def _value(race: Race, f: Fit, cause: str) -> tuple[float, float]:
+    i = next(i for i, t in enumerate(f.terms) if t.owner == cause)
+    term, value = f.terms[i], float(f.mean[i + 1])
+    std = float(f.covariance[i + 1, i + 1] ** 0.5)
+    match term.kind:
+        case "modulus":
+            both = f.covariance[0, 0] + f.covariance[i + 1, i + 1] + 2 * f.covariance[0, i + 1]
+            ratio = float(np.exp(f.mean[0] + value))
+            return 100 * (ratio - 1), 100 * ratio * float(max(both, 0.0) ** 0.5)
+        case "series":
+            mean = float(race.data.fe.total.mean())
+            return 100 * value / mean, 100 * std / mean
+        case "zone":
+            base = race.data.fe.base_zone
+            return base + value, std
+        case _:
+            return value, std
+
+
+def _rms(race: Race, f: Fit, owners: tuple[str, ...]) -> float:
+    """Relative rms over the specimens of what some terms change."""
+    at = f.mean.copy()
+    for i, t in enumerate(f.terms):
+        if t.owner in owners:
+            at[i + 1] = 0.0
+    change = log_compliance(race.data.fe, f.terms, f.mean) - log_compliance(
+        race.data.fe, f.terms, at
+    )
+    return float(np.sqrt(np.mean(change**2)))
+
+
+def _unexplained(race: Race, best: Fit, term: Term) -> Unexplained:
+    without = max([race.null, *(f.score for f in race.fits if term not in f.terms)])
+    p = float(np.exp(min(0.0, without - best.score)))
+    return Unexplained(term.owner[1:], 100 * _rms(race, best, (term.owner,)), p, term.what)
