@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Rig
 from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import History
 
@@ -44,3 +46,10 @@ def joined(parts: list[History]) -> History:
         np.concatenate([getattr(p, name) for p in parts])
         for name in ("torque_Nm", "unit", "cycle", "time_s", "temperature_C", "input_angle_deg")
     ))  # fmt: skip
+
+
+def shape_of(cause_id: str, history: History | None = None, /, **wanted: float) -> dict[str, float]:
+    """The first shape that a cause tries with these parameters, or, where none has, given them."""
+    shapes = causes()[cause_id].shapes(Rig(PREDICTION, history or sweep()))
+    alike = [s for s in shapes if all(s.get(k) == v for k, v in wanted.items())]
+    return {**(alike or shapes)[0], **wanted}

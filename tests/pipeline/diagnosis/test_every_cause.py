@@ -7,7 +7,7 @@ from math import exp
 
 import numpy as np
 import pytest
-from histories import LARGEST, PREDICTION, sweep
+from histories import LARGEST, PREDICTION, shape_of, sweep
 
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig
@@ -144,28 +144,19 @@ def test_what_may_not_be_negative_has_a_magnitude_of_one_sign(cause: Cause) -> N
 # ---- magnitudes, each by a closed form; compliance c = 10 arcsec per N·m, T = 2 N·m
 
 
-def chosen(cause_id: str, **wanted: float) -> dict[str, float]:
-    """The first shape tried that has these parameters."""
-    found = [
-        s for s in causes()[cause_id].shapes(RIG) if all(s.get(k) == v for k, v in wanted.items())
-    ]
-    assert found, wanted
-    return dict(found[0])
-
-
 def magnitude(cause_id: str, shape: dict, *amplitudes: float, rig: Rig = RIG) -> float:
     return causes()[cause_id].magnitude([Element(shape, amplitudes)], rig)
 
 
 def test_friction_is_twice_one_slider_s_amplitude() -> None:
-    shape = chosen("friction_hysteresis", spread=0, loaded=0, held=1, start=0)
+    shape = shape_of("friction_hysteresis", spread=0, loaded=0, held=1, start=0, deadband_Nm=0.0)
     assert shape["threshold_Nm"] < LARGEST / 2  # it has turned over before T = 0
     assert magnitude("friction_hysteresis", shape, 7.0) == pytest.approx(14.0, rel=1e-9)
 
 
 def test_hardening_of_a_knee() -> None:
     """Below the knee at 0.3 T: compliance c + a/(0.3·2); above: c. Chords lie on either side."""
-    shape = chosen("stiffness_hardening", law=0, held=0, parameter=0.3)
+    shape = shape_of("stiffness_hardening", law=0, held=0, parameter=0.3)
     expected = (10.0 + 3.0 / 0.6) / 10.0
     assert magnitude("stiffness_hardening", shape, 3.0) == pytest.approx(expected, rel=1e-9)
 
@@ -177,7 +168,7 @@ def test_what_is_measured_beyond_the_simulation() -> None:
 
 
 def test_gap_per_kelvin() -> None:
-    shape = chosen("thermal_clearance", lag_s=0.0)
+    shape = shape_of("thermal_clearance", lag_s=0.0)
     assert magnitude("thermal_clearance", shape, -0.4) == pytest.approx(-0.4)
     warm = replace(sweep(), temperature_C=np.full(len(sweep()), 30.0))
     added = causes()["thermal_clearance"].columns(shape, warm)[:, 0] * -0.4
@@ -193,7 +184,7 @@ def test_largest_harmonic() -> None:
 
 def test_asymmetry_of_two_compliances() -> None:
     """Compliance 10 + 0.5 one way and 10 − 0.5 the other."""
-    shape = chosen("direction_asymmetry", exponent=1.0, rounding_Nm=0.0)
+    shape = shape_of("direction_asymmetry", exponent=1.0, rounding_Nm=0.0)
     plus, minus = 1 / 10.5, 1 / 9.5
     expected = 100 * (plus - minus) / ((plus + minus) / 2)
     assert magnitude("direction_asymmetry", shape, 0.5) == pytest.approx(expected, rel=1e-9)
@@ -202,17 +193,17 @@ def test_asymmetry_of_two_compliances() -> None:
 def test_creep_of_one_kelvin_element() -> None:
     """Growth from a tenth of the hold to its end, 1 − exp(−t/τ) each, against the elastic twist."""
     hold, tau = 40.0, 25.0
-    shape = {**chosen("creep"), "shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold}
+    shape = shape_of("creep", shortest_s=tau, longest_s=tau, exponent=0.0, hold_s=hold)
     expected = 100 * 0.8 * (exp(-0.1 * hold / tau) - exp(-hold / tau)) / 10.0
     assert magnitude("creep", shape, 0.8) == pytest.approx(expected, rel=1e-9)
 
 
 def test_growth_per_cycle_and_per_hour() -> None:
-    assert magnitude("wear", chosen("wear", exponent=1.0, run_in_cycles=0.0), 6.0) == pytest.approx(
+    assert magnitude("wear", shape_of("wear", exponent=1.0, run_in_cycles=0.0), 6.0) == pytest.approx(
         6.0 / 3
     )
     hours = 5.0 * (len(sweep()) - 1) / 3600
-    shape = chosen("sensor_drift", exponent=1.0, settling_s=0.0)
+    shape = shape_of("sensor_drift", exponent=1.0, settling_s=0.0)
     assert magnitude("sensor_drift", shape, 2.0) == pytest.approx(2.0 / hours)
     angle = causes()["sensor_drift"].columns(shape, sweep())[:, 0] * 2.0
     assert angle[-1] - angle[0] == pytest.approx(2.0)
@@ -220,7 +211,7 @@ def test_growth_per_cycle_and_per_hour() -> None:
 
 def test_lag_per_rate() -> None:
     """On a long ramp the twist lags by a·dT/dt, whatever the time constant."""
-    shape = {**chosen("rate_dependence", exponent=1.0), "lag_s": 2.0, "deadband_Nm": 0.0}
+    shape = shape_of("rate_dependence", exponent=1.0, lag_s=2.0, deadband_Nm=0.0)
     assert magnitude("rate_dependence", shape, 30.0) == pytest.approx(30.0)
     history = sweep(cycles=1, hold=0, rows=400)  # 0.02 N·m in 5 s: 0.004 N·m/s
     added = causes()["rate_dependence"].columns(shape, history)[:, 0] * 30.0
