@@ -24,12 +24,15 @@ from pipeline.diagnosis.record import History, Sweep
 from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, solved
 from pipeline.diagnosis.terms import Columns, Race, columns_of, race, with_terms
+from pipeline.diagnosis.thinning import thinned
 from pipeline.diagnosis.tune import tuned
 from pipeline.diagnosis.weighing import Weighed, weigh
 
 ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
 TUNINGS, KINDS = 3, 3
+SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
+"""Of the largest torque; of a unit's rows."""
 OFFSET_ROUNDS = 4
 OFFSET_NATS = 9.0
 OFFSET_LEAST = 0.012
@@ -78,7 +81,7 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     rig = Rig(prediction, history)
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
-    kept = (np.abs(history.torque_Nm) > band) & ~turning(history)
+    kept = _naming_rows(history, band)
     count = sum(int(history.cycle[rows].max()) + 1 for rows in history.unit_slices)
     per_cycle = len(history) / count
     if int(kept.sum()) < FEWEST_KEPT:
@@ -98,6 +101,11 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     )
 
 
+def _naming_rows(history: History, band_Nm: float) -> np.ndarray:
+    """(n,) rows that may name causes, outliers aside."""
+    return (np.abs(history.torque_Nm) > band_Nm) & ~turning(history) & ~settling(history)
+
+
 def turning(history: History) -> np.ndarray:
     """(n,) rows at which the torque turns, each with the one after it.
 
@@ -107,11 +115,32 @@ def turning(history: History) -> np.ndarray:
     direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
     out = np.zeros(len(history), bool)
     for rows in history.unit_slices:
-        turned = np.flatnonzero(np.diff(direction[rows]) != 0) + 1
-        turned = turned[direction[rows][turned - 1] != 0]
+        turned = _turns(direction[rows])
         for back in (0, 1):
             out[rows[turned - back]] = True
     return out
+
+
+def settling(history: History) -> np.ndarray:
+    """(n,) rows before a unit's torque first turns far from zero.
+
+    What a friction element remembers from before the record is not known; the first far turn wipes it
+    out. Only where most of the record remains.
+    """
+    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
+    far = SETTLED_AT * np.abs(history.torque_Nm).max()
+    out = np.zeros(len(history), bool)
+    for rows in history.unit_slices:
+        turned = [i for i in _turns(direction[rows]) if abs(history.torque_Nm[rows[i]]) > far]
+        if turned and turned[0] < SETTLING_SHARE * len(rows):
+            out[rows[: turned[0]]] = True
+    return out
+
+
+def _turns(direction: np.ndarray) -> np.ndarray:
+    """Rows (t,) at which a direction (m,) of ±1, 0 before it first moves, differs from the last row's."""
+    turned = np.flatnonzero(np.diff(direction) != 0) + 1
+    return turned[direction[turned - 1] != 0]
 
 
 def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
@@ -180,7 +209,7 @@ def _race(prepared: Prepared) -> Race:
 
 def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
     history = prepared.rig.history
-    inside = (np.abs(history.torque_Nm) > prepared.band_Nm) & ~turning(history)
+    inside = _naming_rows(history, prepared.band_Nm)
     spread = 1.4826 * float(np.median(np.abs(left[inside & ~prepared.outlier])))
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
@@ -191,6 +220,7 @@ def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
 
 def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     """The whole race, with and without an offset of the torque reading."""
+    sweep = thinned(sweep)
     guess = first_offset(
         sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, crossing_band_Nm(sweep.history)
     )

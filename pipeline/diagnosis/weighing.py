@@ -12,12 +12,14 @@ from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, owner_rms, solved
 from pipeline.diagnosis.terms import Race
 
-NAMING_NATS, SECOND_NATS = 3.0, 7.0
+NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: one of several by more, as the
 others' misfit may feed it."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
+CANCELLING = 0.85
+"""Correlation of two effects, each at least half as large as the other, that nearly cancel."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 """The contract's limits for a rival."""
 
@@ -56,7 +58,7 @@ class Weighed:
 def weigh(race: Race) -> Weighed:
     """Run the race and decide it."""
     search = Search(race)
-    best = search.run()
+    best = _plausible(race, search, search.run())
     evidence: dict[str, float] = {}
     for _ in range(4):
         without = {c: _without(race, best, c) for c in best.named(race)}
@@ -79,6 +81,26 @@ def weigh(race: Race) -> Weighed:
         if found is not None:
             rival_sets[cause] = found
     return Weighed(search, best, solution, tuple(named), rms, rivals, rival_sets, evidence)
+
+
+def _plausible(race: Race, search: Search, best: Candidate) -> Candidate:
+    """The best set in which no two large effects nearly cancel: such a pair is one effect's misfit."""
+    for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
+        if not _cancels(race, c):
+            return c
+    return search.candidate(())
+
+
+def _cancels(race: Race, c: Candidate) -> bool:
+    solution = solved(race, c.terms)
+    parts = [solution.added(o)[race.kept] for o in c.owners(race)]
+    parts = [p - p.mean() for p in parts]
+    for i, a in enumerate(parts):
+        for b in parts[i + 1 :]:
+            alike = float(a @ b) / max(float(np.sqrt((a @ a) * (b @ b))), 1e-12)
+            if alike < -CANCELLING and min(a @ a, b @ b) > 0.25 * max(a @ a, b @ b):
+                return True
+    return False
 
 
 def _without(race: Race, best: Candidate, cause: str) -> Candidate:

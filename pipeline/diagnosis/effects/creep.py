@@ -12,6 +12,8 @@ from pipeline.diagnosis.effects.torque_program import hold_s, ramp_s
 from pipeline.diagnosis.record import History
 
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
+SHORTEST_HOLD = 0.06
+"""Of a ramp from zero: what stands still for less is a turn, not a hold."""
 PER_DECADE = 3
 """Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
 DECADE_ROWS = np.array([0.1, 1.0])
@@ -33,9 +35,9 @@ class Creep(Cause):
 
     def shapes(self, rig: Rig) -> list[Shape]:
         hold = hold_s(rig.history)
-        if rig.duration_s <= 0 or hold <= 0:
-            return []
         ramp = ramp_s(rig.history)
+        if rig.duration_s <= 0 or hold < SHORTEST_HOLD * ramp or hold == 0:
+            return []
         long = max(10 * hold, rig.duration_s)
         found: list[Shape] = [
             {"shortest_s": low, "longest_s": long, "exponent": n, "hold_s": hold}
@@ -50,7 +52,9 @@ class Creep(Cause):
 
     def possible(self, shape: Shape) -> bool:
         low, high = shape["shortest_s"], shape["longest_s"]
-        return low <= high and high > 0.3 * shape["hold_s"] and shape["exponent"] <= 0.8
+        alone = high < 1.001 * low  # one Kelvin element; much shorter than a hold it is a lag
+        long_enough = high > (0.4 if alone else 3.0) * shape["hold_s"]
+        return low <= high and long_enough and shape["exponent"] <= 0.8
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, weight = self._kelvin(shape)

@@ -26,13 +26,13 @@ class DirectionAsymmetry(Cause):
     def shapes(self, rig: Rig) -> list[Shape]:
         return [
             {"exponent": n, "rounding_Nm": r * rig.torque_Nm, "largest_torque_Nm": rig.torque_Nm}
-            for n, r in ((1.0, 0.0), (0.85, 0.0), (1.2, 0.0), (1.0, 0.15), (1.0, 0.4))
+            for n, r in ((1.0, 0.0), (0.88, 0.0), (1.12, 0.0), (1.0, 0.12), (1.0, 0.3))
         ]
 
     def possible(self, shape: Shape) -> bool:
         """Far from |T| the curve is some other even function, not two stiffnesses."""
         rounding = shape["rounding_Nm"] / shape["largest_torque_Nm"]
-        return 0.75 <= shape["exponent"] <= 1.35 and rounding <= 0.5
+        return 0.8 <= shape["exponent"] <= 1.2 and rounding <= 0.35
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         largest, rounding = shape["largest_torque_Nm"], shape["rounding_Nm"]

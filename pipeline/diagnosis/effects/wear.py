@@ -40,7 +40,9 @@ class Wear(Cause):
         ]
 
     def possible(self, shape: Shape) -> bool:
-        return 0.3 <= shape["exponent"] <= 1.3
+        """A gap that has grown before the first cycle is half over is another cause."""
+        run_in = shape["run_in_cycles"]
+        return 0.3 <= shape["exponent"] <= 1.3 and (run_in == 0.0 or run_in >= 0.5)
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         cycle = history.cycle.astype(float)
