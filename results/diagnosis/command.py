@@ -32,8 +32,9 @@ def diagnose_and_write(
     used = _stiffnesses(shop, measured, given)
     with shop.progress.stage("diagnosis"):
         found = diagnose_file(
-            shop.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error
-        )
+            shop.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
+            shop if given == (None, None) else None,
+        )  # fmt: skip
     record = diagnosis_record(found)
     with shop.progress.stage("figures and report"):
         write_diagnosis(folder, found, record, used)

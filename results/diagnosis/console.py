@@ -8,6 +8,7 @@ from pathlib import Path
 from pipeline.diagnosis.diagnose import Diagnosis
 from results.diagnosis.words import (
     VERDICTS,
+    calibrated_words,
     capital,
     channel_words,
     figures_text,
@@ -28,7 +29,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     for cause in outcome.causes:
         lines.append(f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}")
         if cause.alternatives:
-            lines.append(f"      or: {', '.join(map(title_of, cause.alternatives))}")
+            lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
         lines.append(f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}")
     gain = outcome.gain
@@ -36,7 +37,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
         for words, value in (
             ("simulation as it stands", gain.rmse_before),
-            ("stiffness and gap calibrated", gain.rmse_calibrated),
+            (calibrated_words(gain), gain.rmse_calibrated),
             ("with the causes found", gain.rmse_after),
             ("noise of the reading", gain.noise_floor),
         ):
@@ -44,10 +45,12 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
         lines += _wrapped(f"Measure next ({channel_words(after.vary)}): {after.why}")
-    lines += [f"  note: {note}" for note in outcome.notes]
+    for note in outcome.notes:
+        lines += _wrapped(f"note: {note}", "  ", "    ")
     lines.append(f"files in {folder}")
     return "\n".join(lines)
 
 
-def _wrapped(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  ")
+def _wrapped(text: str, first: str = "  ", rest: str | None = None) -> list[str]:
+    after = first if rest is None else rest
+    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=after)

@@ -5,12 +5,16 @@ from __future__ import annotations
 from math import floor, log10
 
 from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.result import NamedCause, Outcome
+from pipeline.diagnosis.result import Gain, NamedCause, Outcome
 from results.quantities import grouped
 
 CHANNELS = {
     "torque_Nm": "torque",
     "angle": "the angle itself",
+    "angle_arcsec": "the angle itself",
+    "specimen": "further specimens",
+    "repeat": "repetition",
+    "sweep": "a closed sweep",
     "direction": "direction of loading",
     "cycle": "load cycle",
     "time_s": "time",
@@ -22,6 +26,11 @@ CHANNELS = {
     "hold": "holds at constant torque",
 }
 """Channel or thing to vary, as a person says it."""
+SPECIMENS = {
+    "youngs_modulus": "material softer or stiffer than stated",
+    "load_zone": "load that enters at the lobes, not evenly",
+}
+"""Causes that only specimens show."""
 VERDICTS = {
     "consistent": "The simulation holds",
     "named": "Found, and named",
@@ -34,7 +43,9 @@ SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely
 
 
 def channel_words(name: str) -> str:
-    """A channel's name in words; an unknown one as it is."""
+    """A channel's name in words; a design key without its unit; an unknown one as it is."""
+    if "." in name:
+        return name.rpartition("_")[0].replace(".", " ").replace("_", " ")
     return CHANNELS.get(name, name)
 
 
@@ -71,7 +82,11 @@ def magnitude_words(cause: NamedCause) -> str:
 
 
 def title_of(cause_id: str) -> str:
-    """A cause's title; an id outside the causes of sweeps as it is."""
+    """A cause's title; of a dimension, which one."""
+    if cause_id in SPECIMENS:
+        return SPECIMENS[cause_id]
+    if cause_id.startswith("geometry:"):
+        return f"{channel_words(cause_id.removeprefix('geometry:'))} other than drawn"
     cause = causes().get(cause_id)
     return cause.title if cause else cause_id
 
@@ -95,3 +110,8 @@ def sentence(outcome: Outcome) -> str:
         return outcome.summary
     listed = "; ".join(f"{c.title}, {magnitude_words(c)}" for c in outcome.causes)
     return f"The simulation leaves out {listed}."
+
+
+def calibrated_words(gain: Gain) -> str:
+    """What was fitted beside the causes: of specimens only the modulus is free."""
+    return "Young's modulus fitted" if gain.unit == "%" else "stiffness and gap calibrated"

@@ -14,6 +14,7 @@ from pipeline.diagnosis.record import EndPoints, Specimens, Sweep
 from pipeline.diagnosis.result import Gain, NamedCause, Unexplained
 from results.diagnosis.words import (
     VERDICTS,
+    calibrated_words,
     capital,
     channel_words,
     figures_text,
@@ -101,7 +102,7 @@ def measured(diagnosis: Diagnosis) -> list[list[str]]:
     if isinstance(m, Specimens):
         kind, count = "stiffness of several parts", f"{len(m.specimen)}"
         facts = [["Kind", kind], ["File", m.path.name], ["Specimens", count]]
-        return [*facts, ["Varied", ", ".join(m.overrides)]] if m.overrides else facts
+        return [*facts, ["Varied", ", ".join(map(channel_words, m.overrides))]] if m.overrides else facts
     return [["File", str(getattr(m, "path", ""))]]
 
 
@@ -167,8 +168,8 @@ def _unexplained(u: Unexplained) -> dict[str, str]:
 
 def _gain(gain: Gain, found: bool) -> dict[str, Any]:
     rows = [
-        ["The simulation as it stands, its zero fitted", gain.rmse_before],
-        ["Stiffness and gap calibrated within their uncertainty", gain.rmse_calibrated],
+        ["The simulation as it stands" + ", its zero fitted" * (gain.unit == "arcsec"), gain.rmse_before],
+        [capital(calibrated_words(gain)) + " within what the design states", gain.rmse_calibrated],
     ]
     rows += [["With the causes found", gain.rmse_after]] if found else []
     rows.append(["Noise of the reading itself, the floor", gain.noise_floor])

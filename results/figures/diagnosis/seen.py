@@ -121,7 +121,7 @@ class Seen:
         if h.input_angle_deg is not None:
             found.append(Channel("input_angle_deg", LABELS["input_angle_deg"], h.input_angle_deg))
         if len(sweep.units) > 1:
-            names = unit_names(sweep.units)
+            names = plain_names(sweep.units)
             found.append(Channel("unit", LABELS["unit"], h.unit.astype(float), names))
         return [c for c in found if np.ptp(c.values) > 0]
 
@@ -141,7 +141,7 @@ def thinned(rows: np.ndarray) -> np.ndarray:
     return found[:: max(1, -(-len(found) // MOST_POINTS))]
 
 
-def unit_names(names: tuple[str, ...]) -> tuple[str, ...]:
+def plain_names(names: tuple[str, ...]) -> tuple[str, ...]:
     """Names short and plain enough for an axis; else their numbers."""
     good = all(n.isascii() and n.isprintable() and len(n) <= LONGEST_NAME for n in names)
     return tuple(n.replace("$", r"\$") if good else f"{i + 1}" for i, n in enumerate(names))
