@@ -19,6 +19,7 @@ REACH = 0.35
 STEPS = 141
 WIDTHS = (0.5, 1.0, 2.0, 4.0)
 """Width of the crossing, in units of the torque noise."""
+MISFIT = 1.5
 EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 OUTLIER_SHARE = 0.01
 """Rows that the crossing's model does not claim."""
@@ -56,6 +57,9 @@ def crossing(
         return None
     near = np.abs(torque_Nm) < REACH * largest
     torque, left = torque_Nm[near], left_arcsec[near]
+    # what the model misses near zero is not evidence of an offset
+    beside = np.abs(np.abs(left) - gap_arcsec / 2)
+    noise_arcsec = max(noise_arcsec, MISFIT * 1.4826 * float(np.median(beside)))
     offsets = np.linspace(-REACH, REACH, STEPS) * largest * 0.9
     floor = max(torque_noise_Nm, 1e-4 * largest)
     best = [

@@ -16,6 +16,7 @@ from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element
 from pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from pipeline.diagnosis.fleet import unit_shares
 from pipeline.diagnosis.holdout import gain_of
 from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest, channel_tests
 from pipeline.diagnosis.model import ExtendedModel
@@ -160,6 +161,7 @@ def _named_causes(explained: Explained) -> tuple[NamedCause, ...]:
         found.append(NamedCause(
             c, causes()[c].title, posterior.get(c, 0.0), rivals, magnitude[c], std[c],
             causes()[c].unit, weighed.evidence.get(c, 0.0), weighed.rms[c],
+            _own_units(explained, c),
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:
         offset = causes()["torque_offset"]
@@ -170,6 +172,14 @@ def _named_causes(explained: Explained) -> tuple[NamedCause, ...]:
             abs(slope * explained.offset_Nm),
         ))  # fmt: skip
     return tuple(sorted(found, key=lambda c: -c.rms_arcsec))
+
+
+def _own_units(explained: Explained, cause: str) -> tuple[str, ...]:
+    """Names of the units that alone show a cause."""
+    names = explained.prepared.sweep.units
+    if len(names) < 2:
+        return ()
+    return tuple(names[u] for u in unit_shares(explained.weighed, cause).own)
 
 
 def _probabilities(weighed: Weighed) -> dict[str, float]:
@@ -321,6 +331,25 @@ def _summary(
             return f"There is structure in {where or 'the data'} that no known cause explains.{known}"
 
 
+def _fleet_notes(explained: Explained) -> list[str]:
+    """What the units have in common, and how they differ."""
+    names = explained.prepared.sweep.units
+    if len(names) < 2:
+        return []
+    notes = []
+    for cause in explained.weighed.named:
+        shares = unit_shares(explained.weighed, cause)
+        title = causes()[cause].title
+        if not shares.differ:
+            notes.append(f"{title}: common to all {len(names)} units")
+            continue
+        each = ", ".join(
+            f"{n} {s:.2f} ± {d:.2f}" for n, s, d in zip(names, shares.share, shares.share_std, strict=True)
+        )
+        notes.append(f"{title}: differs between units; shares of the common effect: {each}")
+    return notes
+
+
 def _notes(explained: Explained) -> tuple[str, ...]:
     prepared = explained.prepared
     notes = []
@@ -330,6 +359,7 @@ def _notes(explained: Explained) -> tuple[str, ...]:
     notes.append(f"rows with |T| below {prepared.band_Nm:.3g} N·m cross the gap and name no cause")
     if prepared.sweep.history.time_s is None:
         notes.append("no time was recorded: friction cannot be told from rate dependence")
+    notes += _fleet_notes(explained)
     if prepared.sweep.ignored:
         notes.append(f"columns not used: {', '.join(prepared.sweep.ignored)}")
     return tuple(notes)

@@ -34,9 +34,9 @@ TUNINGS, KINDS = 3, 3
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
 """Of the largest torque; of a unit's rows."""
 OFFSET_ROUNDS = 4
-OFFSET_NATS = 9.0
-OFFSET_LEAST = 0.012
-"""Of the largest torque: a smaller offset moves nothing that counts."""
+OFFSET_NATS, OFFSET_SURE = 9.0, 20.0
+OFFSET_LEAST = (0.012, 0.005)
+"""Of the largest torque: smaller offsets move nothing that counts; the second where it is sure."""
 FEWEST_KEPT = 12
 
 
@@ -232,7 +232,8 @@ def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
             break
         nats = seen.nats
         further = seen.offset_Nm - offset
-        small = abs(seen.offset_Nm) < OFFSET_LEAST * prepared.rig.torque_Nm
+        least = OFFSET_LEAST[seen.nats > OFFSET_SURE]
+        small = abs(seen.offset_Nm) < least * prepared.rig.torque_Nm
         if seen.nats < OFFSET_NATS or small:
             if offset == 0.0:
                 break

@@ -15,6 +15,8 @@ THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 """Of the elements, as shares of the largest torque."""
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
+ALIKE, GROWING, CLOSING = 0, 1, 2
+"""How the loop's width goes with |T|: the same, in proportion, or only near zero within a `reach`."""
 SPREAD_ELEMENTS = 14
 MOST_BENT = 2.0
 """Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
@@ -25,7 +27,8 @@ DEADBAND = 0.001
 VARIANTS = (
     (SINGLE, 0, 1, 0), (SINGLE, 0, 0, 0), (EVEN, 0, 1, 0), (EVEN, 0, 0, 0), (SINGLE, 1, 1, 0),
     (EXPONENTIAL, 0, 1, 0), (EXPONENTIAL, 0, 0, 0), (SINGLE, 0, 1, -1), (EVEN, 0, 1, -1),
-    (EXPONENTIAL, 0, 1, -1), (DAHL, 0, 1, 0), (DAHL, 0, 0, 0),
+    (EXPONENTIAL, 0, 1, -1), (DAHL, 0, 1, 0), (DAHL, 0, 0, 0), (SINGLE, CLOSING, 1, 0),
+    (EVEN, CLOSING, 1, 0),
 )  # fmt: skip
 """Spread, loaded, held, start of the shapes tried."""
 
@@ -35,15 +38,16 @@ class FrictionHysteresis(Cause):
 
     While torque rises the friction holds the output back by a, while it falls it holds it forward: a
     loop 2a [arcsec] wide. Shapes: a single threshold, or thresholds spread evenly from 0 to r (a
-    rounded loop), or Dahl's exponential approach; width the same everywhere or growing with |T| (`loaded`); and whether the friction
-    also takes torque at the loop's ends (`held` = 1) or leaves the chord as it is (`held` = 0).
+    rounded loop), or Dahl's exponential approach; width the same everywhere, growing with |T| or
+    closing (`loaded`); and whether the friction also takes torque at the loop's ends (`held` = 1) or
+    leaves the chord as it is (`held` = 0).
     """
 
     id = "friction_hysteresis"
     title = "friction hysteresis"
     unit = "arcsec"
     positive = True
-    tunable = ("threshold_Nm", "exponent")
+    tunable = ("threshold_Nm", "exponent", "reach")
     reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -61,11 +65,12 @@ class FrictionHysteresis(Cause):
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
                     "deadband_Nm": deadband, "exponent": float(spread == DAHL),
+                    "reach": 0.35 * (loaded == CLOSING),
                 })  # fmt: skip
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return shape["threshold_Nm"] >= shape["deadband_Nm"] and shape["exponent"] <= MOST_BENT
+        return shape["threshold_Nm"] >= shape["deadband_Nm"] and shape["exponent"] <= MOST_BENT and shape["reach"] < 0.8
 
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
@@ -78,7 +83,8 @@ class FrictionHysteresis(Cause):
         if stopped:
             parts = [self._thresholds(int(s["spread"]), s["threshold_Nm"]) for s in stopped]
             each = np.concatenate([r for r, _ in parts])
-            start = np.concatenate([np.full(len(r), s["start"]) for s, (r, _) in zip(stopped, parts, strict=True)])
+            lengths = [len(r) for r, _ in parts]
+            start = np.repeat([s["start"] for s in stopped], lengths)
             # the even and exponential spreads repeat thresholds; each pair is run once
             pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
             torque = steadied(history, shapes[0]["deadband_Nm"])
@@ -107,8 +113,10 @@ class FrictionHysteresis(Cause):
                 each, weight = self._thresholds(int(shape["spread"]), r)
                 at_end = float(weight @ np.minimum(1, largest / each))
             state = state - at_end * history.torque_Nm / largest
-        if shape["loaded"]:
+        if shape["loaded"] == GROWING:
             state = state * np.abs(history.torque_Nm) / largest
+        elif shape["loaded"] == CLOSING:
+            state = state * np.exp(-((history.torque_Nm / (shape["reach"] * largest)) ** 2) / 2)
         return -state[:, None]
 
     @staticmethod
