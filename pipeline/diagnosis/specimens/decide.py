@@ -21,7 +21,8 @@ from pipeline.diagnosis.result import NamedCause, Unexplained, Verdict
 from pipeline.diagnosis.specimens.race import Fit, Race
 from pipeline.diagnosis.specimens.terms import Term, log_compliance
 
-NAMING_NATS = 3.0
+NAMING_NATS = 2.0
+"""Odds of seven to one."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 UNEXPLAINED_SHARE = 0.5
 ARCSEC_PER_RAD = 180 * 3600 / np.pi

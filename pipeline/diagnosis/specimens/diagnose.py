@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from pipeline.diagnosis.result import Gain, NextMeasurement, Outcome
 from pipeline.diagnosis.specimens.decide import Decision, causes_title, decide
 from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from pipeline.diagnosis.specimens.next_measurement import next_specimen
-from pipeline.diagnosis.specimens.race import Data, Fit, fit, race
-from pipeline.diagnosis.specimens.stiffness import PARTS, Bench, compliances, row_designs
+from pipeline.diagnosis.specimens.race import Data, Fit, Race, fit, race
+from pipeline.diagnosis.specimens.stiffness import PARTS, Bench, compliances, refined, row_designs
 from pipeline.diagnosis.specimens.terms import log_compliance, terms_of
 from pipeline.parts import Workshop
 
@@ -52,11 +53,9 @@ def diagnose_specimens(
         design.solver.tolerance_pct / 100,
         design.uncertainty.youngs_modulus_pct / 100,
     )
-    terms = terms_of(fe, specimens.overrides, design.material.shaft is None)
-    found = race(data, terms)
-    decision = decide(found, design.load.torque_Nm)
-    chosen = decision.chosen
-    before, calibrated, after = _held_out(data, found.null_fit, chosen)
+    found, decision = weighed(bench, data, specimens, design)
+    fe, chosen = found.data.fe, decision.chosen
+    before, calibrated, after = _held_out(found.data, found.null_fit, chosen)
     analysis = SpecimenAnalysis(
         specimens.specimen, parts, specimens.stiffness_Nm_per_rad, 1 / fe.total,
         np.exp(-log_compliance(fe, (), found.null_fit.mean)),
@@ -76,6 +75,27 @@ def diagnose_specimens(
         _summary(decision), (*notes, *_notes(decision, data, full)),
     )  # fmt: skip
     return outcome, analysis
+
+
+def weighed(
+    bench: Bench, data: Data, specimens: Specimens, design: Design
+) -> tuple[Race, Decision]:
+    """The race, run again where a dimension was found: with FE at what was found."""
+    one_material = design.material.shaft is None
+    found = race(data, terms_of(data.fe, specimens.overrides, one_material))
+    decision = decide(found, design.load.torque_Nm)
+    wrong = [
+        (t.sensitivity.key, float(v))
+        for t, v in zip(decision.chosen.terms, decision.chosen.mean[1:], strict=True)
+        if t.sensitivity is not None and t.owner in decision.chosen.named
+    ]
+    if not wrong:
+        return found, decision
+    fe = data.fe
+    for key, off in wrong:
+        fe = refined(bench, fe, key, off)
+    found = race(replace(data, fe=fe), terms_of(fe, specimens.overrides, one_material))
+    return found, decide(found, design.load.torque_Nm)
 
 
 def _insufficient(n: int) -> Outcome:

@@ -19,8 +19,8 @@ FACTORS = (0.6, 1.6)
 ANOTHER_GEAR = ("inner_diameter_mm", "bore_diameter_mm")
 """Not to be changed on the same wave generator, teeth and rig."""
 CONFIRM = {
-    "youngs_modulus": ("material", "a tensile or resonance test of the same bar gives Young's modulus directly"),
-    "series_compliance": ("fixture", "clamp a solid dummy part in the same fixture: what twists then is the fixture"),
+    "youngs_modulus": ("material", "a tensile or resonance test of the same bar gives E directly"),
+    "series_compliance": ("fixture", "clamp a solid dummy in the same fixture: what twists is the fixture"),
     "load_zone": ("flexspline.ring_width_mm", "specimens with another ring width, which the lobes feel most"),
 }  # fmt: skip
 

@@ -229,7 +229,7 @@ def _sensitivities(
         first = _log_slope(bench, mine[0], part, key, each[0][key], tolerance)
         if keys is None and abs(first[0]) * 5 * tolerance / each[0][key] < FEELS / 2:
             continue  # a first look, so that a fillet does not cost two solves a specimen
-        for i in np.flatnonzero(has):
+        for i in (int(j) for j in np.flatnonzero(has)):
             text = designs[i].model_dump_json()
             if text not in known:
                 known[text] = _log_slope(bench, designs[i], part, key, float(nominal[i]), tolerance)
@@ -241,6 +241,28 @@ def _sensitivities(
         if keys is not None or felt > FEELS:
             found.append(s)
     return found
+
+
+def refined(bench: Bench, fe: Compliances, key: str, off_mm: float) -> Compliances:
+    """With the curve of one dimension drawn through FE at the deviation that was found.
+
+    A quadratic through steps of a tolerance is a few percent off where a wall is wrong by a third.
+    """
+    changed = []
+    for s in fe.sensitivities:
+        if s.key == key:
+            curvature = s.curvature.copy()
+            for i in (int(j) for j in np.flatnonzero(s.slope)):
+                x = log(max(1 + off_mm / s.nominal_mm[i], 1e-3))
+                try:
+                    there = with_values(fe.designs[i], {key: float(s.nominal_mm[i]) + off_mm})
+                    y = log(bench.plain(there, s.part) / bench.plain(fe.designs[i], s.part))
+                except (DesignError, ComputationError):
+                    continue
+                curvature[i] = (y - s.slope[i] * x) / x**2
+            s = replace(s, curvature=curvature)
+        changed.append(s)
+    return replace(fe, sensitivities=tuple(changed))
 
 
 def _log_slope(

@@ -13,14 +13,14 @@ MODULUS_SPREAD = 0.1
 """Standard deviation of ln E where the material is another one than stated."""
 SERIES_SPREAD = 0.3
 """Of an added compliance, as a share of the median specimen's."""
-ZONES = ((1.0, 0.15, 0.7), (0.5, 0.35, 0.3))
-"""Prior mean, standard deviation and weight of the load zone: where the simulation spreads the torque
+ZONES = ((1.0, 0.12, 0.35), (0.5, 0.35, 0.15))
+"""Prior mean, standard deviation and odds of the load zone: where the simulation spreads the torque
 evenly, a real wave generator mostly takes it at its lobes, or part of the way."""
 WRONG_TOLERANCES = 3.0
 """A dimension that is wrong is off by some general tolerances."""
 WITHIN = 0.5
 """A dimension that is right is off by some half of its tolerance."""
-MOST_TOLERANCES = 6.0
+MOST_TOLERANCES = 8.0
 """Beyond, it would be another drawing."""
 UNNAMED_SPREAD = 0.07
 """Of ln K, for structure without a name."""
@@ -37,8 +37,8 @@ class Term:
     ----------
     owner : the contract's id of the cause, or "?" and a channel.
     kind : "modulus", "series", "zone", "geometry" or "column".
-    spread, centre : prior standard deviation and mean of the parameter. positive : whether it cannot be below 0.
-    odds : log prior probability. what : in words, for columns.
+    spread, centre : prior standard deviation and mean of the parameter.
+    positive : whether it cannot be below 0. odds : log prior probability. what : in words, for columns.
     parts : parts whose modulus changes. sensitivity, column : where the kind needs them.
     within : a dimension within its tolerance, which is no finding.
     """

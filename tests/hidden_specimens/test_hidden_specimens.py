@@ -1,0 +1,122 @@
+"""FE makes the truth, the diagnosis must find it: right cause first, nothing named where nothing is.
+
+Each set of specimens is tabulated by FE once (some 8 s); a diagnosis then takes 0.1 s.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from specimen_truth import MODULUS_STD, OFF_MM, Kind, batch, hidden
+
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES
+from pipeline.diagnosis.record import Specimens
+from pipeline.diagnosis.result import NamedCause
+from pipeline.diagnosis.specimens.diagnose import weighed
+from pipeline.diagnosis.specimens.race import Data
+from pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+
+KINDS: tuple[Kind, ...] = ("clean", "softer", "joint", "lobes", "wall", "diaphragm")
+ALL_ALIKE = {"joint", "lobes"}
+"""The lobes add nearly the same compliance to every specimen whose ring is the same, as a joint does:
+only the size tells them apart, so each must at least be named as the other's rival."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    kind: Kind
+    cause: str | None
+    size: float
+    verdict: str
+    found: tuple[NamedCause, ...]
+
+    @property
+    def right_first(self) -> bool:
+        return (self.found[0].id if self.found else None) == self.cause
+
+
+def answers(
+    folder: Path, sets: list[tuple[str, int]], each: int, rng: np.random.Generator
+) -> Iterator[Answer]:
+    for name, seed in sets:
+        made = batch(name, seed)
+        shop = Workshop(made.design, Cache(folder, CACHED_TYPES), Progress())
+        plain = Bench(shop, 1.0, 1.0, False)
+        K_b, K_e = (1 / plain.plain(made.design, p) for p in ("flexspline", "shaft"))
+        bench = Bench(shop, K_b, K_e, False)
+        first = hidden(name, seed, "clean", rng).specimens
+        fe = compliances(bench, row_designs(made.design, first), first.part)
+        for kind in KINDS:
+            for _ in range(each * (3 if kind == "clean" else 1)):
+                h = hidden(name, seed, kind, rng)
+                _, decision = weighed(bench, data_of(fe, h.specimens), h.specimens, made.design)
+                yield Answer(kind, h.cause, h.size, decision.verdict, decision.found)
+
+
+def data_of(fe, specimens: Specimens) -> Data:
+    K, std = specimens.stiffness_Nm_per_rad, specimens.stiffness_std_Nm_per_rad
+    return Data(fe, -np.log(K), None if std is None else std / K, 0.005, MODULUS_STD)
+
+
+def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:
+    by_kind = {k: [a for a in found if a.kind == k] for k in KINDS}
+    wrong = [a for k in KINDS if k != "clean" for a in by_kind[k]]
+    share = {k: float(np.mean([a.right_first for a in v])) for k, v in by_kind.items()}
+    right = [a for a in wrong if a.right_first]
+    error = np.array([a.found[0].magnitude - a.size for a in right])
+    std = np.array([a.found[0].magnitude_std for a in right])
+    relative = np.abs(error / np.array([a.size for a in right]))
+    one, two = float(np.mean(np.abs(error) < std)), float(np.mean(np.abs(error) < 2 * std))
+    with capsys.disabled():
+        print(f"\nright first by kind: { {k: round(v, 3) for k, v in share.items()} }")
+        print(
+            f"magnitude: median error {np.median(relative):.3f}; within one std {one:.2f}, two {two:.2f}"
+        )
+        print("first cause where wrong:", Counter(
+            (a.kind, a.found[0].id if a.found else a.verdict) for a in wrong if not a.right_first
+        ))  # fmt: skip
+    # the issue's figures
+    assert share["clean"] >= 0.95
+    assert np.mean([a.right_first for a in wrong]) >= 0.90
+    # twins are told apart by size alone; if not first, then said to be possible
+    for a in wrong:
+        if a.kind in ALL_ALIKE and not a.right_first and a.found:
+            assert a.cause in {x for c in a.found for x in c.alternatives}
+    # 1 % noise on eight stiffnesses: a tenth is the most that sizes may be off in the median
+    assert np.median(relative) < 0.1
+    # 68 and 95 % in expectation; ± 12 and 7 points are two deviations of a share of 60 answers
+    assert 0.56 <= one <= 0.90
+    assert two >= 0.88
+
+
+def test_right_cause_first(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    sets = [("xb1-40", 1), ("hat-25", 3)]
+    judged(list(answers(tmp_path, sets, 6, np.random.default_rng(20))), capsys)
+
+
+@pytest.mark.long
+def test_right_cause_first_with_fresh_seeds(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    seed = int(os.environ.get("HIDDEN_SEED", np.random.default_rng().integers(2**31)))
+    with capsys.disabled():
+        print(f"\nHIDDEN_SEED={seed}")
+    rng = np.random.default_rng(seed)
+    sets = [
+        (n, int(s)) for n in ("xb1-40", "xb1-40", "hat-25") for s in rng.integers(2**31, size=1)
+    ]
+    judged(list(answers(tmp_path, sets, 20, rng)), capsys)
+
+
+def test_what_is_hidden_is_beyond_the_tolerance() -> None:
+    """ISO 2768-m: 0.1 mm up to 6 mm, 0.3 mm up to 120 mm."""
+    limits = {"wall": 0.1, "diaphragm": 0.1, "length": 0.3}
+    for kind, offs in OFF_MM.items():
+        assert min(map(abs, offs)) > limits[kind]
