@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from math import copysign
 
 import numpy as np
@@ -68,10 +69,7 @@ def extended_backlash(
 def _there_and_back(torque_Nm: float) -> tuple[History, int, np.ndarray]:
     """The history, the row of the last −T_L, and the rows of +T_L on either side of it."""
     ends = [0.0, *(copysign(torque_Nm, s) for s in (1, -1, 1, -1, 1))]
-    parts = [
-        np.linspace(a, b, ROWS * (1 if a == 0 else 2) + 1)[1:]
-        for a, b in zip(ends[:-1], ends[1:], strict=True)
-    ]
+    parts = [np.linspace(a, b, ROWS * (1 if a == 0 else 2) + 1)[1:] for a, b in pairwise(ends)]
     torque = np.concatenate([[0.0], *parts])
     at = np.cumsum([len(p) for p in parts])
     n = len(torque)

@@ -89,9 +89,7 @@ def read_model_file(path: Path) -> ModelFile:
     def refuse(reason: str) -> ModelFileError:
         return ModelFileError(path, reason)
 
-    _check(
-        data, TOP, {"cause": (list,)}, "the model", lambda r: refuse(f"no extended model: {r}")
-    )
+    _check(data, TOP, {"cause": (list,)}, "the model", lambda r: refuse(f"no extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
     origin, calibrated = data["provenance"], data["calibrated"]
@@ -202,4 +200,6 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and bool(np.isfinite(value))
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and bool(np.isfinite(value))
+    )

@@ -91,9 +91,7 @@ def _unit(name: str, zero: float, first: float, own: tuple[float, float] | None)
     return [*lines, ""]
 
 
-def _cause(
-    cause_id: str, elements: Sequence[Element], found: NamedCause | None
-) -> list[str]:
+def _cause(cause_id: str, elements: Sequence[Element], found: NamedCause | None) -> list[str]:
     cause = causes()[cause_id]
     lines = ["[[cause]]", f"id = {quoted(cause_id)}", f"title = {quoted(cause.title)}"]
     if found is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -22,15 +23,15 @@ def example_history(largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int =
     A little noise on the torque, always the same: shapes may be given its size.
     """
     quarter = np.arange(1, 11) / 10
-    one = np.concatenate([quarter, np.ones(12), 1 - 2 * np.arange(1, 21) / 20, -np.ones(12), quarter - 1])
+    one = np.concatenate(
+        [quarter, np.ones(12), 1 - 2 * np.arange(1, 21) / 20, -np.ones(12), quarter - 1]
+    )
     n = len(one) * cycles
     noise = np.random.default_rng(0).normal(0.0, 0.002, n)
     torque = largest_Nm * (np.tile(one, cycles) + noise)
     time = np.arange(1, n + 1) * ramp_s / 10
     cycle = np.repeat(np.arange(cycles), len(one))
-    return History(
-        torque, np.zeros(n, int), cycle, time, 20 + 15 * time / time[-1], 37.0 * cycle
-    )
+    return History(torque, np.zeros(n, int), cycle, time, 20 + 15 * time / time[-1], 37.0 * cycle)
 
 
 def fault_of(cause: Cause, shape: Shape, amplitudes: int) -> str | None:
@@ -65,7 +66,8 @@ def channels_needed(cause: Cause, elements: Sequence[Element]) -> list[str]:
     history = example_history(cycles=2)
     needed = []
     for channel in CHANNELS:
-        without = replace(history, **{channel: None})
+        lacking: dict[str, Any] = {channel: None}
+        without = replace(history, **lacking)
         try:
             cause.angle_arcsec(elements, without)
         except ValueError:

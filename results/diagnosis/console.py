@@ -27,11 +27,15 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
     lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {sentence(outcome)}")
     for cause in outcome.causes:
-        lines.append(f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}")
+        lines.append(
+            f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}"
+        )
         if cause.alternatives:
             lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
-        lines.append(f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}")
+        lines.append(
+            f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
+        )
     gain = outcome.gain
     if gain is not None:
         lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")

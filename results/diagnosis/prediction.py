@@ -48,8 +48,7 @@ def predict_and_write(
     if json:
         return as_json({"angle_arcsec": angle.tolist()})
     return (
-        f"{len(angle)} rows, {angle.min():.6g} to {angle.max():.6g} arcsec\n"
-        f"{folder / PREDICTION}"
+        f"{len(angle)} rows, {angle.min():.6g} to {angle.max():.6g} arcsec\n{folder / PREDICTION}"
     )
 
 

@@ -86,7 +86,8 @@ def _waterfall(
     if extended:
         names[-1] = "Simulated"
         axes.plot([total, total], [row + 0.31, row + 0.69], color=MUTED, lw=0.8)
-        for row, (_, value) in enumerate(added, row + 1):
+        for _, value in added:
+            row += 1
             plus = "+" if value >= 0 else ""
             _step(axes, row, start, value, ADDED, f"{plus}{entry.text(value)}", reach)
             start += value

@@ -67,9 +67,7 @@ def diagnosis_pdf(
         raise ReportError(f"typst could not set the report: {error}") from error
 
 
-def payload(
-    diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses
-) -> dict[str, Any]:
+def payload(diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses) -> dict[str, Any]:
     """The content as JSON values, in the order in which the template sets it."""
     outcome = diagnosis.outcome
     after = outcome.next_measurement
@@ -102,7 +100,11 @@ def measured(diagnosis: Diagnosis) -> list[list[str]]:
     if isinstance(m, Specimens):
         kind, count = "stiffness of several parts", f"{len(m.specimen)}"
         facts = [["Kind", kind], ["File", m.path.name], ["Specimens", count]]
-        return [*facts, ["Varied", ", ".join(map(channel_words, m.overrides))]] if m.overrides else facts
+        return (
+            [*facts, ["Varied", ", ".join(map(channel_words, m.overrides))]]
+            if m.overrides
+            else facts
+        )
     return [["File", str(getattr(m, "path", ""))]]
 
 
@@ -123,7 +125,8 @@ def _sweep(sweep: Sweep) -> list[list[str]]:
         facts.append(["Temperature", f"{_range(h.temperature_C)} °C"])
     if h.input_angle_deg is not None:
         count = len(set(h.input_angle_deg.tolist()))
-        facts.append(["Wave generator", f"{_range(h.input_angle_deg)}°, {count} positions"])
+        shown = f"{_range(h.input_angle_deg)}°, {count} positions"
+        facts.append(["Wave generator", shown if count > 1 else f"at {h.input_angle_deg[0]:g}°"])
     return facts
 
 
@@ -134,6 +137,8 @@ def _range(values: Any) -> str:
 def compared(diagnosis: Diagnosis, used: Stiffnesses) -> str:
     """With what the measurement was compared, in one sentence."""
     p = diagnosis.prediction
+    if isinstance(diagnosis.measurement, Specimens):
+        return _compared_specimens(diagnosis, used)
     source = "as given" if used.given else f"computed, ±{100 * used.error:.2g} %"
     return (
         f"Compared with the simulation: K_b = {grouped(used.K_b_Nm_per_rad, 0)} and "
@@ -141,6 +146,15 @@ def compared(diagnosis: Diagnosis, used: Stiffnesses) -> str:
         f"{grouped(p.gap_arcsec, 1)} ± {grouped(p.gap_std_arcsec, 1)} arcsec, and an elastic twist of "
         f"{figures_text(p.compliance, 4)} ± {figures_text(p.compliance_std, 2)} arcsec for each N·m. A "
         "stiffness or gap that differs within these limits is no finding."
+    )
+
+
+def _compared_specimens(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+    doubt = diagnosis.design.uncertainty.youngs_modulus_pct
+    source = "scaled from K_b and K_e as given" if used.given else "solved for each specimen"
+    return (
+        f"Compared with the simulated stiffness, {source}. Young's modulus may be off by {doubt:g} % (1σ), "
+        "and a dimension by the general tolerance ISO 2768-m, without that being a finding."
     )
 
 
@@ -167,18 +181,20 @@ def _unexplained(u: Unexplained) -> dict[str, str]:
 
 
 def _gain(gain: Gain, found: bool) -> dict[str, Any]:
+    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
     rows = [
-        ["The simulation as it stands" + ", its zero fitted" * (gain.unit == "arcsec"), gain.rmse_before],
-        [capital(calibrated_words(gain)) + " within what the design states", gain.rmse_calibrated],
+        (f"The simulation as it stands{zeroed}", gain.rmse_before),
+        (f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated),
     ]
-    rows += [["With the causes found", gain.rmse_after]] if found else []
-    rows.append(["Noise of the reading itself, the floor", gain.noise_floor])
+    if found:
+        rows.append(("With the causes found", gain.rmse_after))
+    rows.append(("Noise of the reading itself, the floor", gain.noise_floor))
     above = gain.rmse_before**2 - gain.noise_floor**2
     share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
     return {
         "held_out": gain.held_out,
         "unit": gain.unit,
-        "rows": [[name, figures_text(float(value))] for name, value in rows],
+        "rows": [[name, figures_text(value)] for name, value in rows],
         "share": _percent(share) if found and share > 0 else "",
     }
 

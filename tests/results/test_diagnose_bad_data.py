@@ -35,7 +35,7 @@ BAD = {
     "NaN": (rows("torque_Nm,angle_arcsec", "nan,3", *GOOD), ':2: torque_Nm = "nan"'),
     "infinity": (rows("torque_Nm,angle_arcsec", *GOOD, "inf,3"), 'torque_Nm = "inf"'),
     "a number beyond doubles": (rows("torque_Nm,angle_arcsec", *GOOD, "1e999,3"), '"1e999"'),
-    "a number beyond any rig": (rows("torque_Nm,angle_arcsec", *GOOD, "1,1e300"), ":42: angle_arcsec = 1e+300"),
+    "a number beyond any rig": (rows("torque_Nm,angle_arcsec", *GOOD, "1,1e300"), "angle_arcsec = 1e+300"),
     "a cycle beyond any rig": (sweep_of("cycle", [10**9]), ":2: cycle = 1e+09 is beyond"),
     "an underscore": (rows("torque_Nm,angle_arcsec", *GOOD, "1_0,3"), '"1_0"'),
     "an empty field": (rows("torque_Nm,angle_arcsec", *GOOD, ",3"), "torque_Nm is empty"),
@@ -67,7 +67,15 @@ BAD = {
 
 
 def diagnose(measured: Path, *more: str) -> Result:
-    words = ["diagnose", str(CUP), str(measured), *GIVEN, "--out", str(measured.parent / "out"), *more]
+    words = [
+        "diagnose",
+        str(CUP),
+        str(measured),
+        *GIVEN,
+        "--out",
+        str(measured.parent / "out"),
+        *more,
+    ]
     return CliRunner().invoke(app, words)
 
 
@@ -126,7 +134,9 @@ def test_a_wrong_stiffness_or_design_is_refused_first(tmp_path: Path) -> None:
 def test_a_bad_file_is_refused_before_any_solver_starts(tmp_path: Path) -> None:
     path = tmp_path / "bad.csv"
     path.write_bytes(b"torque_Nm\n1\n")
-    done = CliRunner().invoke(app, ["diagnose", str(CUP), str(path), "--out", str(tmp_path / "out")])
+    done = CliRunner().invoke(
+        app, ["diagnose", str(CUP), str(path), "--out", str(tmp_path / "out")]
+    )
     refused(done, "angle_arcsec is missing", tmp_path / "out")
     assert "mesh" not in done.stderr
 

@@ -65,7 +65,9 @@ def test_the_contracts_keys(done: tuple[Path, dict]) -> None:
     folder, said = done
     assert said == json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
     for cause in said["causes"]:
-        assert {"id", "probability", "alternatives", "magnitude", "magnitude_std", "unit"} <= set(cause)
+        assert {"id", "probability", "alternatives", "magnitude", "magnitude_std", "unit"} <= set(
+            cause
+        )
         assert 0 <= cause["probability"] <= 1
     gain = said["gain"]
     assert gain["unit"] == "arcsec"
@@ -95,7 +97,8 @@ def test_the_first_page_is_in_plain_words(done: tuple[Path, dict]) -> None:
     first = re.sub(r"\s+", " ", pages[0])
     assert 2 <= len(pages) <= 6
     for words in (
-        "What was measured", "xb1-40-sweep.csv", "576 rows, 6 cycles", "Found, and named",
+        "The simulation against a measurement", "What was measured", "xb1-40-sweep.csv", "576 rows, 6 cycles",
+        "Found, and named",
         "Friction hysteresis", "Clearance that changes with temperature", "What else could explain it",
         "Error of the prediction on cycles 2, 5", "What to measure next", "arcsec rms",
     ):  # fmt: skip
@@ -133,9 +136,20 @@ def test_terminal_words(tmp_path: Path) -> None:
     assert max(map(len, result.stdout.splitlines())) <= 120
 
 
-def test_predict_gives_back_the_record_to_its_noise(done: tuple[Path, dict], tmp_path: Path) -> None:
+def test_predict_gives_back_the_record_to_its_noise(
+    done: tuple[Path, dict], tmp_path: Path
+) -> None:
     folder, said = done
-    words = ("predict", CUP, "--model", folder / "extended_model.toml", SWEEP, "--out", tmp_path, "--json")
+    words = (
+        "predict",
+        CUP,
+        "--model",
+        folder / "extended_model.toml",
+        SWEEP,
+        "--out",
+        tmp_path,
+        "--json",
+    )
     result = flexspline(*words)
     assert result.exit_code == 0, result.stderr
     answer = json.loads(result.stdout)
@@ -145,7 +159,9 @@ def test_predict_gives_back_the_record_to_its_noise(done: tuple[Path, dict], tmp
     assert lines[0] == source[0] + ",angle_predicted_arcsec"
     assert [s.rpartition(",")[0] for s in lines[1:]] == source[1:]
     written = np.array([float(s.rpartition(",")[2]) for s in lines[1:]])
-    np.testing.assert_allclose(written, answer["angle_arcsec"], atol=1e-6)  # six decimals are written
+    np.testing.assert_allclose(
+        written, answer["angle_arcsec"], atol=1e-6
+    )  # six decimals are written
     table = np.genfromtxt(source, delimiter=",", names=True)
     far = np.abs(table["torque_Nm"]) > 0.1  # outside the gap's crossing
     off = np.median(np.abs(written - table["angle_arcsec"])[far])
@@ -227,10 +243,16 @@ NASTY = ['#read("/etc/passwd")', '"); #panic("x") //', "$x^2$ *b* `raw`", "\\u{4
 def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
     """Design, file, unit and column names are data to the report and the figures."""
     design = tmp_path / "design.toml"
-    text = CUP.read_text(encoding="utf-8").replace("XB1-40 cup", name.replace("\\", "\\\\").replace('"', '\\"'))
+    text = CUP.read_text(encoding="utf-8").replace(
+        "XB1-40 cup", name.replace("\\", "\\\\").replace('"', '\\"')
+    )
     design.write_text(text, encoding="utf-8")
     quoted = '"' + name.replace('"', '""') + '"'
-    rows = [f"{t},{11 * t + 36 * np.sign(t):.3f},{u}" for u in (quoted, "b") for t in np.tile(np.sin(np.arange(40)), 2)]
+    rows = [
+        f"{t},{11 * t + 36 * np.sign(t):.3f},{u}"
+        for u in (quoted, "b")
+        for t in np.tile(np.sin(np.arange(40)), 2)
+    ]
     measured = tmp_path / (name.replace("/", "_") + ".csv")
     header = f"torque_Nm,angle_arcsec,unit,{quoted}"
     measured.write_text("\n".join([header, *(r + ",x" for r in rows)]) + "\n", encoding="utf-8")

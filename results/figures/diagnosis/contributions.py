@@ -62,7 +62,14 @@ def parts(shown: Seen) -> list[Part]:
         key = owner.removeprefix("?")
         words = channel_words(key)
         lines = (f"{rms:.2g} arcsec rms", f"lies in: {words}", "no known cause explains it")
-        found.append(Part(owner, f"Without a name: structure in {words}", lines, shown.channel(VIEWS.get(owner, (key, ""))[0])))
+        found.append(
+            Part(
+                owner,
+                f"Without a name: structure in {words}",
+                lines,
+                shown.channel(VIEWS.get(owner, (key, ""))[0]),
+            )
+        )
     return found
 
 
@@ -78,7 +85,11 @@ def _named(shown: Seen, cause: NamedCause) -> Part:
     if cause.alternatives:
         lines[2:] = ["not decided: rivals", "explain it as well"]
     return Part(
-        cause.id, _short(cause.title), tuple(lines), channel, view if channel.key == key else "angle"
+        cause.id,
+        _short(cause.title),
+        tuple(lines),
+        channel,
+        view if channel.key == key else "angle",
     )
 
 
@@ -106,11 +117,19 @@ def write_contributions(path: Path, shown: Seen) -> None:
                     color=INK if k < 2 else MUTED,
                 )  # fmt: skip
         figure.text(
-            0.035, 1 - 0.26 / height, "What each part adds to the simulated angle", fontsize=12, weight="bold",
-            va="center",
+            0.035, 1 - 0.26 / height, "What each part adds to the simulated angle",
+            fontsize=12, weight="bold", va="center",
         )  # fmt: skip
         handles = [
-            Line2D([], [], color=RISING, marker="o", lw=0, ms=4, label="measured less all other parts, torque rising"),
+            Line2D(
+                [],
+                [],
+                color=RISING,
+                marker="o",
+                lw=0,
+                ms=4,
+                label="measured less all other parts, torque rising",
+            ),
             Line2D([], [], color=FALLING, marker="o", lw=0, ms=4, label="the same, torque falling"),
             Line2D([], [], color=INK, marker="o", lw=0, ms=3, label="model"),
         ]
@@ -136,7 +155,9 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
     x = part.channel.values
     for rises, colour in ((True, RISING), (False, FALLING)):
         rows = thinned(chosen & (shown.rises == rises))
-        axes.plot(x[rows], measured[rows], "o", ms=2.4, mew=0, color=colour, alpha=0.35, rasterized=True)
+        axes.plot(
+            x[rows], measured[rows], "o", ms=2.4, mew=0, color=colour, alpha=0.35, rasterized=True
+        )
     rows = thinned(chosen)
     axes.plot(x[rows], model[rows], "o", ms=2.0, mew=0, color=INK, rasterized=True)
     low, high = np.quantile(measured[chosen], [0.002, 0.998])

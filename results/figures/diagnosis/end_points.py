@@ -101,7 +101,12 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
         figure = new_figure(8.0, height, DPI)
         axes = figure.add_axes((0.13, 0.6 / height, 0.61, ROW * len(units) / height))
         axes.axvspan(
-            -reach, reach, color=PALETTE[2], alpha=0.25, lw=0, label="most that a stiffer direction can do"
+            -reach,
+            reach,
+            color=PALETTE[2],
+            alpha=0.25,
+            lw=0,
+            label="most that a stiffer direction can do",
         )
         axes.axvline(0, color=MUTED, lw=0.8)
         for row, unit in enumerate(units):
@@ -115,7 +120,9 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
                 [unit.mid_arcsec - half, unit.mid_arcsec + half], [row + 0.08] * 2, "|-", color=INK, lw=1.6,
                 ms=9, mew=1.6, label="measured, −T to +T" if first else None,
             )  # fmt: skip
-            axes.plot(unit.mid_arcsec, row + 0.08, "o", color=INK, ms=5, label="middle" if first else None)
+            axes.plot(
+                unit.mid_arcsec, row + 0.08, "o", color=INK, ms=5, label="middle" if first else None
+            )
             axes.annotate(
                 f"middle {unit.mid_arcsec:+.1f}″".replace("-", "−"), (1.02, row),
                 xycoords=("axes fraction", "data"), va="center", fontsize=9.5, annotation_clip=False,
@@ -126,7 +133,12 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
         axes.grid(axis="x")
         axes.set_xlabel("angle read in arcsec")
         figure.text(
-            0.035, 1 - 0.28 / height, "Where each unit's ends lie", fontsize=12, weight="bold", va="center"
+            0.035,
+            1 - 0.28 / height,
+            "Where each unit's ends lie",
+            fontsize=12,
+            weight="bold",
+            va="center",
         )
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
@@ -164,7 +176,14 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
         _bare(axes, len(ranked))
         axes.set_xlabel("share of the odds, of those shown, in %", fontsize=9.5)
         axes.set_xlim(0, 118 * share.max())
-        figure.text(0.035, 1 - 0.26 / height, "What could explain it", fontsize=12, weight="bold", va="center")
+        figure.text(
+            0.035,
+            1 - 0.26 / height,
+            "What could explain it",
+            fontsize=12,
+            weight="bold",
+            va="center",
+        )
         if plans:
             low = figure.add_axes((0.47, 0.55 / height, 0.43, 0.36 * len(plans) / height))
             sizes = [p.separation for p in plans]
@@ -177,7 +196,9 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             low.set_yticks(range(len(plans)), [_plan(p.vary) for p in plans], fontsize=9.5)
             _bare(low, len(plans))
             low.set_xlim(0, 1.18 * max(*sizes, 1e-9))
-            low.set_xlabel("by how many times the noise the nearest rivals then differ", fontsize=9.5)
+            low.set_xlabel(
+                "by how many times the noise the nearest rivals then differ", fontsize=9.5
+            )
             figure.text(
                 0.035, (0.55 + 0.36 * len(plans) + 0.22) / height, "What would tell them apart", fontsize=12,
                 weight="bold", va="center",
@@ -195,7 +216,9 @@ def _bare(axes, rows: int) -> None:  # type: ignore[no-untyped-def]
 def _words(hypothesis: Hypothesis, names: tuple[str, ...]) -> str:
     if not hypothesis.causes:
         return "the simulation, within its uncertainty"
-    titles = [FLAT if c.startswith("?") else title_of(c).partition(" (")[0] for c in hypothesis.causes]
+    titles = [
+        FLAT if c.startswith("?") else title_of(c).partition(" (")[0] for c in hypothesis.causes
+    ]
     text = " and ".join(titles)
     return text if hypothesis.own is None else f"{text}, unit {names[hypothesis.own]}"
 

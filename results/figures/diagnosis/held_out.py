@@ -44,7 +44,12 @@ def write_held_out(path: Path, gain: Gain) -> None:
         bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in STEPS], edgecolor=INK, lw=0.6)
         for i, size in enumerate(sizes):
             bars.annotate(
-                figures_text(size), (i, size), (0, 4), textcoords="offset points", ha="center", va="bottom"
+                figures_text(size),
+                (i, size),
+                (0, 4),
+                textcoords="offset points",
+                ha="center",
+                va="bottom",
             )
         bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
         bars.set_xlim(-0.5, 2.6)
@@ -55,7 +60,12 @@ def write_held_out(path: Path, gain: Gain) -> None:
             f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6
         )
         figure.text(
-            0.035, 0.945, f"Error on {gain.held_out}, not used for fitting", fontsize=12, weight="bold", va="center"
+            0.035,
+            0.945,
+            f"Error on {gain.held_out}, not used for fitting",
+            fontsize=12,
+            weight="bold",
+            va="center",
         )
         figure.legend(
             *rows.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,

@@ -35,21 +35,18 @@ def write_channels(
     shown: Seen,
     left_arcsec: np.ndarray,
     title: str,
-    ylabel: str,
     told: Mapping[str, str] | None = None,
-    reach: float | None = None,
 ) -> None:
     """Write the panels.
 
     Parameters
     ----------
     left_arcsec : (n,) what is drawn. told : a word for a channel's panel, by its key.
-    reach : half height of the axes [arcsec]; by the data where None.
     """
     channels = shown.channels
     rows = -(-len(channels) // 2)
     height = TOP + rows * PANEL + (rows - 1) * BETWEEN + BOTTOM
-    high = reach or _reach(shown, left_arcsec)
+    high = _reach(shown, left_arcsec)
     with styled():
         figure = new_figure(WIDTH, height, DPI)
         for i, channel in enumerate(channels):
@@ -62,7 +59,7 @@ def write_channels(
                 PANEL / height,
             ))  # fmt: skip
             _panel(axes, shown, channel, left_arcsec, high)
-            axes.set_ylabel(ylabel if column == 0 else "")
+            axes.set_ylabel("residual in arcsec" if column == 0 else "")
             if told and channel.key in told:
                 axes.text(
                     0.985, 0.03, told[channel.key], transform=axes.transAxes, ha="right", va="bottom",
@@ -95,9 +92,7 @@ def branch_legend(figure: Figure, y: float, shown: Seen) -> None:
     )  # fmt: skip
 
 
-def _panel(
-    axes: Axes, shown: Seen, channel: Channel, left: np.ndarray, high: float
-) -> None:
+def _panel(axes: Axes, shown: Seen, channel: Channel, left: np.ndarray, high: float) -> None:
     noise = 2 * shown.noise_arcsec
     axes.axhspan(-noise, noise, color="#e4e7ea", lw=0, zorder=0)
     axes.axhline(0, color=MUTED, lw=0.8)
@@ -117,7 +112,9 @@ def _panel(
         for sign, style in ((1, "-"), (-1, (0, (2.5, 1.5)))):
             own = branch & (np.sign(shown.history.torque_Nm) == sign)
             x, y = means(values[own], left[own], few)
-            axes.plot(x + moved, y, color=colour, lw=1.8, ls=style if channel.key != "torque_Nm" else "-")
+            axes.plot(
+                x + moved, y, color=colour, lw=1.8, ls=style if channel.key != "torque_Nm" else "-"
+            )
     axes.set_ylim(-high, high)
     axes.set_xlabel(channel.label)
     axes.grid(axis="y")

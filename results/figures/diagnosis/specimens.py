@@ -44,12 +44,19 @@ def write_stiffness(path: Path, found: SpecimenAnalysis) -> None:
         names = plain_names(found.specimen)
         step = -(-n // MOST_NAMES)
         long = max(map(len, names)) * n > 90
-        axes.set_xticks(x[::step], names[::step], rotation=40 if long else 0, ha="right" if long else "center")
+        axes.set_xticks(
+            x[::step], names[::step], rotation=40 if long else 0, ha="right" if long else "center"
+        )
         axes.grid(axis="y")
         axes.set_xlabel("specimen")
         axes.set_ylabel("stiffness over simulated, %")
         figure.text(
-            0.035, 0.945, "Measured stiffness against the simulation", fontsize=12, weight="bold", va="center"
+            0.035,
+            0.945,
+            "Measured stiffness against the simulation",
+            fontsize=12,
+            weight="bold",
+            va="center",
         )
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 0.865), ncols=4, fontsize=9, columnspacing=1.3,
@@ -112,16 +119,32 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
         axes.set_ylabel("error of 1/stiffness, %")
         axes.grid(axis="y")
         sizes = [gain.rmse_before, gain.rmse_calibrated, gain.rmse_after]
-        bars.bar(range(3), sizes, width=0.62, color=[PALETTE[2], PALETTE[1], PALETTE[0]], edgecolor=INK, lw=0.6)
+        bars.bar(
+            range(3),
+            sizes,
+            width=0.62,
+            color=[PALETTE[2], PALETTE[1], PALETTE[0]],
+            edgecolor=INK,
+            lw=0.6,
+        )
         for i, size in enumerate(sizes):
-            bars.annotate(figures_text(size), (i, size), (0, 4), textcoords="offset points", ha="center")
+            bars.annotate(
+                figures_text(size), (i, size), (0, 4), textcoords="offset points", ha="center"
+            )
         bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
-        bars.set_title(f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6)
+        bars.set_title(
+            f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6
+        )
         bars.set_xticks(range(3), ["as it\nstands", "modulus\nfitted", "with what\nwas found"])
         bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
         bars.set_ylabel(f"rms error, {gain.unit}")
         figure.text(
-            0.035, 0.945, "Error on specimens not used for fitting", fontsize=12, weight="bold", va="center"
+            0.035,
+            0.945,
+            "Error on specimens not used for fitting",
+            fontsize=12,
+            weight="bold",
+            va="center",
         )
         figure.legend(
             *axes.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,
@@ -131,14 +154,28 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
 
 
 def _against(
-    axes: Axes, x: np.ndarray, measured: np.ndarray, explained: np.ndarray, noise: np.ndarray, found: bool
+    axes: Axes,
+    x: np.ndarray,
+    measured: np.ndarray,
+    explained: np.ndarray,
+    noise: np.ndarray,
+    found: bool,
 ) -> None:
     axes.axhline(0, color=PALETTE[0], lw=1.6, label="simulation")
     if found:
         axes.plot(
-            x, explained, "D", ms=6, mfc="none", mec=PALETTE[2], mew=1.8, label="with what was found"
+            x,
+            explained,
+            "D",
+            ms=6,
+            mfc="none",
+            mec=PALETTE[2],
+            mew=1.8,
+            label="with what was found",
         )
-    axes.errorbar(x, measured, yerr=noise, fmt="o", ms=5, color=INK, capsize=3, lw=1.2, label="measured, ± 1σ")
+    axes.errorbar(
+        x, measured, yerr=noise, fmt="o", ms=5, color=INK, capsize=3, lw=1.2, label="measured, ± 1σ"
+    )
     axes.grid(axis="y")
 
 

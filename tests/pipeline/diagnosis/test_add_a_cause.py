@@ -8,8 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 PAGE = Path(__file__).parents[3] / "docs" / "add-a-cause.md"
 # in a process of its own: a class once defined stays among all causes
 SCRIPT = """

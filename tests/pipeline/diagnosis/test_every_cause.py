@@ -105,7 +105,9 @@ def test_units_do_not_know_of_each_other(cause: Cause) -> None:
     alone, three = sweep(cycles=2), sweep(cycles=2, units=3)
     for shape in shapes(cause):
         one, all_three = cause.columns(shape, alone), cause.columns(shape, three)
-        np.testing.assert_allclose(all_three, np.tile(one, (3, 1)), atol=1e-9 * (1 + np.abs(one).max()))
+        np.testing.assert_allclose(
+            all_three, np.tile(one, (3, 1)), atol=1e-9 * (1 + np.abs(one).max())
+        )
 
 
 @each_cause
@@ -199,9 +201,9 @@ def test_creep_of_one_kelvin_element() -> None:
 
 
 def test_growth_per_cycle_and_per_hour() -> None:
-    assert magnitude("wear", shape_of("wear", exponent=1.0, run_in_cycles=0.0), 6.0) == pytest.approx(
-        6.0 / 3
-    )
+    assert magnitude(
+        "wear", shape_of("wear", exponent=1.0, run_in_cycles=0.0), 6.0
+    ) == pytest.approx(6.0 / 3)
     hours = 5.0 * (len(sweep()) - 1) / 3600
     shape = shape_of("sensor_drift", exponent=1.0, settling_s=0.0)
     assert magnitude("sensor_drift", shape, 2.0) == pytest.approx(2.0 / hours)

@@ -29,7 +29,9 @@ def test_a_model_that_is_the_simulation_adds_nothing() -> None:
 
 
 def test_calibration_is_the_change_of_compliance_and_gap() -> None:
-    model = replace(SIMULATED, compliance=12.0, gap_arcsec=66.0, own={"a": (1.0, 0), "b": (3.0, 4.0)})
+    model = replace(
+        SIMULATED, compliance=12.0, gap_arcsec=66.0, own={"a": (1.0, 0), "b": (3.0, 4.0)}
+    )
     found = extended_backlash(NOMINAL, model, 0.5)
     assert found.calibration_arcsec == pytest.approx(1.0 - 4.0 + 2.0 + 2.0)
 
@@ -38,7 +40,13 @@ def test_terms_of_causes() -> None:
     assert added("series_compliance", {}, 3.0) == pytest.approx(3.0)  # 2·0.5·3
     assert added("clearance_offset", {}, -7.0) == pytest.approx(-7.0)
     slider = shape_of(
-        "friction_hysteresis", threshold_Nm=0.1, spread=0, loaded=0, held=1, start=0, deadband_Nm=0.0
+        "friction_hysteresis",
+        threshold_Nm=0.1,
+        spread=0,
+        loaded=0,
+        held=1,
+        start=0,
+        deadband_Nm=0.0,
     )
     # friction takes 2 arcsec of the way at either end
     assert added("friction_hysteresis", slider, 2.0) == pytest.approx(-4.0)
@@ -50,7 +58,9 @@ def test_terms_of_causes() -> None:
 def test_what_is_in_the_readings_adds_nothing() -> None:
     drift = shape_of("sensor_drift", exponent=1.0, settling_s=0.0, duration_s=3600.0)
     assert added("sensor_drift", drift, 50.0) == pytest.approx(0.0, abs=1e-9)
-    assert added("kinematic_error", shape_of("kinematic_error"), 5.0, 5.0) == pytest.approx(0.0, abs=1e-9)
+    assert added("kinematic_error", shape_of("kinematic_error"), 5.0, 5.0) == pytest.approx(
+        0.0, abs=1e-9
+    )
     assert added("torque_offset", {}, 0.2) == 0.0
     warm = shape_of("thermal_clearance", lag_s=0.0)
     assert added("thermal_clearance", warm, -0.4) == pytest.approx(0.0, abs=1e-12)  # at 20 °C

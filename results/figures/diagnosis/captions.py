@@ -1,0 +1,52 @@
+"""What each figure shows, and what to see in it."""
+
+from __future__ import annotations
+
+CAPTIONS = {
+    "measured_and_predicted": """
+        Above, the measured angle on the simulated line; below, their difference. A difference inside
+        the band is what the design's own uncertainty allows; a pattern in it is not.""",
+    "residual_simulation": """
+        What the simulation leaves, its stiffness and gap calibrated by up to two standard deviations
+        of the design's uncertainty, against every channel recorded. If nothing were missing, all
+        points would lie in the grey band and the lines on zero. Lines apart for rising and falling
+        torque mean friction or lag; lines that drift apart for T > 0 and T < 0 mean a gap or a
+        stiffness that changes.""",
+    "causes": """
+        Each part of the extended model alone. Pale: the measurement with all other parts taken off.
+        Dark: what the model adds. The pale points should scatter evenly about the dark ones.""",
+    "held_out": """
+        Error on rows that were kept out of the fit. As far as the last bar comes down to the dashed
+        line, the extended model predicts as well as the instrument reads.""",
+    "residual_model": """
+        What remains after the best model: the points should fill the grey band evenly and the lines
+        stay near zero. Each panel says whether a test finds anything left.""",
+    "residual_unknown": """
+        What remains after the best model, unnamed structure included. The structure that no cause
+        explains lies in: {where}; the figure of the model's parts shows its course.""",
+    "envelope": """
+        The angle between −T and +T of each unit. The band holds 95 of 100 units that are as the
+        design says; a unit beyond it has something that the design's clearances and stiffness do
+        not.""",
+    "positions": """
+        Where the two ends of each unit lie. The symmetric simulation puts every middle on zero; the
+        zero of an angle reading is free, so a middle elsewhere proves nothing alone.""",
+    "rivals": """
+        Above, how the odds are shared among the explanations; bars of like length cannot be told
+        apart. Below, where shown, what a further measurement would do about it.""",
+    "stiffness": """
+        Measured stiffness of each specimen as deviation from the simulation. With the cause found,
+        the diamonds lie on the measured points.""",
+    "dimensions": """
+        The same deviation against every dimension that varies. A slope says on what the fault
+        depends; a shift of all points alike is the material's, or a part that the simulation leaves
+        out.""",
+    "held_out_specimens": """
+        Each specimen predicted from all others. As far as the last bar comes down to the dashed
+        line, the explanation predicts as well as the rig measures.""",
+}
+
+
+def caption(name: str, **words: str) -> str:
+    """The caption on one line, with its places filled."""
+    return " ".join(CAPTIONS[name].split()).format(**words)
