@@ -20,6 +20,7 @@ STEPS = 141
 WIDTHS = (0.5, 1.0, 2.0, 4.0)
 """Width of the crossing, in units of the torque noise."""
 MISFIT = 1.5
+UNSEEN = 3.0
 EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 OUTLIER_SHARE = 0.01
 """Rows that the crossing's model does not claim."""
@@ -63,16 +64,27 @@ def crossing(
     offsets = np.linspace(-REACH, REACH, STEPS) * largest * 0.9
     floor = max(torque_noise_Nm, 1e-4 * largest)
     best = [
-        np.array([_log_likelihood(o, w * floor, torque, left, gap_arcsec, noise_arcsec) for o in offsets])
+        np.array(
+            [_log_likelihood(o, w * floor, torque, left, gap_arcsec, noise_arcsec) for o in offsets]
+        )
         for w in WIDTHS
     ]
     table = np.array(best)
-    w, k = np.unravel_index(table.argmax(), table.shape)
+    w, k = divmod(int(table.argmax()), STEPS)
     fine = np.linspace(offsets[max(0, k - 1)], offsets[min(STEPS - 1, k + 1)], 81)
-    along = np.array([
-        _log_likelihood(o, WIDTHS[w] * floor, torque, left, gap_arcsec, noise_arcsec) for o in fine
-    ])
-    none = max(_log_likelihood(0.0, x * floor, torque, left, gap_arcsec, noise_arcsec) for x in WIDTHS)
+    along = np.array(
+        [
+            _log_likelihood(o, WIDTHS[w] * floor, torque, left, gap_arcsec, noise_arcsec)
+            for o in fine
+        ]
+    )
+    # an offset within the torque's noise is none
+    unseen = max(UNSEEN * torque_noise_Nm, offsets[1] - offsets[0]) * np.linspace(-1, 1, 9)
+    none = max(
+        _log_likelihood(o, x * floor, torque, left, gap_arcsec, noise_arcsec)
+        for o in unseen
+        for x in WIDTHS
+    )
     weight = np.exp(along - along.max())
     mean = float(weight @ fine / weight.sum())
     std = float(np.sqrt(weight @ (fine - mean) ** 2 / weight.sum() + (fine[1] - fine[0]) ** 2 / 12))
@@ -129,7 +141,9 @@ def first_offset(
         weight = np.ones(len(rows))
         left = angle_arcsec[rows]
         for _ in range(2):
-            found = np.linalg.lstsq(basis * weight[:, None], angle_arcsec[rows] * weight, rcond=None)[0]
+            found = np.linalg.lstsq(
+                basis * weight[:, None], angle_arcsec[rows] * weight, rcond=None
+            )[0]
             left = angle_arcsec[rows] - basis @ found
             scale = 1.4826 * np.median(np.abs(left)) + 1e-9
             weight = 1 / np.maximum(1, np.abs(left) / (ROBUST * scale))

@@ -50,9 +50,13 @@ def unit_shares(weighed: Weighed, cause: str) -> UnitShare:
     unit = solution.rig.history.unit
     count = int(unit.max()) + 1
     effect = solution.added(cause)
-    others = [race.x[:, race.terms[i].at] for i in solution.fit.terms if race.terms[i].owner != cause]
+    others = [
+        race.x[:, race.terms[i].at] for i in solution.fit.terms if race.terms[i].owner != cause
+    ]
     rest = np.hstack([race.base, *others])
-    prior = np.concatenate([race.columns.base_prior**-2, np.ones(rest.shape[1] - race.base.shape[1])])
+    prior = np.concatenate(
+        [race.columns.base_prior**-2, np.ones(rest.shape[1] - race.base.shape[1])]
+    )
     apart = race.prepared(np.column_stack([effect * (unit == u) for u in range(count)]))
     common = apart.sum(axis=1, keepdims=True)
     found, separate = _fit(race.y, rest, prior, apart)

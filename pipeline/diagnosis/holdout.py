@@ -19,7 +19,9 @@ CROSSING_SIGMAS = 3.0
 """|T| within this of zero, in units of the torque noise, is the gap's crossing."""
 
 
-def held_out(history: History, names: tuple[tuple[float, ...], ...]) -> tuple[str, np.ndarray] | None:
+def held_out(
+    history: History, names: tuple[tuple[float, ...], ...]
+) -> tuple[str, np.ndarray] | None:
     """What to hold out, in words, and its rows (n,): whole cycles, or positions, or units.
 
     Every third cycle, never the first: the last is kept for fitting where there are more than two, so

@@ -82,7 +82,9 @@ def _wave(prepared: Prepared, left: np.ndarray) -> ChannelTest:
     top = float(power.max())
     p_value = float(-np.expm1(count * np.log1p(-np.exp(-min(top, 700.0)))))
     share = 2 * top / len(left)
-    return ChannelTest("time_s", float(np.sqrt(min(share, 1.0))) * prepared.noise.std_arcsec, p_value)
+    return ChannelTest(
+        "time_s", float(np.sqrt(min(share, 1.0))) * prepared.noise.std_arcsec, p_value
+    )
 
 
 def _units(unit: np.ndarray) -> list[np.ndarray]:

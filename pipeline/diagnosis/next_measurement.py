@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.torque_program import ramp_s
 from pipeline.diagnosis.model import ExtendedModel
 from pipeline.diagnosis.prediction import REFERENCE_C
 from pipeline.diagnosis.record import History
 from pipeline.diagnosis.result import NextMeasurement
 from pipeline.diagnosis.sweep import Prepared
-from pipeline.diagnosis.effects.torque_program import ramp_s
 
 ROWS = 64
 """Of one triangular cycle."""
@@ -140,5 +140,6 @@ def to_tell_apart(
         vary = FALLBACK.get(cause, "torque_Nm")
         return NextMeasurement(vary, f"to tell {titles}: {causes()[cause].reveals}", 0.0)
     plan, separation = chosen
-    why = f"{plan.doing}: their predictions then differ by {separation:.0f} times the noise; it tells {titles}"
+    times = f"their predictions then differ by {separation:.0f} times the noise"
+    why = f"{plan.doing}: {times}; it tells {titles}"
     return NextMeasurement(plan.vary, why, separation)

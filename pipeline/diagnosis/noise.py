@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import nnls
@@ -62,8 +62,7 @@ class Noise:
             x = values[s]
             e = lfilter([1.0, -rho], [1.0, -theta], x, axis=0)
             # a start from rest: the first innovations have a larger variance, which decays as θ^2k
-            k = np.arange(len(x))
-            extra = (total - s2) * np.where(k > 0, (theta**2) ** k, 1.0) if theta > 0 else (total - s2) * (k == 0)
+            extra = (total - s2) * np.float64(theta**2) ** np.arange(len(x))
             out[s] = e / np.sqrt(s2 + extra).reshape(shape)
         return out
 
@@ -78,7 +77,7 @@ def stretches_of(history: History, kept: np.ndarray) -> list[slice]:
         return []
     cut = (np.diff(rows) > 2) | (np.diff(history.unit[rows]) != 0)
     edges = np.concatenate([[0], np.flatnonzero(cut) + 1, [len(rows)]])
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return [slice(a, b) for a, b in pairwise(edges)]
 
 
 def estimated(
@@ -94,7 +93,11 @@ def estimated(
     grow = n / max(n - used, n // 3, 1)
     cov = np.empty(lags + 1)
     for k in range(lags + 1):
-        pairs = [residual[s][k:] * residual[s][: len(residual[s]) - k] for s in stretches if _length(s) > k]
+        pairs = [
+            residual[s][k:] * residual[s][: len(residual[s]) - k]
+            for s in stretches
+            if _length(s) > k
+        ]
         cov[k] = np.concatenate(pairs).mean() if pairs else 0.0
     cov *= grow
     longest = max(1.0, LONGEST_OF_CYCLE * rows_per_cycle)
@@ -118,9 +121,7 @@ def crossing_band_Nm(history: History) -> float:
     return max(BAND_SIGMAS * min(torque_noise_Nm(history), 0.02 * largest), BAND_SHARE * largest)
 
 
-def isolated_outliers(
-    residual: np.ndarray, history: History, sigma: float
-) -> np.ndarray:
+def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> np.ndarray:
     """(n,) rows that stand alone beyond 5σ; three in a row, or one place in several passes, stay."""
     far = np.abs(residual) > OUTLIER_SIGMAS * sigma
     if not far.any():
@@ -149,9 +150,6 @@ def rough_residual(
     angle: np.ndarray, history: History, kept: np.ndarray, rows_per_cycle: float
 ) -> np.ndarray:
     """(kept,) what a local parabola leaves over windows of a twelfth of a cycle: noise and little else."""
-    from scipy.ndimage import median_filter
-
-    del median_filter
     out = np.empty(int(kept.sum()))
     width = int(np.clip(rows_per_cycle / 12, 7, 400))
     y = angle[kept]
@@ -182,6 +180,3 @@ def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
 
 def _length(s: slice) -> int:
     return int(s.stop - s.start)
-
-
-Whitener = Callable[[np.ndarray], np.ndarray]

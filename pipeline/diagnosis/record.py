@@ -137,7 +137,9 @@ def read_measurement(path: Path) -> Measurement:
 def _sweep(table: Table) -> Sweep:
     n = len(table)
     if n < FEWEST_SWEEP_ROWS:
-        raise table.refuse(n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}")
+        raise table.refuse(
+            n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}"
+        )
     found = history_of(table)
     return Sweep(
         table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
@@ -173,10 +175,14 @@ def history_of(table: Table) -> NamedHistory:
     if recorded:
         odd = np.flatnonzero((cycle != np.floor(cycle)) | (cycle < 0))
         if len(odd):
-            raise table.refuse(int(odd[0]), f"cycle = {cycle[odd[0]]:g} is not a whole number from 0")
+            raise table.refuse(
+                int(odd[0]), f"cycle = {cycle[odd[0]]:g} is not a whole number from 0"
+            )
         large = np.flatnonzero(cycle > LARGEST_CYCLE)
         if len(large):
-            raise table.refuse(int(large[0]), f"cycle = {cycle[large[0]]:g} is beyond {LARGEST_CYCLE}")
+            raise table.refuse(
+                int(large[0]), f"cycle = {cycle[large[0]]:g} is beyond {LARGEST_CYCLE}"
+            )
     counted = np.zeros(n, int)
     own: list[tuple[float, ...]] = []
     for u in range(len(names)):
@@ -233,7 +239,8 @@ def _end_points(table: Table) -> EndPoints:
     torque = table.numbers["torque_Nm"]
     bad = np.flatnonzero(torque <= 0)
     if len(bad):
-        raise table.refuse(int(bad[0]), f"torque_Nm = {torque[bad[0]]:g}: must be above 0; both signs are meant")
+        reason = f"torque_Nm = {torque[bad[0]]:g}: must be above 0; both signs are meant"
+        raise table.refuse(int(bad[0]), reason)
     return EndPoints(
         table.path, table.labels["unit"], torque,
         table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"],

@@ -8,7 +8,8 @@ from math import log
 
 import numpy as np
 
-from pipeline.diagnosis.terms import Race, Term, column_indices
+from pipeline.diagnosis.columns import Term
+from pipeline.diagnosis.terms import Race, column_indices
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
@@ -209,7 +210,9 @@ def probability(search: Search, share: float = 1.0) -> dict[frozenset[str], floa
     """Posterior probability of each set of named causes, over all sets weighed."""
     by: dict[frozenset[str], float] = {}
     for c in search.best.values():
-        key = c.named(search.race) | frozenset(o for o in c.owners(search.race) if o.startswith("?"))
+        key = c.named(search.race) | frozenset(
+            o for o in c.owners(search.race) if o.startswith("?")
+        )
         by[key] = np.logaddexp(by.get(key, -np.inf), c.score * share)
     top = max(by.values())
     total = log(sum(np.exp(v - top) for v in by.values())) + top

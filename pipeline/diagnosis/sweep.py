@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pipeline.diagnosis.columns import Columns, columns_of
 from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.effects.operators import rising
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.noise import (
     Noise,
@@ -20,10 +20,11 @@ from pipeline.diagnosis.noise import (
     stretches_of,
 )
 from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import History, Sweep
+from pipeline.diagnosis.record import Sweep
+from pipeline.diagnosis.rows import naming_rows
 from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, solved
-from pipeline.diagnosis.terms import Columns, Race, columns_of, race, with_terms
+from pipeline.diagnosis.terms import Race, race, with_terms
 from pipeline.diagnosis.thinning import thinned
 from pipeline.diagnosis.tune import tuned
 from pipeline.diagnosis.weighing import Weighed, weigh
@@ -31,13 +32,22 @@ from pipeline.diagnosis.weighing import Weighed, weigh
 ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
 TUNINGS, KINDS = 3, 3
-SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
-"""Of the largest torque; of a unit's rows."""
 OFFSET_ROUNDS = 4
 OFFSET_NATS, OFFSET_SURE = 9.0, 20.0
 OFFSET_LEAST = (0.012, 0.005)
 """Of the largest torque: smaller offsets move nothing that counts; the second where it is sure."""
 FEWEST_KEPT = 12
+
+
+class TooFewRowsError(ValueError):
+    """Too few rows lie outside the gap's crossing and the torque's turns; `count` of them."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        super().__init__(
+            f"only {count} rows lie outside the gap's crossing and the torque's turns;"
+            f" {FEWEST_KEPT} are needed"
+        )
 
 
 @dataclass(frozen=True)
@@ -60,6 +70,7 @@ class Prepared:
     band_Nm: float
     rows_per_cycle: float
     noise: Noise
+    offset_Nm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -74,21 +85,23 @@ class Explained:
 
 
 def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Prepared:
-    """Sort the rows out and evaluate every term."""
+    """Sort the rows out and evaluate every term.
+
+    Raises
+    ------
+    TooFewRowsError
+    """
     history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
     if history.time_s is None:
         history = replace(history, time_s=np.arange(len(history), dtype=float))
     rig = Rig(prediction, history)
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
-    kept = _naming_rows(history, band)
+    kept = naming_rows(history, band)
     count = sum(int(history.cycle[rows].max()) + 1 for rows in history.unit_slices)
     per_cycle = len(history) / count
     if int(kept.sum()) < FEWEST_KEPT:
-        return Prepared(
-            sweep, prediction, rig, Columns(rig, np.empty((0, 0)), np.empty(0), np.empty((0, 0)), ()),
-            target, kept, np.zeros(len(target), bool), band, per_cycle, Noise(0, 0, 0),
-        )  # fmt: skip
+        raise TooFewRowsError(int(kept.sum()))
     rough = rough_residual(target, history, kept, per_cycle)
     spread = 1.4826 * float(np.median(np.abs(rough))) + 1e-9
     outlier = np.zeros(len(kept), bool)
@@ -97,50 +110,18 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     kept &= ~outlier
     noise = estimated(rough[good], stretches_of(history, kept), per_cycle, int(kept.sum()) // 6)
     return Prepared(
-        sweep, prediction, rig, columns_of(rig, causes()), target, kept, outlier, band, per_cycle, noise
+        sweep,
+        prediction,
+        rig,
+        columns_of(rig, causes()),
+        target,
+        kept,
+        outlier,
+        band,
+        per_cycle,
+        noise,
+        offset_Nm,
     )
-
-
-def _naming_rows(history: History, band_Nm: float) -> np.ndarray:
-    """(n,) rows that may name causes, outliers aside."""
-    return (np.abs(history.torque_Nm) > band_Nm) & ~turning(history) & ~settling(history)
-
-
-def turning(history: History) -> np.ndarray:
-    """(n,) rows at which the torque turns, each with the one after it.
-
-    What a row there shows depends on how reading and turning fall together: friction has not turned
-    yet, a rate is half of what it was. A few rows of sparse records would decide between them.
-    """
-    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
-    out = np.zeros(len(history), bool)
-    for rows in history.unit_slices:
-        turned = _turns(direction[rows])
-        for back in (0, 1):
-            out[rows[turned - back]] = True
-    return out
-
-
-def settling(history: History) -> np.ndarray:
-    """(n,) rows before a unit's torque first turns far from zero.
-
-    What a friction element remembers from before the record is not known; the first far turn wipes it
-    out. Only where most of the record remains.
-    """
-    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
-    far = SETTLED_AT * np.abs(history.torque_Nm).max()
-    out = np.zeros(len(history), bool)
-    for rows in history.unit_slices:
-        turned = [i for i in _turns(direction[rows]) if abs(history.torque_Nm[rows[i]]) > far]
-        if turned and turned[0] < SETTLING_SHARE * len(rows):
-            out[rows[: turned[0]]] = True
-    return out
-
-
-def _turns(direction: np.ndarray) -> np.ndarray:
-    """Rows (t,) at which a direction (m,) of ±1, 0 before it first moves, differs from the last row's."""
-    turned = np.flatnonzero(np.diff(direction) != 0) + 1
-    return turned[direction[turned - 1] != 0]
 
 
 def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
@@ -151,7 +132,7 @@ def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
         left = solved(now, best.terms).residual()
         prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=now.columns)
     now = _tuned_race(_race(prepared))
-    return replace(prepared, columns=now.columns), weigh(now)
+    return replace(prepared, columns=now.columns), weigh(now, prepared.offset_Nm != 0.0)
 
 
 def _tuned_race(now: Race) -> Race:
@@ -185,9 +166,7 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     race_ = search.race
     enough = 0.5 * best.evidence
     found = {
-        c.terms
-        for owners, c in search.best.items()
-        if len(owners) == 1 and c.evidence > enough
+        c.terms for owners, c in search.best.items() if len(owners) == 1 and c.evidence > enough
     }
     kinds: dict[str, dict[tuple[float, ...], Candidate]] = {}
     for c in sorted(search.weighed, key=lambda c: -c.evidence):
@@ -209,7 +188,7 @@ def _race(prepared: Prepared) -> Race:
 
 def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
     history = prepared.rig.history
-    inside = _naming_rows(history, prepared.band_Nm)
+    inside = naming_rows(history, prepared.band_Nm)
     spread = 1.4826 * float(np.median(np.abs(left[inside & ~prepared.outlier])))
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
@@ -227,7 +206,7 @@ def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     offset, nats = guess, 0.0
     for _ in range(OFFSET_ROUNDS):
         prepared, weighed = explain(prepare(sweep, prediction, offset))
-        seen = seen_crossing(prepared, weighed.solution, offset)
+        seen = seen_crossing(prepared, weighed.solution)
         if seen is None:
             break
         nats = seen.nats
@@ -245,13 +224,13 @@ def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     return Explained(prepared, weighed, seen, offset, nats)
 
 
-def seen_crossing(prepared: Prepared, solution: Solution, offset_Nm: float) -> Crossing | None:
+def seen_crossing(prepared: Prepared, solution: Solution) -> Crossing | None:
     """The crossing as read, with everything but the gap taken off the measured angle."""
     history = prepared.rig.history
     gap = solution.measured_rig().gap_arcsec
     good = ~prepared.outlier
     left = solution.residual() + history.sign * gap / 2
     return crossing(
-        history.torque_Nm[good] + offset_Nm, left[good], gap,
+        history.torque_Nm[good] + prepared.offset_Nm, left[good], gap,
         prepared.noise.std_arcsec, torque_noise_Nm(history),
     )  # fmt: skip

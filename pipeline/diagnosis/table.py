@@ -75,12 +75,16 @@ def read_table(path: Path) -> Table:
     """
     lines, numbers_of = _lines(path)
     if not lines:
-        raise MeasurementError(path, None, "holds no header line; expected columns such as torque_Nm")
+        raise MeasurementError(
+            path, None, "holds no header line; expected columns such as torque_Nm"
+        )
     reader = csv.reader(lines, strict=True)
     try:
         rows = list(reader)
     except csv.Error as error:
-        raise MeasurementError(path, numbers_of[min(reader.line_num, len(lines)) - 1], str(error)) from None
+        raise MeasurementError(
+            path, numbers_of[min(reader.line_num, len(lines)) - 1], str(error)
+        ) from None
     header = [h.strip() for h in rows[0]]
     columns = _columns(path, numbers_of[0], header)
     body = rows[1:]
@@ -141,9 +145,9 @@ def _lines(path: Path) -> tuple[list[str], list[int]]:
     if "\0" in text:
         raise MeasurementError(path, text[: text.index("\0")].count("\n") + 1, "holds a NUL byte")
     kept, numbers = [], []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            kept.append(line)
+    for number, row in enumerate(text.splitlines(), 1):
+        if row.strip() and not row.lstrip().startswith("#"):
+            kept.append(row)
             numbers.append(number)
     if len(kept) > LARGEST_ROWS:
         raise MeasurementError(path, None, f"{len(kept)} rows; at most {LARGEST_ROWS} are read")

@@ -1,132 +1,18 @@
-"""The race's terms on one record: whitened columns, their products, and the evidence of any set."""
+"""The race on one record: whitened columns, their products, and the evidence of any set of terms."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import log
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Rig, Shape
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.columns import Columns, Term
+from pipeline.diagnosis.effects.cause import Shape
 from pipeline.diagnosis.noise import Noise, stretches_of
-from pipeline.diagnosis.unnamed import Unnamed, competitors
 
-ZERO_STD_ARCSEC = 1e5
-"""The zero of the angle is free."""
 MOST_ROWS = 4000
 """Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
-UNNAMED_SPREAD = 0.15
-"""Prior size of an unnamed term, as a share of the predicted angle."""
-
-
-@dataclass(frozen=True)
-class Term:
-    """One shape of a cause, or one competitor (`cause` None); `at` its columns among all."""
-
-    cause: Cause | None
-    shape: Shape
-    channel: str
-    what: str
-    at: slice
-    prior: np.ndarray
-    """(k,) standard deviations of the amplitudes."""
-    positive: bool
-    """Whether its amplitudes may not be negative."""
-    log_share: float
-    """Log of the share of its cause's (or channel's) prior that this shape has."""
-
-    @property
-    def owner(self) -> str:
-        """Cause id, or `?channel`."""
-        return self.cause.id if self.cause else f"?{self.channel}"
-
-
-@dataclass(frozen=True)
-class Columns:
-    """All columns of a record before whitening; float32 keeps 100 000 rows in memory."""
-
-    rig: Rig
-    base: np.ndarray
-    base_prior: np.ndarray
-    """(b,) standard deviations; the columns are zeros, compliance and gap, common and per unit."""
-    all: np.ndarray
-    terms: tuple[Term, ...]
-
-
-CORNER = 4.0
-NOISE_WINDOWS = (2, 7)
-"""Rows on each side over which the torque is taken as a parabola."""
-
-
-def jitter(history: History, width: int) -> np.ndarray:
-    """(n,) torque less a parabola through its neighbours: its noise, and little else.
-
-    With noise in the torque reading, whatever knows the true torque better explains the angle better.
-    These columns take that away from every term, so that no cause is found in the torque's noise.
-    """
-    out = np.zeros(len(history))
-    for rows in history.unit_slices:
-        n = len(rows)
-        torque = history.torque_Nm[rows]
-        t = np.arange(n, dtype=float) if history.time_s is None else history.time_s[rows]
-        near = np.clip(np.arange(n)[:, None] + np.arange(-width, width + 1), 0, n - 1)
-        x = t[near] - t[:, None]
-        x /= np.maximum(np.abs(x).max(axis=1, keepdims=True), 1e-12)
-        basis = np.stack([np.ones_like(x), x, x * x], axis=2)
-        gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
-        right = np.einsum("nwi,nw->ni", basis, torque[near])
-        out[rows] = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
-    # beyond its noise it is a corner of the programme, not noise
-    return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
-
-
-def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
-    """(n, b) zero of each unit, deviation of compliance and gap (common, and per unit if several), torque noise."""
-    h, p = rig.history, rig.prediction
-    units = [np.isin(np.arange(len(h)), rows).astype(float) for rows in h.unit_slices]
-    columns = [*units, h.torque_Nm, h.sign / 2]
-    prior = [ZERO_STD_ARCSEC] * len(units) + [p.compliance_std, p.gap_std_arcsec]
-    if len(units) > 1:
-        for own in units:
-            columns += [own * h.torque_Nm, own * h.sign / 2]
-            prior += [p.compliance_std, p.gap_std_arcsec]
-    for width in NOISE_WINDOWS:
-        columns.append(jitter(h, width))
-        prior.append(p.compliance)
-    return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)
-
-
-def columns_of(rig: Rig, known: dict[str, Cause]) -> Columns:
-    """Evaluate every shape of every cause, and every competitor, on a rig's record."""
-    base, prior = base_columns(rig)
-    blocks: list[np.ndarray] = []
-    terms: list[Term] = []
-    width = 0
-    for cause in known.values():
-        shapes = cause.shapes(rig)
-        for shape, block in zip(shapes, cause.columns_of_all(shapes, rig.history), strict=True):
-            k = block.shape[1]
-            spread = np.full(k, cause.spread(shape, rig))
-            terms.append(
-                Term(cause, shape, "", cause.title, slice(width, width + k), spread, cause.positive, -log(len(shapes)))
-            )
-            blocks.append(block.astype(np.float32))
-            width += k
-    rivals = competitors(rig)
-    for rival in rivals:
-        terms.append(_competitor(rival, rivals, width, rig))
-        blocks.append(rival.columns.astype(np.float32))
-        width += rival.columns.shape[1]
-    return Columns(rig, base, prior, np.hstack(blocks), tuple(terms))
-
-
-def _competitor(rival: Unnamed, rivals: Sequence[Unnamed], at: int, rig: Rig) -> Term:
-    alike = sum(r.channel == rival.channel for r in rivals)
-    k = rival.columns.shape[1]
-    prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec)
-    return Term(None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike))
 
 
 @dataclass(frozen=True)
@@ -179,7 +65,9 @@ def race(columns: Columns, target: np.ndarray, kept: np.ndarray, noise: Noise) -
     base = bare.prepared(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
     step = 64
-    wide = [bare.prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)]
+    wide = [
+        bare.prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)
+    ]
     x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
     block = max(1, int(kept.sum()) // MOST_ROWS)
     base_gram = base.T @ base + np.diag(columns.base_prior**-2)
@@ -267,7 +155,8 @@ class Fit:
 def column_indices(race: Race, chosen: Sequence[int]) -> np.ndarray:
     """Columns of several terms, in order."""
     return np.concatenate(
-        [np.arange(race.terms[i].at.start, race.terms[i].at.stop) for i in chosen] or [np.empty(0, int)]
+        [np.arange(race.terms[i].at.start, race.terms[i].at.stop) for i in chosen]
+        or [np.empty(0, int)]
     ).astype(int)
 
 
@@ -278,13 +167,16 @@ def fitted(race: Race, chosen: Sequence[int]) -> Fit:
     own = race.gram[np.ix_(at, at)] + race.base_cross[:, at].T @ np.linalg.solve(
         race.base_gram, race.base_cross[:, at]
     )
-    matrix = np.block([
-        [race.base_gram, race.base_cross[:, at]],
-        [race.base_cross[:, at].T, own + np.eye(len(at))],
-    ])
-    right = np.concatenate(
-        [race.base_right, race.right[at] + race.base_cross[:, at].T @ np.linalg.solve(race.base_gram, race.base_right)]
+    matrix = np.block(
+        [
+            [race.base_gram, race.base_cross[:, at]],
+            [race.base_cross[:, at].T, own + np.eye(len(at))],
+        ]
     )
+    whole = race.right[at] + race.base_cross[:, at].T @ np.linalg.solve(
+        race.base_gram, race.base_right
+    )
+    right = np.concatenate([race.base_right, whole])
     inverse = np.linalg.inv(matrix)
     mean = inverse @ right
     scale = np.concatenate([np.ones(b), race.scale[at]])

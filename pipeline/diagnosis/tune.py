@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.diagnosis.columns import Term
 from pipeline.diagnosis.effects.cause import Shape
-from pipeline.diagnosis.terms import Race, Term
+from pipeline.diagnosis.terms import Race
 
 STEPS = 4
 STEP_STD = 0.4

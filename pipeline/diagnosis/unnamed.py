@@ -54,7 +54,7 @@ def competitors(rig: Rig) -> list[Unnamed]:
     free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
     inverse = np.linalg.pinv(free)
     found = []
-    for make in (_torque, _softening, _angle, _direction, _leading, _time, _cycle, _temperature, _position, _unit):
+    for make in MAKERS:
         for channel, what, columns in make(rig):
             rest = columns
             if make in (_torque, _angle, _time, _direction) and what != CHANGING:
@@ -63,7 +63,8 @@ def competitors(rig: Rig) -> list[Unnamed]:
             rms = np.sqrt((rest**2).mean(axis=0))
             good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
-                found.append(Unnamed(channel, what, rest[:, good] / rms[good], make in (_leading, _softening)))
+                positive = make in (_leading, _softening)
+                found.append(Unnamed(channel, what, rest[:, good] / rms[good], positive))
     return found
 
 
@@ -81,12 +82,15 @@ def _softening(rig: Rig) -> Made:
     """Stiffness that falls with load: no known cause, and anchored where the load is small."""
     torque = rig.history.torque_Nm / rig.torque_Nm
     for power in SOFTENING:
-        yield "torque_Nm", "stiffness that falls with load", (np.abs(torque) ** power * rig.history.sign)[:, None]
+        soft = np.abs(torque) ** power * rig.history.sign
+        yield "torque_Nm", "stiffness that falls with load", soft[:, None]
 
 
 def _angle(rig: Rig) -> Made:
     angle = rig.prediction.angle_arcsec(rig.history)
-    yield from _ripples(angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle")
+    yield from _ripples(
+        angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle"
+    )
 
 
 def _ripples(x: np.ndarray, channel: str, what: str) -> Made:
@@ -130,7 +134,11 @@ def _time(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     yield "time_s", "a smooth function of time", _splines(2 * t - 1, SPLINE)
     for count in (1, 2, 3):
-        yield "time_s", CHANGING, torque[:, None] * np.column_stack([t**k for k in range(1, count + 1)])
+        yield (
+            "time_s",
+            CHANGING,
+            torque[:, None] * np.column_stack([t**k for k in range(1, count + 1)]),
+        )
     for k in WAVES:
         turn = np.pi * k * t
         yield "time_s", "a wave in time", np.column_stack([np.cos(turn), np.sin(turn)])
@@ -151,7 +159,11 @@ def _cycle(rig: Rig) -> Made:
     yield "cycle", "a stiffness of its own in each cycle", levels * torque[:, None]
     ramp = rig.history.cycle / (rig.cycles - 1)
     for power in (1.0, 0.5):
-        yield "cycle", "a stiffness that changes from cycle to cycle", (ramp**power * torque)[:, None]
+        yield (
+            "cycle",
+            "a stiffness that changes from cycle to cycle",
+            (ramp**power * torque)[:, None],
+        )
     yield "cycle", "a gap of its own in each cycle", levels * rig.history.sign[:, None]
 
 
@@ -206,3 +218,8 @@ def _levels(values: np.ndarray) -> np.ndarray:
 def _splines(x: np.ndarray, count: int) -> np.ndarray:
     """(n, count) Legendre polynomials of degree 1 to `count` over −1…1."""
     return np.polynomial.legendre.legvander(np.clip(x, -1, 1), count)[:, 1:]
+
+
+MAKERS = (
+    _torque, _softening, _angle, _direction, _leading, _time, _cycle, _temperature, _position, _unit,
+)  # fmt: skip

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from math import log
 
 import numpy as np
 
+from pipeline.diagnosis.columns import Term
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.search import Candidate, Search
 from pipeline.diagnosis.solution import Solution, owner_rms, solved
@@ -55,15 +57,15 @@ class Weighed:
         return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
 
 
-def weigh(race: Race) -> Weighed:
-    """Run the race and decide it."""
+def weigh(race: Race, beside: bool = False) -> Weighed:
+    """Run the race and decide it; `beside`: another cause is already known."""
     search = Search(race)
     best = _plausible(race, search, search.run())
     evidence: dict[str, float] = {}
     for _ in range(4):
         without = {c: _without(race, best, c) for c in best.named(race)}
         evidence = {c: best.score - w.score for c, w in without.items()}
-        limit = NAMING_NATS if len(evidence) == 1 else SECOND_NATS
+        limit = NAMING_NATS if len(evidence) == 1 and not beside else SECOND_NATS
         weak = [c for c, e in evidence.items() if e < limit]
         if not weak:
             break
@@ -110,9 +112,12 @@ def _without(race: Race, best: Candidate, cause: str) -> Candidate:
     return search.run([start, ()], most=len(best.terms) + 2)
 
 
-def _rivals(
-    race: Race, best: Candidate, cause: str
-) -> tuple[tuple[str, ...], Candidate | None]:
+def owned_by(owners: Collection[str]) -> Callable[[Term], bool]:
+    """Lets in the terms of these owners."""
+    return lambda term: term.owner in owners
+
+
+def _rivals(race: Race, best: Candidate, cause: str) -> tuple[tuple[str, ...], Candidate | None]:
     """Ids of other causes that, in the place of this one, explain the record as well."""
     start = tuple(i for i in best.terms if race.terms[i].owner != cause)
     present = {race.terms[i].owner for i in best.terms}
@@ -120,11 +125,8 @@ def _rivals(
     mine = penalised(race, best.terms)
     found: list[tuple[float, str, Candidate]] = []
     for other in sorted(others):
-        search = Search(
-            race,
-            lambda t, other=other: t.owner == other
-            or (t.cause is not None and t.owner in present and t.owner != cause),
-        )
+        allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
+        search = Search(race, owned_by(allowed))
         rival = search.run([start], most=len(best.terms) + 3)
         if other not in rival.named(race):
             continue

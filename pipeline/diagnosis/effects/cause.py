@@ -86,6 +86,9 @@ class Cause(ABC):
     """Whether physics forbids negative amplitudes."""
     exact: ClassVar[bool] = False
     """Whether the columns are the cause's only shape, so that it leaves no misfit."""
+    shape_doubt: ClassVar[float] = 0.007
+    """Share of the magnitude by which the shapes tried may miss a real gear's: found on made-up records
+    with laws that are none of these shapes (docs/decisions.md)."""
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes`."""
     reveals: ClassVar[str]

@@ -17,6 +17,7 @@ class ClearanceOffset(Cause):
     title = "clearance other than simulated"
     unit = "arcsec"
     exact = True
+    shape_doubt = 0.003
     reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -31,6 +31,7 @@ class Creep(Cause):
     unit = "%"
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
+    shape_doubt = 0.05
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -21,7 +21,8 @@ class DirectionAsymmetry(Cause):
     title = "stiffness that differs with the torque's direction"
     unit = "%"
     tunable = ("exponent", "rounding_Nm")
-    reveals = "the same sweep with the gear turned round on the rig, so that the torque cell's own sign is excluded"
+    shape_doubt = 0.02
+    reveals = "the same sweep with the gear turned round on the rig, to exclude the torque cell"
 
     def shapes(self, rig: Rig) -> list[Shape]:
         return [

@@ -48,6 +48,7 @@ class FrictionHysteresis(Cause):
     unit = "arcsec"
     positive = True
     tunable = ("threshold_Nm", "exponent", "reach")
+    shape_doubt = 0.015
     reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -70,8 +71,11 @@ class FrictionHysteresis(Cause):
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return shape["threshold_Nm"] >= shape["deadband_Nm"] and shape["exponent"] <= MOST_BENT and shape["reach"] < 0.8
-
+        return (
+            shape["threshold_Nm"] >= shape["deadband_Nm"]
+            and shape["exponent"] <= MOST_BENT
+            and shape["reach"] < 0.8
+        )
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return self.columns_of_all([shape], history)[0]

@@ -18,6 +18,7 @@ class KinematicError(Cause):
     title = "kinematic error (position error periodic in the wave generator's angle)"
     unit = "arcsec"
     exact = True
+    shape_doubt = 0.005
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -24,10 +24,12 @@ def harmonic_shapes(rig: Rig) -> list[Shape]:
     if angle is None:
         return []
     places = np.radians(np.unique(np.mod(angle, 360.0)))
-    seen = {n for n in (1, 2, 4) if len(places) == 1 or np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > 0.1}
-    return [
-        dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)
-    ]
+
+    def varies(n: int) -> bool:
+        return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > 0.1)
+
+    seen = {n for n in (1, 2, 4) if len(places) == 1 or varies(n)}
+    return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)]
 
 
 def harmonic(shape: Shape, history: History) -> np.ndarray:

@@ -18,6 +18,7 @@ class PositionStiffness(Cause):
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
     exact = True
+    shape_doubt = 0.005
     reveals = "the same sweep at many wave generator angles"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -27,6 +27,7 @@ class RateDependence(Cause):
     unit = "arcsec per N·m/s"
     positive = True
     tunable = ("lag_s", "exponent")
+    shape_doubt = 0.02
     reveals = "the same sweep ten times slower and ten times faster"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -37,12 +38,8 @@ class RateDependence(Cause):
         common = {
             "rate_Nm_per_s": rate, "ramp_s": ramp, "deadband_Nm": 2 * torque_noise_Nm(rig.history),
         }  # fmt: skip
-        found: list[Shape] = [
-            {"lag_s": s * ramp, "exponent": 1.0, **common} for s in LAG_SHARES
-        ]
-        found += [
-            {"lag_s": LAG_SHARES[1] * ramp, "exponent": n, **common} for n in EXPONENTS
-        ]
+        found: list[Shape] = [{"lag_s": s * ramp, "exponent": 1.0, **common} for s in LAG_SHARES]
+        found += [{"lag_s": LAG_SHARES[1] * ramp, "exponent": n, **common} for n in EXPONENTS]
         return found
 
     def possible(self, shape: Shape) -> bool:
@@ -63,5 +60,3 @@ class RateDependence(Cause):
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)
-
-

@@ -24,13 +24,16 @@ class SensorDrift(Cause):
     title = "drift of the angle reading"
     unit = "arcsec/h"
     tunable = ("exponent", "settling_s")
+    shape_doubt = 0.02
     reveals = "the same torque held, or returned to, over hours with the wave generator untouched"
 
     def shapes(self, rig: Rig) -> list[Shape]:
         if rig.duration_s <= 0:
             return []
         d = rig.duration_s
-        found: list[Shape] = [{"exponent": n, "settling_s": 0.0, "duration_s": d} for n in EXPONENTS]
+        found: list[Shape] = [
+            {"exponent": n, "settling_s": 0.0, "duration_s": d} for n in EXPONENTS
+        ]
         found += [{"exponent": 1.0, "settling_s": s * d, "duration_s": d} for s in SATURATION]
         return found
 

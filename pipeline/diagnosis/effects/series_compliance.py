@@ -17,6 +17,7 @@ class SeriesCompliance(Cause):
     title = "elastic part left out of the simulation"
     unit = "%"
     exact = True
+    shape_doubt = 0.003
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -15,7 +15,14 @@ TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
 KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.75)
 SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
 POWERS = (0.5, 0.6, 0.72)
-LIMITS = {0: (0.1, 0.78), 1: (0.1, 0.7), 2: (0.48, 0.76), 3: (1.0, 1.0), 4: (0.1, 0.7), 5: (0.08, 0.5)}
+LIMITS = {
+    0: (0.1, 0.78),
+    1: (0.1, 0.7),
+    2: (0.48, 0.76),
+    3: (1.0, 1.0),
+    4: (0.1, 0.7),
+    5: (0.08, 0.5),
+}
 """Of the parameter, by law."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
 """Between which shares of the largest torque the contract takes chord stiffness."""
@@ -24,9 +31,9 @@ CHORDS = ((0.05, 0.20), (0.80, 1.00))
 class StiffnessHardening(Cause):
     """Odd, concave twist a·g(|T|)·sign T [arcsec], g = 1 at the largest torque, a ≥ 0.
 
-    Laws: a knee (K1, K2), two knees (K1, K2, K3), tanh, a power below 1, the linear less the cubic, rational. `held` is the
-    share of its chord (0: at full load as simulated) that is taken off: real soft wind-up may leave
-    the stiffness as simulated at full load, on the chord, or at zero.
+    Laws: a knee (K1, K2), two knees (K1, K2, K3), tanh, a power below 1, the linear less the cubic,
+    rational. Real soft wind-up may leave the stiffness as simulated at full load (`held` 0), on the
+    chord (1), or at zero (2): that slope is taken off.
     """
 
     id = "stiffness_hardening"

@@ -20,6 +20,7 @@ class TorqueOffset(Cause):
     id = "torque_offset"
     title = "shifted torque reading"
     unit = "N·m"
+    shape_doubt = 0.02
     reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
 
     def shapes(self, rig: Rig) -> list[Shape]:

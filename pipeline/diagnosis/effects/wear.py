@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.record import History
 from pipeline.diagnosis.effects.operators import within_cycle
+from pipeline.diagnosis.record import History
 
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 
@@ -16,7 +16,8 @@ RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 class Wear(Cause):
     """Gap w·g(cycle) with w ≥ 0 [arcsec]; g runs from 0 in the first to 1 in the last cycle.
 
-    It grows between cycles, or all along them (`steady` = 1). `exponent` 1: evenly; ½: slowing down. `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
+    It grows between cycles, or all along them (`steady` = 1). `exponent` 1: evenly; ½: slowing down.
+    `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
     """
 
     id = "wear"
@@ -24,6 +25,7 @@ class Wear(Cause):
     unit = "arcsec/cycle"
     positive = True
     tunable = ("exponent", "run_in_cycles")
+    shape_doubt = 0.03
     reveals = "many more cycles at constant temperature"
 
     def shapes(self, rig: Rig) -> list[Shape]:
@@ -58,7 +60,9 @@ class Wear(Cause):
         total = 0.0
         for e in elements:
             elapsed = rig.cycles if e.shape["steady"] else max(1, rig.cycles - 1)
-            total += e.amplitudes[0] * float(self._growth(e.shape, np.array([elapsed]))[0]) / elapsed
+            total += (
+                e.amplitudes[0] * float(self._growth(e.shape, np.array([elapsed]))[0]) / elapsed
+            )
         return total
 
     @staticmethod

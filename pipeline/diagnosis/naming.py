@@ -1,0 +1,120 @@
+"""From a decided race to named causes with magnitudes, and the model that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+
+import numpy as np
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Element
+from pipeline.diagnosis.fleet import unit_shares
+from pipeline.diagnosis.model import ExtendedModel
+from pipeline.diagnosis.record import Sweep
+from pipeline.diagnosis.result import NamedCause
+from pipeline.diagnosis.solution import Solution, solved
+from pipeline.diagnosis.sweep import Explained
+from pipeline.diagnosis.weighing import Weighed
+
+SHAPE_NATS = 3.0
+"""Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
+MOST_SHAPES = 24
+
+
+def named_causes(explained: Explained) -> tuple[NamedCause, ...]:
+    """The causes of a decided race, largest first, the offset of the torque reading among them."""
+    weighed = explained.weighed
+    posterior = _probabilities(weighed)
+    magnitude, std = magnitudes(weighed)
+    timeless = explained.prepared.sweep.history.time_s is None
+    found = []
+    for c in weighed.named:
+        rivals = weighed.rivals[c]
+        if timeless and c in ("friction_hysteresis", "rate_dependence"):
+            other = {"friction_hysteresis": "rate_dependence"}.get(c, "friction_hysteresis")
+            rivals = tuple(dict.fromkeys((*rivals, other)))
+        found.append(NamedCause(
+            c, causes()[c].title, posterior.get(c, 0.0), rivals, magnitude[c], std[c],
+            causes()[c].unit, weighed.evidence.get(c, 0.0), weighed.rms[c],
+            _own_units(explained, c),
+        ))  # fmt: skip
+    if explained.offset_Nm and explained.crossing is not None:
+        offset = causes()["torque_offset"]
+        slope = weighed.solution.measured_rig().compliance
+        found.append(NamedCause(
+            offset.id, offset.title, float(1 / (1 + np.exp(-explained.offset_nats + 4))), (),
+            explained.offset_Nm,
+            hypot(explained.crossing.std_Nm, offset.shape_doubt * explained.offset_Nm),
+            offset.unit, explained.offset_nats,
+            abs(slope * explained.offset_Nm),
+        ))  # fmt: skip
+    return tuple(sorted(found, key=lambda c: -c.rms_arcsec))
+
+
+def _own_units(explained: Explained, cause: str) -> tuple[str, ...]:
+    """Names of the units that alone show a cause."""
+    names = explained.prepared.sweep.units
+    if len(names) < 2:
+        return ()
+    return tuple(names[u] for u in unit_shares(explained.weighed, cause).own)
+
+
+def _probabilities(weighed: Weighed) -> dict[str, float]:
+    """Posterior probability that each cause is in the set, over all sets weighed."""
+    race = weighed.search.race
+    scored = list(weighed.search.best.values())
+    top = max(c.score for c in scored)
+    weight = np.array([np.exp(c.score - top) for c in scored])
+    names = [c.named(race) for c in scored]
+    total = weight.sum()
+    return {
+        cause: min(1.0, float(weight[[cause in n for n in names]].sum() / total))
+        for cause in weighed.named
+    }
+
+
+def magnitudes(weighed: Weighed) -> tuple[dict[str, float], dict[str, float]]:
+    """Magnitude of each named cause and its standard deviation, doubt of the shapes included."""
+    race = weighed.search.race
+    names = weighed.best.named(race)
+    alike = sorted(
+        {
+            c.terms: c for c in (*weighed.search.weighed, weighed.best) if c.named(race) == names
+        }.values(),
+        key=lambda c: -c.score,
+    )[:MOST_SHAPES]
+    alike = [c for c in alike if c.score > weighed.best.score - 6 * SHAPE_NATS]
+    weight = np.exp([(c.score - weighed.best.score) / SHAPE_NATS for c in alike])
+    weight /= weight.sum()
+    each = [solved(race, c.terms).magnitudes() for c in alike]
+    best = weighed.solution.magnitudes()
+    own = weighed.solution.magnitude_stds()
+    std = {}
+    for cause in weighed.named:
+        values = np.array([m[cause] for m in each])
+        spread = float(np.sqrt(weight @ (values - best[cause]) ** 2))
+        floor = causes()[cause].shape_doubt * abs(best[cause])
+        std[cause] = hypot(own[cause], spread, floor)
+    return best, std
+
+
+def model_of(
+    solution: Solution, sweep: Sweep, named: Sequence[str], offset_Nm: float
+) -> ExtendedModel:
+    """The fitted model, with the elements of the named causes."""
+    mean, k, p = solution.fit.mean, solution.units, solution.rig.prediction
+    elements = {c: e for c, e in solution.elements().items() if c in named}
+    if offset_Nm:
+        elements["torque_offset"] = (Element({}, (offset_Nm,)),)
+    own = {}
+    if k > 1:
+        pairs = mean[k + 2 : k + 2 + 2 * k].reshape(k, 2)
+        own = {name: (float(a), float(b)) for name, (a, b) in zip(sweep.units, pairs, strict=True)}
+    return ExtendedModel(
+        p.compliance + float(mean[k]),
+        p.gap_arcsec + float(mean[k + 1]),
+        {name: float(z) for name, z in zip(sweep.units, mean[:k], strict=True)},
+        elements,
+        own,
+    )

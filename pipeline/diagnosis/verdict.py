@@ -1,0 +1,169 @@
+"""The verdict on a sweep, what it leaves unexplained, what to measure next, and all that in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.fleet import unit_shares
+from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest
+from pipeline.diagnosis.model import ExtendedModel
+from pipeline.diagnosis.naming import model_of
+from pipeline.diagnosis.next_measurement import FALLBACK, to_tell_apart
+from pipeline.diagnosis.result import NamedCause, NextMeasurement, Unexplained, Verdict
+from pipeline.diagnosis.search import Candidate
+from pipeline.diagnosis.solution import solved
+from pipeline.diagnosis.sweep import Explained
+
+UNEXPLAINED_SHARE = 0.5
+"""Of the named effects' rms: with more left unexplained the verdict is `unknown`."""
+SURE = 1e-8
+"""p-value of a channel's structure that, with nothing named, makes the verdict `unknown`."""
+COMPETITOR_P = 1e-6
+"""Said of a competitor in the best set: it had to gain more than this over chance to get there."""
+
+
+def verdict_of(
+    explained: Explained, found: Sequence[NamedCause], tests: Sequence[ChannelTest]
+) -> Verdict:
+    """The contract's word for what was found."""
+    weighed = explained.weighed
+    named = hypot(*(c.rms_arcsec for c in found)) if found else 0.0
+    if weighed.unnamed_rms > UNEXPLAINED_SHARE * named:
+        return "unknown"
+    if not found:
+        sure = any(t.p_value < SURE for t in tests)
+        return "unknown" if sure else "consistent"
+    return "ambiguous" if any(c.alternatives for c in found) else "named"
+
+
+def unexplained_of(explained: Explained, tests: Sequence[ChannelTest]) -> tuple[Unexplained, ...]:
+    """Competitors and minor causes of the best set, and channels in which the rest is significant."""
+    weighed = explained.weighed
+    found = []
+    for owner, rms in sorted(weighed.rms.items(), key=lambda item: -item[1]):
+        if not owner.startswith("?"):
+            if owner not in weighed.named:
+                found.append(
+                    Unexplained(
+                        "torque_Nm", rms, COMPETITOR_P, f"a trace like {causes()[owner].title}"
+                    )
+                )
+            continue
+        what = {
+            weighed.search.race.terms[i].what
+            for i in weighed.best.terms
+            if weighed.search.race.terms[i].owner == owner
+        }
+        found.append(Unexplained(owner[1:], rms, COMPETITOR_P, "; ".join(sorted(what))))
+    said = {u.channel for u in found}
+    for t in sorted(tests, key=lambda t: t.p_value):
+        if t.p_value < SIGNIFICANT and t.channel not in said:
+            found.append(
+                Unexplained(t.channel, t.rms_arcsec, t.p_value, "what the best model leaves")
+            )
+    return tuple(found)
+
+
+def next_of(
+    explained: Explained,
+    found: Sequence[NamedCause],
+    verdict: str,
+    unexplained: Sequence[Unexplained],
+) -> NextMeasurement | None:
+    """What to measure next: to find the unknown, to part rivals, or to confirm the smallest cause."""
+    if verdict == "unknown" and unexplained:
+        worst = unexplained[0]
+        return NextMeasurement(
+            worst.channel,
+            f"the structure lies in {worst.channel} ({worst.what}): vary it alone, everything else held", 0.0,
+        )  # fmt: skip
+    unsure = [c for c in found if c.alternatives] or list(found[-1:])
+    if not unsure:
+        return None
+    cause = unsure[0]
+    weighed = explained.weighed
+    sweep = explained.prepared.sweep
+    rivals = cause.alternatives
+    models = [model_of(weighed.solution, sweep, [c.id for c in found], explained.offset_Nm)]
+    rival = weighed.rival_sets.get(cause.id)
+    if rival is not None and rivals:
+        models.append(_rival_model(explained, rival))
+    if not rivals:
+        vary = FALLBACK.get(cause.id, "torque_Nm")
+        return NextMeasurement(vary, f"to confirm {cause.title}: {causes()[cause.id].reveals}", 0.0)
+    return to_tell_apart(explained.prepared, models, cause.id, rivals)
+
+
+def _rival_model(explained: Explained, rival: Candidate) -> ExtendedModel:
+    solution = solved(explained.weighed.search.race, rival.terms)
+    return model_of(
+        solution, explained.prepared.sweep, sorted(solution.elements()), explained.offset_Nm
+    )
+
+
+def summary_of(
+    verdict: str, found: Sequence[NamedCause], unexplained: Sequence[Unexplained]
+) -> str:
+    """One or two sentences in plain words."""
+    listed = "; ".join(map(_said, found))
+    where = ", ".join(dict.fromkeys(u.channel for u in unexplained))
+    match verdict:
+        case "consistent":
+            return "The measurement agrees with the simulation within its stated uncertainty and the noise."
+        case "named":
+            return f"The simulation leaves out: {listed}."
+        case "ambiguous":
+            rivals = "; ".join(
+                f"{c.title} cannot be told from {' or '.join(causes()[r].title for r in c.alternatives)}"
+                for c in found if c.alternatives
+            )  # fmt: skip
+            return f"Something is missing from the simulation, and these data cannot tell what: {rivals}."
+        case _:
+            known = f" Beside it: {listed}." if found else ""
+            return (
+                f"There is structure in {where or 'the data'} that no known cause explains.{known}"
+            )
+
+
+def _said(cause: NamedCause) -> str:
+    unit = "" if cause.unit == "1" else f" {cause.unit}"
+    where = f" (only {', '.join(cause.own_units)})" if cause.own_units else ""
+    return f"{cause.title}, {cause.magnitude:.4g} ± {cause.magnitude_std:.2g}{unit}{where}"
+
+
+def _fleet_notes(explained: Explained) -> list[str]:
+    """What the units have in common, and how they differ."""
+    names = explained.prepared.sweep.units
+    if len(names) < 2:
+        return []
+    notes = []
+    for cause in explained.weighed.named:
+        shares = unit_shares(explained.weighed, cause)
+        title = causes()[cause].title
+        if not shares.differ:
+            notes.append(f"{title}: common to all {len(names)} units")
+            continue
+        each = ", ".join(
+            f"{n} {s:.2f} ± {d:.2f}"
+            for n, s, d in zip(names, shares.share, shares.share_std, strict=True)
+        )
+        notes.append(f"{title}: differs between units; shares of the common effect: {each}")
+    return notes
+
+
+def notes_of(explained: Explained) -> tuple[str, ...]:
+    """What a reader should know of how the record was used."""
+    prepared = explained.prepared
+    notes = []
+    dropped = int(prepared.outlier.sum())
+    if dropped:
+        notes.append(f"{dropped} isolated outliers were left out")
+    notes.append(f"rows with |T| below {prepared.band_Nm:.3g} N·m cross the gap and name no cause")
+    if prepared.sweep.history.time_s is None:
+        notes.append("no time was recorded: friction cannot be told from rate dependence")
+    notes += _fleet_notes(explained)
+    if prepared.sweep.ignored:
+        notes.append(f"columns not used: {', '.join(prepared.sweep.ignored)}")
+    return tuple(notes)
