@@ -26,8 +26,6 @@ from pipeline.diagnosis.result import Gain
 
 LOST_MOTION_SHARE = 0.04
 """Of rated torque; 0.03 at some makers."""
-LOST_MOTION_LIMIT_ARCMIN = 1.0
-"""Harmonic Drive SE, CHA manual 12/2015, p. 50: sizes 14 to 58."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +39,7 @@ class RowComparison:
     floor_pct : what rounding of the printed K leaves.
     low_torque_pct : by how much the straight line is too stiff below T1.
     booked_arcmin : gap that a line with the stiffness K3, fitted above T2, leaves at T = 0.
+    limit_arcmin : lost motion that the maker allows, None where the catalogue gives none.
     """
 
     row: CatalogueRow
@@ -51,11 +50,17 @@ class RowComparison:
     floor_pct: float
     low_torque_pct: float
     booked_arcmin: float
+    limit_arcmin: float | None
+
+    @property
+    def refuted(self) -> bool:
+        """Whether such a gap alone would be more than all lost motion: clearance shows at any torque."""
+        return self.limit_arcmin is not None and self.booked_arcmin > self.limit_arcmin
 
 
 @dataclass(frozen=True)
 class LostMotion:
-    """Elastic wind-up 2·share·T_N/K1 of a size [arcmin]; the limit for lost motion is 1."""
+    """Elastic wind-up 2·share·T_N/K1 of a size [arcmin]."""
 
     size: int
     rated_Nm: float
@@ -72,11 +77,6 @@ class CatalogueFinding:
     gain: Gain
     lost_motion: tuple[LostMotion, ...]
 
-    @property
-    def refuted_as_clearance(self) -> tuple[RowComparison, ...]:
-        """Rows whose booked gap alone is larger than the lost motion that the maker allows."""
-        return tuple(r for r in self.rows if r.booked_arcmin > LOST_MOTION_LIMIT_ARCMIN)
-
 
 def compare(folder: Path, share: float = LOST_MOTION_SHARE) -> CatalogueFinding:
     """Read the catalogue files of `examples/catalogue` and compare; each size left out in turn.
@@ -86,7 +86,8 @@ def compare(folder: Path, share: float = LOST_MOTION_SHARE) -> CatalogueFinding:
     MeasurementError : a row that is not numbers.
     """
     rows = read_catalogue(folder / "hd_torsional_stiffness.csv")
-    compared = tuple(_compared(row, rows) for row in rows)
+    limits = _limits(folder / "hd_accuracy_limits_CHA.csv")
+    compared = tuple(_compared(row, rows, limits.get((row.size, row.ratio_class))) for row in rows)
     classes = tuple(dict.fromkeys(r.ratio_class for r in rows))
     sizes = sorted({r.size for r in rows})
     gain = Gain(
@@ -106,7 +107,18 @@ def compare(folder: Path, share: float = LOST_MOTION_SHARE) -> CatalogueFinding:
     )
 
 
-def _compared(row: CatalogueRow, rows: Sequence[CatalogueRow]) -> RowComparison:
+def _limits(path: Path) -> dict[tuple[int, str], float]:
+    """Lost motion allowed [arcmin] by size and ratio class."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return {
+            (int(r["size"]), r["ratio_class"]): float(r["lost_motion_arcmin_max"])
+            for r in csv.DictReader(file)
+        }
+
+
+def _compared(
+    row: CatalogueRow, rows: Sequence[CatalogueRow], limit_arcmin: float | None
+) -> RowComparison:
     shape = soft_shape([r for r in rows if r.ratio_class == row.ratio_class and r.size != row.size])
     top = TOP * row.T2
     K = straight_stiffness(row, top)
@@ -125,7 +137,7 @@ def _compared(row: CatalogueRow, rows: Sequence[CatalogueRow]) -> RowComparison:
     intercept = row.T1 / K1 + (row.T2 - row.T1) / K2 - row.T2 / K3
     return RowComparison(
         row, K, soft, _share(T / K, true), _share(twist_rad(soft, T), true), rounding**0.5,
-        100 * (K / K1 - 1), 2 * intercept * ARCSEC_PER_RAD / 60,
+        100 * (K / K1 - 1), 2 * intercept * ARCSEC_PER_RAD / 60, limit_arcmin,
     )  # fmt: skip
 
 

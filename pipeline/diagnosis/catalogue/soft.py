@@ -43,6 +43,7 @@ class SoftShape:
 
 def soft_shape(rows: Sequence[CatalogueRow]) -> SoftShape:
     """Of rows of one ratio class."""
+
     def mean(values: Sequence[float]) -> float:
         return float(np.exp(np.mean(np.log(values))))
 

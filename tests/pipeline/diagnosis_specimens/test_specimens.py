@@ -127,7 +127,7 @@ def test_given_stiffness_is_scaled(bench) -> None:
 
 
 def test_sensitivity_is_fe_s_own(bench, fe) -> None:
-    """The quadratic of ln C meets FE 0.15 mm off, beyond its steps, within 1.5 % of a change of 18 to 30 %."""
+    """The quadratic of ln C meets FE 0.15 mm off, beyond its steps, to 1.5 % of 18 to 30 %."""
     s = next(s for s in fe.sensitivities if s.key == WALL)
     assert s.tolerance_mm == 0.1
     for i in (0, 4, 6):
