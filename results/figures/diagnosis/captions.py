@@ -15,6 +15,9 @@ CAPTIONS = {
     "causes": """
         Each part of the extended model alone. Pale: the measurement with all other parts taken off.
         Dark: what the model adds. The pale points should scatter evenly about the dark ones.""",
+    "units": """
+        How much of each cause each unit shows, with two standard deviations: 1 is as much as all units
+        together, 0 is nothing. A unit off the dashed line differs from the others.""",
     "held_out": """
         Error on rows that were kept out of the fit. As far as the last bar comes down to the dashed
         line, the extended model predicts as well as the instrument reads.""",

@@ -168,6 +168,8 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
     axes.grid(True)
     if part.channel.levels:
         axes.set_xticks(range(len(part.channel.levels)), part.channel.levels)
+    elif part.channel.key == "cycle":
+        axes.xaxis.get_major_locator().set_params(integer=True)
 
 
 def _offset(axes: Axes, shown: Seen) -> None:

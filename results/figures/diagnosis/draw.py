@@ -9,7 +9,6 @@ import numpy as np
 
 from pipeline.diagnosis.diagnose import Diagnosis
 from pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from pipeline.diagnosis.leftover import channel_tests
 from pipeline.diagnosis.record import Specimens, Sweep
 from pipeline.diagnosis.result import Gain
 from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
@@ -26,6 +25,7 @@ from results.figures.diagnosis.specimens import (
     write_held_out_specimens,
     write_stiffness,
 )
+from results.figures.diagnosis.units import shared_causes, write_units
 
 SIGNIFICANT = 1e-4
 """p-value below which a panel says that structure is left."""
@@ -78,6 +78,9 @@ def _sweep(shown: Seen, sheet: _Sheet) -> None:
     )
     if parts(shown):
         write_contributions(sheet.place("causes"), shown)
+    shares = shared_causes(shown)
+    if shares:
+        write_units(sheet.place("units"), shown, shares)
     gain = outcome.gain
     if gain is not None and gain.left and outcome.causes:
         write_held_out(sheet.place("held_out"), gain)
@@ -100,7 +103,7 @@ def _told(shown: Seen) -> dict[str, str]:
         t.channel: f"structure left, {t.rms_arcsec:.2g}″"
         if t.p_value < SIGNIFICANT
         else "nothing left"
-        for t in channel_tests(shown.explained.prepared, shown.solution)
+        for t in shown.diagnosis.left_over
     }
 
 

@@ -1,0 +1,66 @@
+"""Several units in one file: how much of each cause each unit shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from pipeline.diagnosis.fleet import UnitShare, unit_shares
+from results.diagnosis.words import capital
+from results.figures.diagnosis.panels import DPI
+from results.figures.diagnosis.seen import Seen, plain_names
+from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+
+MOST_CAUSES = 4
+PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
+
+
+def shared_causes(shown: Seen) -> dict[str, UnitShare]:
+    """Shares of each cause that the race named, by its title; none for a single unit."""
+    if len(shown.explained.prepared.sweep.units) < 2:
+        return {}
+    weighed = shown.explained.weighed
+    named = [c for c in shown.diagnosis.outcome.causes if c.id in weighed.named]
+    return {
+        capital(c.title).partition(" (")[0]: unit_shares(weighed, c.id) for c in named[:MOST_CAUSES]
+    }
+
+
+def write_units(path: Path, shown: Seen, shares: dict[str, UnitShare]) -> None:
+    """One panel per cause: 1 is as much as all units together show, 0 nothing."""
+    names = plain_names(shown.explained.prepared.sweep.units)
+    height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM
+    x = np.arange(len(names))
+    with styled():
+        figure = new_figure(8.0, height, DPI)
+        for i, (title, share) in enumerate(shares.items()):
+            low = BOTTOM + (len(shares) - 1 - i) * (PANEL + BETWEEN)
+            axes = figure.add_axes((0.095, low / height, 0.875, PANEL / height))
+            axes.axhline(1, color=PALETTE[1], lw=1.4, ls=(0, (4, 3)))
+            axes.axhline(0, color=MUTED, lw=0.8)
+            axes.errorbar(
+                x,
+                share.share,
+                yerr=2 * share.share_std,
+                fmt="o",
+                ms=5.5,
+                color=INK,
+                capsize=4,
+                lw=1.4,
+            )
+            words = "the units differ" if share.differ else "the same in all units"
+            axes.set_title(f"{title}: {words}", fontsize=10.5, pad=6)
+            top = float((share.share + 2 * share.share_std).max())
+            bottom = float((share.share - 2 * share.share_std).min())
+            axes.set_ylim(min(-0.15, bottom - 0.1), max(1.25, top + 0.1))
+            axes.set_xlim(-0.5, len(names) - 0.5)
+            axes.set_xticks(x, names if i == len(shares) - 1 else [""] * len(names))
+            axes.set_ylabel("share")
+            axes.grid(axis="y")
+        axes.set_xlabel("unit under test")
+        figure.text(
+            0.035, 1 - 0.28 / height, "What is common, and what is one unit's own",
+            fontsize=12, weight="bold", va="center",
+        )  # fmt: skip
+        save_png(figure, path)
