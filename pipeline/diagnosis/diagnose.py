@@ -94,12 +94,11 @@ def diagnose_sweep(design: Design, sweep: Sweep, prediction: Prediction) -> Diag
     reason = _too_little(sweep)
     if reason:
         return _insufficient(design, sweep, prediction, reason)
-    explained = diagnosed(sweep, prediction)
+    try:
+        explained = diagnosed(sweep, prediction)
+    except TooFewRowsError as error:
+        return _insufficient(design, sweep, prediction, str(error))
     weighed = explained.weighed
-    if int(explained.prepared.kept.sum()) < FEWEST_KEPT:
-        return _insufficient(
-            design, sweep, prediction, "too few rows lie outside the gap's crossing"
-        )
     found = named_causes(explained)
     model = model_of(weighed.solution, sweep, [c.id for c in found], explained.offset_Nm)
     tests = channel_tests(explained.prepared, weighed.solution)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.record import History
 from pipeline.diagnosis.result import Gain
 from pipeline.diagnosis.search import Search
@@ -66,18 +67,19 @@ def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
     before = _less_zero(reading, train, test, history)
     left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
+    floor = explained.weighed.solution.residual_as_read()[prepared.kept]
     return Gain(
         label,
-        *(_rms(values) for values in left.values()),
-        noise_floor=prepared.noise.std_arcsec,
+        rmse_before=_rms(left["before"]),
+        rmse_calibrated=_rms(left["calibrated"]),
+        rmse_after=_rms(left["after"]),
+        noise_floor=_rms(floor),
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
         left=left,
     )
 
 
 def _crossing(explained: Explained) -> float:
-    from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
-
     noise = CROSSING_SIGMAS * torque_noise_Nm(explained.prepared.rig.history)
     return min(noise, explained.prepared.band_Nm)
 
@@ -87,7 +89,7 @@ def _predicted(prepared: Prepared, train: np.ndarray, causes: Collection[str]) -
     fitting = replace(prepared, kept=train)
     now = race(fitting.columns, fitting.target, fitting.kept, fitting.noise)
     best = Search(now, lambda t: t.cause is not None and t.cause.id in causes).run()
-    return solved(now, best.terms).residual()
+    return solved(now, best.terms).residual_as_read()
 
 
 def _less_zero(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pipeline.diagnosis.columns import NOISE_WINDOWS
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element, Rig
 from pipeline.diagnosis.terms import Fit, Race, fitted
@@ -88,6 +89,11 @@ class Solution:
         for i, amplitudes in zip(self.fit.terms, self.fit.amplitudes(self.race), strict=True):
             left = left - self.race.columns.all[:, self.race.terms[i].at] @ amplitudes
         return left
+
+    def residual_as_read(self) -> np.ndarray:
+        """(n,) measured less predicted from the torque as it was read, its noise included."""
+        of_noise = slice(self.fit.base_count - len(NOISE_WINDOWS), self.fit.base_count)
+        return self.residual() + self.race.columns.base[:, of_noise] @ self.fit.mean[of_noise]
 
 
 def solved(race: Race, terms: Sequence[int]) -> Solution:
