@@ -169,7 +169,9 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
     if part.channel.levels:
         axes.set_xticks(range(len(part.channel.levels)), part.channel.levels)
     elif part.channel.key == "cycle":
-        axes.xaxis.get_major_locator().set_params(integer=True)
+        from matplotlib.ticker import MaxNLocator
+
+        axes.xaxis.set_major_locator(MaxNLocator(nbins="auto", integer=True))
 
 
 def _offset(axes: Axes, shown: Seen) -> None:
