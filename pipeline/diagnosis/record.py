@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,10 @@ class History:
     time_s: np.ndarray | None = None
     temperature_C: np.ndarray | None = None
     input_angle_deg: np.ndarray | None = None
+    memo: dict[tuple[str, float], np.ndarray] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """What operators have made of this history once and need again; never part of its value."""
 
     def __len__(self) -> int:
         return len(self.torque_Nm)

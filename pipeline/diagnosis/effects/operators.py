@@ -34,7 +34,11 @@ def stops(
 def play(history: History, width_Nm: float) -> np.ndarray:
     """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone."""
     width = np.array([max(width_Nm, 1e-12)])
-    return history.torque_Nm - stops(history, history.torque_Nm, width, np.zeros(1))[:, 0]
+    key = ("play", float(width[0]))
+    if key not in history.memo:
+        state = stops(history, history.torque_Nm, width, np.zeros(1))[:, 0]
+        history.memo[key] = history.torque_Nm - state
+    return history.memo[key]
 
 
 def steadied(history: History, width_Nm: float) -> np.ndarray:
