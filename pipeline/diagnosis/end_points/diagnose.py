@@ -34,6 +34,8 @@ from pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Unex
 NAMING_NATS = 4.0
 """The simulation within its uncertainty is a rival too, by the contract's limit of evidence."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
+MOST_ROWS = 1000
+"""Of the race: every unit is held against the envelope, but so many tell what all share."""
 RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of an angle reading that a file may show [arcsec]."""
 
@@ -51,7 +53,10 @@ def diagnose_end_points(
     null = weigh(fleet, ())
     units = _units(points, fleet, names, envelopes, null)
     furthest = sorted(range(len(units)), key=lambda u: units[u].p_value)
-    hypotheses = race(points, rig, fleet, furthest[:SUSPECTS])
+    some = _some(points, fleet, names, furthest)
+    racing, raced = (fleet, names) if some is points else fleet_of(some, prediction)
+    suspects = [raced.index(names[u]) for u in furthest[:SUSPECTS]]
+    hypotheses = race(some, rig, racing, suspects)
     best = next(h for h in hypotheses if h.causes)
     several = several_torques(fleet)
     verdict: Verdict = "consistent"
@@ -62,9 +67,9 @@ def diagnose_end_points(
         beyond = [u for u in units if not u.within]
         if best.score <= NAMING_NATS and len(beyond) == 1 and len(names) > 1:
             # one unit is what is to be explained, whatever suits the fleet a little better
-            alone = names.index(beyond[0].unit)
+            alone = raced.index(beyond[0].unit)
             hypotheses = [h for h in hypotheses if not h.causes or h.own == alone]
-        verdict, found, unexplained = _decided(hypotheses, rig, names, prediction)
+        verdict, found, unexplained = _decided(hypotheses, rig, raced, prediction)
     if verdict == "ambiguous":
         worst = units[furthest[0]]
         rivals = rivals_for_unit(
@@ -78,13 +83,32 @@ def diagnose_end_points(
     )  # fmt: skip
     outcome = Outcome(
         verdict, found, unexplained,
-        gain_of(fleet, best, names) if verdict == "named" else None,
+        gain_of(racing, best, raced) if verdict == "named" else None,
         _next(verdict, plans, units[furthest[0]], found),
         summary_of(verdict, found, analysis, several),
         notes_of(analysis, several),
     )  # fmt: skip
-    model = extended(kept, fleet, names, prediction) if verdict in ("named", "consistent") else None
+    model = None
+    if verdict == "named":
+        model = extended(kept, racing, raced, prediction)
+    elif verdict == "consistent":
+        model = extended(null, fleet, names, prediction)
     return outcome, analysis, model
+
+
+def _some(
+    points: EndPoints, fleet: Fleet, names: Sequence[str], furthest: Sequence[int]
+) -> EndPoints:
+    """All rows, or, of a very large file, those of evenly chosen units and of the suspects."""
+    if len(points.unit) <= MOST_ROWS:
+        return points
+    step = -(-len(points.unit) // MOST_ROWS)
+    chosen = set(range(0, len(names), step)) | set(furthest[:SUSPECTS])
+    rows = np.sort(np.concatenate([r for u, r in enumerate(fleet.unit_rows) if u in chosen]))
+    return EndPoints(
+        points.path, tuple(points.unit[i] for i in rows), points.torque_Nm[rows],
+        points.angle_plus_arcsec[rows], points.angle_minus_arcsec[rows],
+    )  # fmt: skip
 
 
 def fleet_of(points: EndPoints, prediction: Prediction) -> tuple[Fleet, tuple[str, ...]]:
@@ -124,8 +148,7 @@ def _units(
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
     total = points.angle_plus_arcsec - points.angle_minus_arcsec
     found = []
-    for u, name in enumerate(names):
-        rows = np.flatnonzero(fleet.unit == u)
+    for u, (name, rows) in enumerate(zip(names, fleet.unit_rows, strict=True)):
         p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]
         i, p = rows[int(np.argmin(p_values))], min(p_values)
         of = at[float(points.torque_Nm[i])]
@@ -146,7 +169,7 @@ def _units(
 
 
 def _mids(fleet: Fleet, prediction: Prediction) -> MidPositions:
-    each = [float(fleet.mid[fleet.unit == u].mean()) for u in range(fleet.units)]
+    each = [float(fleet.mid[rows].mean()) for rows in fleet.unit_rows]
     spread = float(np.std(each, ddof=1)) if len(each) > 1 else 0.0
     return MidPositions(tuple(each), spread, float(fleet.torque.max()) * prediction.compliance)
 

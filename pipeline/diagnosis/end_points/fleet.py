@@ -17,9 +17,9 @@ from scipy.special import log_ndtr, logsumexp
 
 from pipeline.diagnosis.end_points.terms import Term
 
-SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+SHARES = (0.1, 0.5, 0.9)
 """ρ; even odds."""
-READINGS = 6
+READINGS = 5
 LARGEST_READING = 0.05
 """σ goes from the file's resolution to this share of the median total, in even steps of log σ."""
 
@@ -47,6 +47,12 @@ class Fleet:
     @property
     def units(self) -> int:
         return int(self.unit.max()) + 1
+
+    @property
+    def unit_rows(self) -> list[np.ndarray]:
+        """Row indices of each unit."""
+        order = np.argsort(self.unit, kind="stable")
+        return np.split(order, np.cumsum(np.bincount(self.unit))[:-1])
 
 
 @dataclass(frozen=True)
@@ -151,8 +157,9 @@ def _linear(
     pull = own / (sigma**2 + own * count)
 
     def weighted(v: np.ndarray) -> np.ndarray:
-        sums = np.zeros((fleet.units, v.shape[1]))
-        np.add.at(sums, fleet.unit, v)
+        sums = np.column_stack(
+            [np.bincount(fleet.unit, v[:, j], minlength=fleet.units) for j in range(v.shape[1])]
+        )
         return (v - (pull[:, None] * sums)[fleet.unit]) / sigma**2
 
     logdet = float(np.sum((count - 1) * 2 * log(sigma) + np.log(sigma**2 + own * count)))

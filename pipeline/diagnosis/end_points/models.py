@@ -31,7 +31,7 @@ def extended(
     return ExtendedModel(
         prediction.compliance,
         prediction.gap_arcsec + weighed.common[0],
-        {n: float(fleet.mid[fleet.unit == u].mean()) for u, n in enumerate(names)},
+        {n: float(fleet.mid[rows].mean()) for n, rows in zip(names, fleet.unit_rows, strict=True)},
         elements,
         {n: (0.0, float(weighed.own[u])) for u, n in enumerate(names)},
     )

@@ -76,7 +76,7 @@ def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> 
 
 def several_torques(fleet: Fleet) -> bool:
     """Whether some unit was measured at more than one torque."""
-    return any(len(np.unique(fleet.torque[fleet.unit == u])) > 1 for u in range(fleet.units))
+    return any(np.ptp(fleet.torque[rows]) > 0 for rows in fleet.unit_rows)
 
 
 def _of(

@@ -50,8 +50,9 @@ def summary_of(
 
 def notes_of(analysis: EndPointAnalysis, several: bool) -> tuple[str, ...]:
     """What else can and cannot be concluded, with the numbers."""
-    notes = [_unit_note(u) for u in sorted(analysis.units, key=lambda u: u.p_value)[:LISTED]]
-    for u in analysis.units:
+    furthest = sorted(analysis.units, key=lambda u: u.p_value)[:LISTED]
+    notes = [_unit_note(u) for u in furthest]
+    for u in furthest:
         if not u.within:
             notes.append(_limit_note(u, analysis.envelope_at(u.torque_Nm)))
     common, std = analysis.common
@@ -86,6 +87,9 @@ def _limit_note(u: UnitFinding, of: Envelope) -> str:
         f"clearance alone would need about j_bn0 = {e.flank_clearance_um:.1f} µm and c = "
         f"{e.radial_clearance_um:.1f} µm, {e.distance:.1f} standard deviations from the design"
     )
+    doubt = of.design.uncertainty
+    if not (doubt.flank_clearance_um or doubt.radial_clearance_um):
+        return f"unit {u.unit}: the design states no uncertainty of its clearances, so none may explain it"
     if u.z < 0 or not isfinite(of.play_end_arcsec):
         return f"unit {u.unit}: {least}"
     limit = of.limit_arcsec()

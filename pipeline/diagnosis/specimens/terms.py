@@ -120,7 +120,10 @@ def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[Term]:
                 (f"?{key}", f"a trend over {key}", x),
                 (f"?{key}", f"a bend over {key}", bend - slope * x),
             ]
-    shapes += [("?specimen", f"specimen {i + 1} by itself", np.eye(n)[i]) for i in range(n)]
+    shapes += [
+        ("?specimen", f"specimen {i + 1} by itself", (np.arange(n) == i).astype(float))
+        for i in range(n)
+    ]
     odds = UNNAMED_NATS - float(np.log(len(shapes)))
     return [
         Term(owner, "column", UNNAMED_SPREAD, odds, what=what, column=column)

@@ -62,10 +62,11 @@ Soft wind-up with one shape for each ratio class, and T1 in proportion to size³
 {shapes}
 
 Held out: {gain.held_out}. The size left out lends
-its straight stiffness (all that a simulation knows) and nothing else. Rms error of twist, over all rows: straight line
-{gain.rmse_calibrated:.1f} %, soft wind-up {gain.rmse_after:.1f} %, rounding of the printed K \
-{gain.noise_floor:.1f} %; {100 * above:.0f} % of the squared
-error above the rounding is gone. The worst is size {worst.row.size} at ratio {worst.row.ratio_class}, {worst.soft_pct:.1f} %: small sizes keep to \
+its straight stiffness (all that a simulation knows) and nothing else. Rms error of twist, over all
+rows: straight line {gain.rmse_calibrated:.1f} %, soft wind-up {gain.rmse_after:.1f} %, rounding of the \
+printed K {gain.noise_floor:.1f} %; {100 * above:.0f} % of the
+squared error above the rounding is gone. The worst is size {worst.row.size} at ratio \
+{worst.row.ratio_class}, {worst.soft_pct:.1f} %: small sizes keep to
 the size³ line least.
 
 | size | ratio | straight K [N·m/rad] | too stiff below T1 [%] | line [%] | soft [%] | rounding [%] | \
