@@ -31,8 +31,9 @@ PROVENANCE: Keys = {
     "time_recorded": (bool,),
 }  # fmt: skip
 CALIBRATED: Keys = {"compliance_arcsec_per_Nm": NUMBER, "gap_arcsec": NUMBER}
-UNIT: Keys = {"name": (str,), "zero_arcsec": NUMBER, "first_cycle": NUMBER}
-UNIT_OPTIONAL: Keys = {"own_compliance_arcsec_per_Nm": NUMBER, "own_gap_arcsec": NUMBER}
+UNIT: Keys = {"name": (str,), "zero_arcsec": NUMBER}
+OWN: Keys = {"own_compliance_arcsec_per_Nm": NUMBER, "own_gap_arcsec": NUMBER}
+ORIGIN: Keys = {"first_cycle": NUMBER, "first_time_s": NUMBER}
 CAUSE: Keys = {"id": (str,), "element": (list,)}
 CAUSE_OPTIONAL: Keys = {
     "title": (str,), "magnitude": NUMBER, "magnitude_std": NUMBER, "unit": (str,),
@@ -53,7 +54,8 @@ class Provenance:
     Attributes
     ----------
     measurement_sha256 : of the measurement's bytes. time_recorded : where it had no time, rows count
-        as seconds. first_cycle : number in the file of each unit's first cycle, by the unit's name.
+        as seconds. first_cycle, first_time_s : of each unit's record in the file, by the unit's name;
+        absent where not recorded.
     """
 
     program: str
@@ -65,6 +67,7 @@ class Provenance:
     K_e_Nm_per_rad: float
     time_recorded: bool
     first_cycle: Mapping[str, float]
+    first_time_s: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,7 @@ def read_model_file(path: Path) -> ModelFile:
     if calibrated["compliance_arcsec_per_Nm"] <= 0:
         raise refuse("calibrated.compliance_arcsec_per_Nm must be above 0")
     for table in _tables(data["unit"], "unit", refuse):
-        _check(table, UNIT, UNIT_OPTIONAL, "[[unit]]", refuse)
+        _check(table, UNIT, OWN | ORIGIN, "[[unit]]", refuse)
     units = {u["name"]: u for u in data["unit"]}
     if len(units) != len(data["unit"]):
         raise refuse("a unit's name appears twice")
@@ -116,7 +119,7 @@ def read_model_file(path: Path) -> ModelFile:
             float(u.get("own_gap_arcsec", 0.0)),
         )
         for name, u in units.items()
-        if set(u) & set(UNIT_OPTIONAL)
+        if set(u) & set(OWN)
     }
     model = ExtendedModel(
         float(calibrated["compliance_arcsec_per_Nm"]),
@@ -125,9 +128,9 @@ def read_model_file(path: Path) -> ModelFile:
         elements,
         own,
     )
-    first = {name: float(u["first_cycle"]) for name, u in units.items()}
     given = {key: origin[key] for key in PROVENANCE}
-    return ModelFile(path, model, Provenance(**given, first_cycle=first))
+    cycle, time = ({name: float(u[key]) for name, u in units.items() if key in u} for key in ORIGIN)
+    return ModelFile(path, model, Provenance(**given, first_cycle=cycle, first_time_s=time))
 
 
 def _toml(path: Path) -> dict[str, Any]:

@@ -31,7 +31,7 @@ def model_text(
     lines = [f"# Extended model of {name}, written by {provenance.program}.", ABOUT]
     lines += [f"format = {FORMAT}", "", *_provenance(provenance, gain), *_calibrated(model)]
     for unit, zero in model.zeros_arcsec.items():
-        lines += _unit(unit, zero, provenance.first_cycle.get(unit, 0.0), model.own.get(unit))
+        lines += _unit(unit, zero, provenance, model.own.get(unit))
     told = {c.id: c for c in found}
     for cause_id, elements in model.elements.items():
         lines += _cause(cause_id, elements, told.get(cause_id))
@@ -76,13 +76,18 @@ def _calibrated(model: ExtendedModel) -> list[str]:
     ]
 
 
-def _unit(name: str, zero: float, first: float, own: tuple[float, float] | None) -> list[str]:
+def _unit(name: str, zero: float, origin: Provenance, own: tuple[float, float] | None) -> list[str]:
     lines = [
         "[[unit]]",
         f"name = {quoted(name)}" + ("" if name else "   # the record names no unit"),
         f"zero_arcsec = {number(zero)}   # where the encoder stood",
-        f"first_cycle = {number(first)}   # from here cycles are counted",
     ]
+    if name in origin.first_cycle:
+        lines.append(f"first_cycle = {number(origin.first_cycle[name])}   # cycles count from here")
+    if name in origin.first_time_s:
+        lines.append(
+            f"first_time_s = {number(origin.first_time_s[name])}   # drift counts from here"
+        )
     if own is not None:
         lines += [
             f"own_compliance_arcsec_per_Nm = {number(own[0])}   # beyond the common one",

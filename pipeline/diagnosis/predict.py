@@ -13,7 +13,8 @@ from pipeline.diagnosis.record import History, NamedHistory, history_of
 from pipeline.diagnosis.shape_check import channels_needed
 from pipeline.diagnosis.table import Table, read_table
 
-CYCLES_COUNT = "wear"
+CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
+"""Causes that go on from the record's first cycle and from its first row's time."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +28,9 @@ class Predicted:
 def predict_file(file: ModelFile, csv: Path) -> Predicted:
     """The angle for each row of a file with `torque_Nm` and whatever channels the model needs.
 
-    Cycles are counted from the record's first one, by the file's own numbers; time from each unit's
-    first row.
+    Cycles are counted from the record's first one, by the file's own numbers. Drift goes on from the
+    record's first row where the file's clock stands later; an earlier one is another clock, and drift
+    then starts with the file.
 
     Raises
     ------
@@ -47,11 +49,30 @@ def predict_file(file: ModelFile, csv: Path) -> Predicted:
                 raise table.refuse(
                     None, f"column {channel} is missing; {cause_id} in {file.path.name} needs it"
                 )
-    angle = file.model.angle_arcsec(history, found.units)
+    angle = file.model.angle_arcsec(history, found.units) + _drifted_before(found, file, history)
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
     told = f"unit {', '.join(strange)}: " if any(strange) else ""
     warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []
     return Predicted(angle, tuple(warnings))
+
+
+def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:
+    """(n,) how much more the reading has drifted than from the file's own first row."""
+    more = np.zeros(len(history))
+    elements = file.model.elements.get(CLOCK_COUNTS)
+    if elements is None or history.time_s is None:
+        return more
+    drift = causes()[CLOCK_COUNTS]
+    for code, name in enumerate(found.units):
+        rows = np.flatnonzero(history.unit == code)
+        first = file.provenance.first_time_s.get(name, np.inf)
+        if history.time_s[rows[0]] > first:
+            own = history.rows(rows)
+            with_first = history.rows(np.r_[rows[0], rows])
+            time = np.r_[first, history.time_s[rows]]
+            since = drift.angle_arcsec(elements, replace(with_first, time_s=time))[1:]
+            more[rows] = since - drift.angle_arcsec(elements, own)
+    return more
 
 
 def _as_recorded(found: NamedHistory, file: ModelFile, table: Table) -> History:

@@ -42,11 +42,15 @@ def write_diagnosis(
 def _model(diagnosis: Diagnosis, used: Stiffnesses) -> str:
     assert diagnosis.model is not None
     measurement = diagnosis.measurement
-    first: dict[str, float] = {}
-    timed = True
+    cycle: dict[str, float] = {}
+    time: dict[str, float] = {}
     if isinstance(measurement, Sweep):
-        first = {u: c[0] for u, c in zip(measurement.units, measurement.cycles, strict=True)}
-        timed = measurement.history.time_s is not None
+        history, names = measurement.history, measurement.units
+        if measurement.cycles_recorded:
+            cycle = {u: c[0] for u, c in zip(names, measurement.cycles, strict=True)}
+        if history.time_s is not None:
+            first = [float(history.time_s[rows[0]]) for rows in history.unit_slices]
+            time = dict(zip(names, first, strict=True))
     provenance = Provenance(
         program=f"flexspline {program_version()}",
         design=diagnosis.design.name,
@@ -55,7 +59,8 @@ def _model(diagnosis: Diagnosis, used: Stiffnesses) -> str:
         verdict=diagnosis.outcome.verdict,
         K_b_Nm_per_rad=used.K_b_Nm_per_rad,
         K_e_Nm_per_rad=used.K_e_Nm_per_rad,
-        time_recorded=timed,
-        first_cycle=first,
+        time_recorded=bool(time) or not isinstance(measurement, Sweep),
+        first_cycle=cycle,
+        first_time_s=time,
     )
     return model_text(diagnosis.model, provenance, diagnosis.outcome.causes, diagnosis.outcome.gain)

@@ -28,6 +28,7 @@ ORIGIN = Provenance(
     43339.0,
     True,
     {"a": 1.0, "b": 3.0},
+    {"a": 0.5},
 )
 MODEL = ExtendedModel(
     1 / 0.0873,
@@ -76,7 +77,7 @@ def test_every_cause_s_every_shape_makes_the_round_trip(tmp_path: Path) -> None:
 )
 def test_names_are_data(name: str, tmp_path: Path) -> None:
     model = replace(LONELY, zeros_arcsec={name: 1.5})
-    origin = replace(ORIGIN, design=name, first_cycle={name: 0.0})
+    origin = replace(ORIGIN, design=name, first_cycle={name: 0.0}, first_time_s={})
     back = read_model_file(written(tmp_path, model, origin))
     assert back.model == model
     assert back.provenance == origin
@@ -193,6 +194,19 @@ def test_a_record_without_time_counts_rows(tmp_path: Path) -> None:
     origin = replace(ORIGIN, first_cycle={"": 0.0}, time_recorded=False)
     rows = read_model_file(written(tmp_path, model, origin))
     np.testing.assert_allclose(predict_file(rows, csv).angle_arcsec, [51, 53, 55], atol=1e-12)
+
+
+def test_drift_goes_on_where_the_record_began(tmp_path: Path) -> None:
+    """8 arcsec in 4 s, from 100 s on: a file that starts at 102 s has half of it behind it."""
+    shape = shape_of("sensor_drift", exponent=1.0, settling_s=0.0, duration_s=4.0)
+    model = replace(LONELY, elements={"sensor_drift": (Element(shape, (8.0,)),)})
+    origin = replace(ORIGIN, first_cycle={}, first_time_s={"": 100.0})
+    file = read_model_file(written(tmp_path, model, origin))
+    csv = tmp_path / "t.csv"
+    for first, before in ((100, 0.0), (102, 4.0), (0, 0.0)):  # the last is another clock
+        csv.write_text(f"torque_Nm,time_s\n1,{first}\n1,{first + 1}\n")
+        expected = [51 + before, 53 + before]
+        np.testing.assert_allclose(predict_file(file, csv).angle_arcsec, expected, atol=1e-12)
 
 
 def test_a_strange_unit_is_told(tmp_path: Path) -> None:
