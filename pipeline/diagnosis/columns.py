@@ -9,7 +9,7 @@ from math import log
 import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Rig, Shape
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.effects.torque_program import holds, torque_noise_Nm
 from pipeline.diagnosis.record import History
 from pipeline.diagnosis.unnamed import Unnamed, competitors
 
@@ -109,6 +109,8 @@ def jitter(history: History, width: int) -> np.ndarray:
         gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
         right = np.einsum("nwi,nw->ni", basis, torque[near])
         out[rows] = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
+    for hold in holds(history):
+        out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
     # beyond its noise it is a corner of the programme, not noise
     return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
 

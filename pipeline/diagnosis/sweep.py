@@ -22,7 +22,7 @@ from pipeline.diagnosis.noise import (
 from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import Sweep
 from pipeline.diagnosis.rows import naming_rows
-from pipeline.diagnosis.search import Candidate, Search
+from pipeline.diagnosis.search import NAMED_COST, Candidate, Search
 from pipeline.diagnosis.solution import Solution, solved
 from pipeline.diagnosis.terms import Race, race, with_terms
 from pipeline.diagnosis.thinning import thinned
@@ -200,28 +200,52 @@ def _with_noise(prepared: Prepared, left: np.ndarray, used: int) -> Prepared:
 def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     """The whole race, with and without an offset of the torque reading."""
     sweep = thinned(sweep)
-    guess = first_offset(
-        sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, crossing_band_Nm(sweep.history)
-    )
-    offset, nats = guess, 0.0
+    prepared, weighed = explain(prepare(sweep, prediction))
+    seen = seen_crossing(prepared, weighed.solution)
+    plain = Explained(prepared, weighed, seen, 0.0, 0.0 if seen is None else seen.nats)
+    guess = first_offset(sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, prepared.band_Nm)
+    far = abs(guess) > 2 * prepared.band_Nm
+    if not far and (seen is None or not _counts(seen, prepared)):
+        return plain
+    assert seen is not None or far
+    shifted = _with_offset(sweep, prediction, guess if far or seen is None else seen.offset_Nm)
+    if shifted is None or (far and not _better(shifted, plain)):
+        return plain
+    return shifted
+
+
+def _counts(seen: Crossing, prepared: Prepared) -> bool:
+    """Whether an offset is sure and large enough to be said."""
+    least = OFFSET_LEAST[seen.nats > OFFSET_SURE] * prepared.rig.torque_Nm
+    return seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > least
+
+
+def _with_offset(sweep: Sweep, prediction: Prediction, offset_Nm: float) -> Explained | None:
+    """The race with an offset taken off, and the offset found anew from it; None where it vanishes."""
     for _ in range(OFFSET_ROUNDS):
-        prepared, weighed = explain(prepare(sweep, prediction, offset))
+        prepared, weighed = explain(prepare(sweep, prediction, offset_Nm))
         seen = seen_crossing(prepared, weighed.solution)
-        if seen is None:
+        if seen is None or not _counts(seen, prepared):
+            return None
+        if abs(seen.offset_Nm - offset_Nm) < max(0.5 * seen.std_Nm, 0.001 * prepared.rig.torque_Nm):
             break
-        nats = seen.nats
-        further = seen.offset_Nm - offset
-        least = OFFSET_LEAST[seen.nats > OFFSET_SURE]
-        small = abs(seen.offset_Nm) < least * prepared.rig.torque_Nm
-        if seen.nats < OFFSET_NATS or small:
-            if offset == 0.0:
-                break
-            offset = 0.0
-            continue
-        if abs(further) < max(0.5 * seen.std_Nm, 0.001 * prepared.rig.torque_Nm):
-            break
-        offset = seen.offset_Nm
-    return Explained(prepared, weighed, seen, offset, nats)
+        offset_Nm = seen.offset_Nm
+    return Explained(prepared, weighed, seen, offset_Nm, seen.nats)
+
+
+def _better(shifted: Explained, plain: Explained) -> bool:
+    """Whether rows that both races use are better explained with the offset, the cause's cost paid."""
+    common = shifted.prepared.kept & plain.prepared.kept
+    quieter = min((shifted, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
+
+    def total(e: Explained) -> float:
+        p = e.prepared
+        again = race(p.columns, p.target, common, quieter)
+        found = Search(again).candidate(e.weighed.best.terms)
+        gain = float(again.base_right @ np.linalg.solve(again.base_gram, again.base_right))
+        return found.score + gain / 2 - again.total / 2 - np.linalg.slogdet(again.base_gram)[1] / 2
+
+    return total(shifted) - NAMED_COST > total(plain)
 
 
 def seen_crossing(prepared: Prepared, solution: Solution) -> Crossing | None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pipeline.diagnosis.noise import crossing_band_Nm
 from pipeline.diagnosis.record import History, Sweep
 
 MOST_ROWS = 6000
@@ -30,15 +31,30 @@ def thinned(sweep: Sweep) -> Sweep:
     block = int(np.ceil(n / MOST_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
-    groups = []
+    near = np.abs(h.torque_Nm) < crossing_band_Nm(h)
+    groups: list[np.ndarray] = []
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
         rows = rows[~_spikes(sweep.angle_arcsec[rows])]
-        groups += np.array_split(rows, max(1, len(rows) // block))
+        groups += _blocks(rows, near[rows], block)
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
     return _averaged(sweep, groups, first[order])
+
+
+def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
+    """Blocks of neighbouring rows (m,); each row near zero torque stays by itself.
+
+    A mean over both sides of the gap is on neither.
+    """
+    edges = np.flatnonzero(np.diff(near.astype(int)) != 0) + 1
+    found: list[np.ndarray] = []
+    for part, inside in zip(np.split(rows, edges), np.split(near, edges), strict=True):
+        if len(part):
+            count = len(part) if inside[0] else max(1, len(part) // block)
+            found += np.array_split(part, count)
+    return found
 
 
 def _spared(labels: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:

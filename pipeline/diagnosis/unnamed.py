@@ -7,7 +7,7 @@ the name of the cause that mimics it best.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,8 +71,13 @@ def competitors(rig: Rig) -> list[Unnamed]:
 Made = Iterator[tuple[str, str, np.ndarray]]
 
 
+def _steady(rig: Rig) -> np.ndarray:
+    """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
+    return steadied(rig.history, 2 * torque_noise_Nm(rig.history)) / rig.torque_Nm
+
+
 def _torque(rig: Rig) -> Made:
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = _steady(rig)
     yield "torque_Nm", "a smooth function of torque", _splines(torque, SPLINE)
     yield "torque_Nm", "a curve of torque, equal for both signs", (torque**2)[:, None]
     yield from _ripples(torque, "torque_Nm", "a ripple over torque")
@@ -80,14 +85,15 @@ def _torque(rig: Rig) -> Made:
 
 def _softening(rig: Rig) -> Made:
     """Stiffness that falls with load: no known cause, and anchored where the load is small."""
-    torque = rig.history.torque_Nm / rig.torque_Nm
+    torque = _steady(rig)
     for power in SOFTENING:
         soft = np.abs(torque) ** power * rig.history.sign
         yield "torque_Nm", "stiffness that falls with load", soft[:, None]
 
 
 def _angle(rig: Rig) -> Made:
-    angle = rig.prediction.angle_arcsec(rig.history)
+    steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
+    angle = rig.prediction.angle_arcsec(steady)
     yield from _ripples(
         angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle"
     )
