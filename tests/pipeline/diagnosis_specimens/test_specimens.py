@@ -262,6 +262,19 @@ def test_sensitivities_of_many_specimens_follow_from_some(bench) -> None:
     rng = np.random.default_rng(11)
     walls, long = rng.uniform(0.36, 0.52, 40).round(3), rng.uniform(24, 40, 40).round(2)
     designs = [with_values(DESIGN, {WALL: w, LENGTH: z}) for w, z in zip(walls, long, strict=True)]
-    many = compliances(bench, designs, ("flexspline",) * 40, keys={WALL}, zones=False).sensitivities[0]
+    many = compliances(
+        bench, designs, ("flexspline",) * 40, keys={WALL}, zones=False
+    ).sensitivities[0]
     alone = compliances(bench, designs[1:4], ("flexspline",) * 3, keys={WALL}, zones=False)
     assert many.slope[1:4] == pytest.approx(alone.sensitivities[0].slope, rel=0.1)
+
+
+def test_example_file() -> None:
+    """Its walls were made 0.14 mm too thin. K_b and K_e of the example design by FE to three digits."""
+    csv = ROOT / "examples" / "measured" / "xb1-40-specimens.csv"
+    diagnosis = diagnose_file(DESIGN, csv, 3.14e4, 4.33e4)
+    assert diagnosis.outcome.verdict == "named"
+    cause = diagnosis.outcome.causes[0]
+    assert cause.id == f"geometry:{WALL}"
+    assert cause.magnitude == pytest.approx(-0.14, abs=3 * cause.magnitude_std)
+    assert diagnosis.outcome.gain.rmse_after < diagnosis.outcome.gain.rmse_calibrated / 2
