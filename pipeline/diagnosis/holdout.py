@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,9 +10,9 @@ from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.record import History
 from pipeline.diagnosis.result import Gain
 from pipeline.diagnosis.search import Search
-from pipeline.diagnosis.solution import solved
+from pipeline.diagnosis.solution import calibrated_residual, less_zero, solved
 from pipeline.diagnosis.sweep import Explained, Prepared
-from pipeline.diagnosis.terms import race
+from pipeline.diagnosis.terms import Race, race
 
 FEWEST_ROWS = 12
 CROSSING_SIGMAS = 3.0
@@ -28,15 +27,17 @@ def held_out(
     Every third cycle, never the first: the last is kept for fitting where there are more than two, so
     that what changes from cycle to cycle is not extrapolated. None where nothing can be spared.
     """
-    count = int(history.cycle.max()) + 1
+    present = np.unique(history.cycle)
+    count = len(present)
     if count >= 2:
-        chosen = [1] if count == 2 else [c for c in range(1, count - 1) if c % 3 == 1]
-        own = names[0] if len(names[0]) == count else tuple(range(1, count + 1))
-        label = ", ".join(f"{own[c]:g}" for c in chosen)
+        places = [1] if count == 2 else [c for c in range(1, count - 1) if c % 3 == 1]
+        chosen = present[places]
+        own = names[0] if len(names[0]) == count else tuple(present + 1.0)
+        label = ", ".join(f"{own[c]:g}" for c in places)
         return f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
     position = history.input_angle_deg
-    if position is not None and len(places := np.unique(position)) >= 4:
-        chosen_places = places[1::3]
+    if position is not None and len(spots := np.unique(position)) >= 4:
+        chosen_places = spots[1::3]
         label = ", ".join(f"{p:g}" for p in chosen_places[:6])
         return f"input_angle_deg {label}", np.isin(position, chosen_places)
     units = history.unit_slices
@@ -63,9 +64,9 @@ def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
     if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
         return None
     after = _predicted(prepared, train, causes)
-    calibrated = _predicted(prepared, train, ())
+    calibrated = calibrated_residual(_fitting(prepared, train))
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
-    before = _less_zero(reading, train, test, history)
+    before = less_zero(reading, train, history)
     left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
     floor = explained.weighed.solution.residual_as_read()[prepared.kept]
     return Gain(
@@ -84,26 +85,15 @@ def _crossing(explained: Explained) -> float:
     return min(noise, explained.prepared.band_Nm)
 
 
+def _fitting(prepared: Prepared, train: np.ndarray) -> Race:
+    return race(prepared.columns, prepared.target, train, prepared.noise)
+
+
 def _predicted(prepared: Prepared, train: np.ndarray, causes: Collection[str]) -> np.ndarray:
     """(n,) residual of the model fitted on the training rows."""
-    fitting = replace(prepared, kept=train)
-    now = race(fitting.columns, fitting.target, fitting.kept, fitting.noise)
+    now = _fitting(prepared, train)
     best = Search(now, lambda t: t.cause is not None and t.cause.id in causes).run()
     return solved(now, best.terms).residual_as_read()
-
-
-def _less_zero(
-    values: np.ndarray, train: np.ndarray, test: np.ndarray, history: History
-) -> np.ndarray:
-    """Less each unit's mean over the training rows; over the held-out rows for a unit not trained on."""
-    out = values.copy()
-    for rows in history.unit_slices:
-        own = np.zeros(len(values), bool)
-        own[rows] = True
-        basis = own & train if (own & train).any() else own & test
-        if basis.any():
-            out[rows] -= values[basis].mean()
-    return out
 
 
 def _rms(values: np.ndarray) -> float:

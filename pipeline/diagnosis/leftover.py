@@ -64,8 +64,6 @@ def _wave(prepared: Prepared, left: np.ndarray) -> ChannelTest:
     In white noise each frequency's power is exponential with mean 1, and there are about as many
     independent frequencies as half the rows. Source: Scargle, Astrophysical Journal 263, 835 (1982).
     """
-    from scipy.signal import lombscargle
-
     race = prepared.rig.history
     assert race.time_s is not None
     t = race.time_s[prepared.kept].astype(float)
@@ -77,14 +75,23 @@ def _wave(prepared: Prepared, left: np.ndarray) -> ChannelTest:
     if length <= 0:
         return ChannelTest("time_s", 0.0, 1.0)
     count = max(8, len(left) // 2)
-    turns = 2 * np.pi * np.arange(1, 2 * count + 1) / (2 * length)
-    power = lombscargle(t, left - left.mean(), turns) / np.var(left)
+    power = _periodogram(t, (left - left.mean()) / left.std(), np.pi / length, 2 * count)
     top = float(power.max())
     p_value = float(-np.expm1(count * np.log1p(-np.exp(-min(top, 700.0)))))
     share = 2 * top / len(left)
     return ChannelTest(
         "time_s", float(np.sqrt(min(share, 1.0))) * prepared.noise.std_arcsec, p_value
     )
+
+
+def _periodogram(t: np.ndarray, y: np.ndarray, step: float, count: int) -> np.ndarray:
+    """(count,) power |Σ y e^(−iωt)|²/n at ω = step, 2·step, …; t (n,) need not be even."""
+    turn = np.exp(-1j * step * t)
+    wave, power = np.ones(len(t), complex), np.empty(count)
+    for k in range(count):
+        wave = wave * turn
+        power[k] = abs(y @ wave) ** 2
+    return power / len(t)
 
 
 def _units(unit: np.ndarray) -> list[np.ndarray]:

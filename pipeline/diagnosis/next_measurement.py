@@ -21,14 +21,6 @@ DEFAULT_RAMP_S = 30.0
 WARMER_K = 20.0
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 MORE_CYCLES = 40
-FALLBACK = {
-    "friction_hysteresis": "torque_rate", "rate_dependence": "torque_rate", "creep": "hold",
-    "wear": "cycle", "thermal_clearance": "temperature_C", "clearance_offset": "temperature_C",
-    "kinematic_error": "input_angle_deg", "position_stiffness": "input_angle_deg",
-    "series_compliance": "input_angle_deg", "stiffness_hardening": "torque_amplitude",
-    "sensor_drift": "time_s", "torque_offset": "torque_Nm", "direction_asymmetry": "torque_Nm",
-}  # fmt: skip
-"""What shows a cause most plainly, where no prediction of the rivals can be made."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +129,7 @@ def to_tell_apart(
     titles = " from ".join([causes()[cause].title, " or ".join(causes()[r].title for r in rivals)])
     chosen = best_plan(prepared, models)
     if chosen is None:
-        vary = FALLBACK.get(cause, "torque_Nm")
+        vary = causes()[cause].vary
         return NextMeasurement(vary, f"to tell {titles}: {causes()[cause].reveals}", 0.0)
     plan, separation = chosen
     times = f"their predictions then differ by {separation:.0f} times the noise"

@@ -10,8 +10,11 @@ import numpy as np
 from pipeline.diagnosis.columns import NOISE_WINDOWS
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element, Rig
+from pipeline.diagnosis.record import History
 from pipeline.diagnosis.terms import Fit, Race, fitted
 
+ALLOWED = 2.0
+"""Standard deviations by which a calibration may move without being a finding."""
 LINEAR = {"series_compliance": 0, "clearance_offset": 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
@@ -94,6 +97,31 @@ class Solution:
         """(n,) measured less predicted from the torque as it was read, its noise included."""
         of_noise = slice(self.fit.base_count - len(NOISE_WINDOWS), self.fit.base_count)
         return self.residual() + self.race.columns.base[:, of_noise] @ self.fit.mean[of_noise]
+
+
+def calibrated_residual(race: Race) -> np.ndarray:
+    """(n,) measured less the simulation alone, calibrated on the race's rows as far as its doubt goes.
+
+    Stiffness and gap, common and each unit's own, move by no more than `ALLOWED` of their stated
+    standard deviations; zeros are free, and fitted on the race's rows.
+    """
+    columns, prior = race.columns.base, race.columns.base_prior
+    mean = fitted(race, ()).mean.copy()
+    history = race.columns.rig.history
+    units = len(history.unit_slices)
+    limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
+    limit = ALLOWED * prior[limited]
+    mean[limited] = np.clip(mean[limited], -limit, limit)
+    return less_zero(race.target - columns[:, limited] @ mean[limited], race.kept, history)
+
+
+def less_zero(values: np.ndarray, rows: np.ndarray, history: History) -> np.ndarray:
+    """(n,) values less each unit's mean over the given rows (mask); over all where it has none."""
+    out = values.copy()
+    for own in history.unit_slices:
+        chosen = own[rows[own]]
+        out[own] -= values[chosen if len(chosen) else own].mean()
+    return out
 
 
 def solved(race: Race, terms: Sequence[int]) -> Solution:

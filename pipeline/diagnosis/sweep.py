@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.diagnosis.columns import Columns, columns_of
 from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Rig
+from pipeline.diagnosis.effects.cause import Cause, Rig
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.noise import (
     Noise,
@@ -36,17 +36,18 @@ OFFSET_ROUNDS = 4
 OFFSET_NATS, OFFSET_SURE = 9.0, 20.0
 OFFSET_LEAST = (0.012, 0.005)
 """Of the largest torque: smaller offsets move nothing that counts; the second where it is sure."""
-FEWEST_KEPT = 12
+FEWEST_KEPT, PER_UNIT = 12, 4
+"""Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
 
 
 class TooFewRowsError(ValueError):
-    """Too few rows lie outside the gap's crossing and the torque's turns; `count` of them."""
+    """Too few rows lie outside the gap's crossing and the torque's turns: `count` of `wanted`."""
 
-    def __init__(self, count: int) -> None:
-        self.count = count
+    def __init__(self, count: int, wanted: int) -> None:
+        self.count, self.wanted = count, wanted
         super().__init__(
             f"only {count} rows lie outside the gap's crossing and the torque's turns;"
-            f" {FEWEST_KEPT} are needed"
+            f" {wanted} are needed"
         )
 
 
@@ -98,10 +99,11 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
     kept = naming_rows(history, band)
-    count = sum(int(history.cycle[rows].max()) + 1 for rows in history.unit_slices)
+    count = sum(len(np.unique(history.cycle[rows])) for rows in history.unit_slices)
     per_cycle = len(history) / count
-    if int(kept.sum()) < FEWEST_KEPT:
-        raise TooFewRowsError(int(kept.sum()))
+    wanted = FEWEST_KEPT + PER_UNIT * (len(history.unit_slices) - 1)
+    if int(kept.sum()) < wanted:
+        raise TooFewRowsError(int(kept.sum()), wanted)
     rough = rough_residual(target, history, kept, per_cycle)
     spread = 1.4826 * float(np.median(np.abs(rough))) + 1e-9
     outlier = np.zeros(len(kept), bool)
@@ -113,7 +115,7 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
         sweep,
         prediction,
         rig,
-        columns_of(rig, causes()),
+        columns_of(rig, _knowable(sweep)),
         target,
         kept,
         outlier,
@@ -122,6 +124,12 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
         noise,
         offset_Nm,
     )
+
+
+def _knowable(sweep: Sweep) -> dict[str, Cause]:
+    """Causes that the record's channels let one speak of."""
+    timed = sweep.history.time_s is not None
+    return {name: c for name, c in causes().items() if timed or not c.needs_time}
 
 
 def explain(prepared: Prepared) -> tuple[Prepared, Weighed]:
@@ -223,13 +231,17 @@ def _counts(seen: Crossing, prepared: Prepared) -> bool:
 def _with_offset(sweep: Sweep, prediction: Prediction, offset_Nm: float) -> Explained | None:
     """The race with an offset taken off, and the offset found anew from it; None where it vanishes."""
     for _ in range(OFFSET_ROUNDS):
-        prepared, weighed = explain(prepare(sweep, prediction, offset_Nm))
+        try:
+            prepared, weighed = explain(prepare(sweep, prediction, offset_Nm))
+        except TooFewRowsError:
+            return None
         seen = seen_crossing(prepared, weighed.solution)
         if seen is None or not _counts(seen, prepared):
             return None
         if abs(seen.offset_Nm - offset_Nm) < max(0.5 * seen.std_Nm, 0.001 * prepared.rig.torque_Nm):
             break
         offset_Nm = seen.offset_Nm
+    assert seen is not None
     return Explained(prepared, weighed, seen, offset_Nm, seen.nats)
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import floor, hypot, log10
 
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.fleet import unit_shares
 from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest
 from pipeline.diagnosis.model import ExtendedModel
 from pipeline.diagnosis.naming import model_of
-from pipeline.diagnosis.next_measurement import FALLBACK, to_tell_apart
+from pipeline.diagnosis.next_measurement import to_tell_apart
 from pipeline.diagnosis.result import NamedCause, NextMeasurement, Unexplained, Verdict
 from pipeline.diagnosis.search import Candidate
 from pipeline.diagnosis.solution import solved
@@ -91,7 +91,7 @@ def next_of(
     if rival is not None and rivals:
         models.append(_rival_model(explained, rival))
     if not rivals:
-        vary = FALLBACK.get(cause.id, "torque_Nm")
+        vary = causes()[cause.id].vary
         return NextMeasurement(vary, f"to confirm {cause.title}: {causes()[cause.id].reveals}", 0.0)
     return to_tell_apart(explained.prepared, models, cause.id, rivals)
 
@@ -130,7 +130,13 @@ def summary_of(
 def _said(cause: NamedCause) -> str:
     unit = "" if cause.unit == "1" else f" {cause.unit}"
     where = f" (only {', '.join(cause.own_units)})" if cause.own_units else ""
-    return f"{cause.title}, {cause.magnitude:.4g} ± {cause.magnitude_std:.2g}{unit}{where}"
+    return f"{cause.title}, {_figures(cause.magnitude, cause.magnitude_std)}{unit}{where}"
+
+
+def _figures(value: float, std: float) -> str:
+    """A value to the second digit of its deviation."""
+    places = max(0, 1 - floor(log10(std))) if std > 0 else 3
+    return f"{value:.{places}f} ± {std:.{places}f}".replace("-", "−")
 
 
 def _fleet_notes(explained: Explained) -> list[str]:

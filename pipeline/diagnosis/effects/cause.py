@@ -89,6 +89,11 @@ class Cause(ABC):
     shape_doubt: ClassVar[float] = 0.007
     """Share of the magnitude by which the shapes tried may miss a real gear's: found on made-up records
     with laws that are none of these shapes (docs/decisions.md)."""
+    needs_time: ClassVar[bool] = False
+    """Whether nothing can be said of it where time was not recorded."""
+    vary: ClassVar[str] = "torque_Nm"
+    """What to vary to see it, where the rivals' predictions do not decide: a channel, or torque_rate,
+    torque_amplitude, hold."""
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes`."""
     reveals: ClassVar[str]

@@ -18,6 +18,7 @@ class ClearanceOffset(Cause):
     unit = "arcsec"
     exact = True
     shape_doubt = 0.003
+    vary = "temperature_C"
     reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
 
     def shapes(self, rig: Rig) -> list[Shape]:

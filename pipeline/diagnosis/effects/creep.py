@@ -32,6 +32,8 @@ class Creep(Cause):
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
     shape_doubt = 0.05
+    vary = "hold"
+    needs_time = True
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -49,6 +49,7 @@ class FrictionHysteresis(Cause):
     positive = True
     tunable = ("threshold_Nm", "exponent", "reach")
     shape_doubt = 0.015
+    vary = "torque_rate"
     reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
 
     def shapes(self, rig: Rig) -> list[Shape]:

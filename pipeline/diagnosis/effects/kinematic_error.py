@@ -19,6 +19,7 @@ class KinematicError(Cause):
     unit = "arcsec"
     exact = True
     shape_doubt = 0.005
+    vary = "input_angle_deg"
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -19,6 +19,7 @@ class PositionStiffness(Cause):
     unit = "%"
     exact = True
     shape_doubt = 0.005
+    vary = "input_angle_deg"
     reveals = "the same sweep at many wave generator angles"
 
     def shapes(self, rig: Rig) -> list[Shape]:

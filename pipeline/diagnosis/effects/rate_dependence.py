@@ -28,6 +28,7 @@ class RateDependence(Cause):
     positive = True
     tunable = ("lag_s", "exponent")
     shape_doubt = 0.02
+    vary = "torque_rate"
     reveals = "the same sweep ten times slower and ten times faster"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -25,6 +25,8 @@ class SensorDrift(Cause):
     unit = "arcsec/h"
     tunable = ("exponent", "settling_s")
     shape_doubt = 0.02
+    vary = "time_s"
+    needs_time = True
     reveals = "the same torque held, or returned to, over hours with the wave generator untouched"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -18,6 +18,7 @@ class SeriesCompliance(Cause):
     unit = "%"
     exact = True
     shape_doubt = 0.003
+    vary = "input_angle_deg"
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -41,6 +41,7 @@ class StiffnessHardening(Cause):
     unit = "1"
     positive = True
     tunable = ("parameter", "second", "share")
+    vary = "torque_amplitude"
     reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
 
     def shapes(self, rig: Rig) -> list[Shape]:

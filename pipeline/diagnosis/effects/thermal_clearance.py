@@ -22,6 +22,7 @@ class ThermalClearance(Cause):
     title = "clearance that changes with temperature"
     unit = "arcsec/K"
     tunable = ("lag_s",)
+    vary = "temperature_C"
     reveals = "the same sweep at another temperature, the gear soaked, in the same cycle"
 
     def shapes(self, rig: Rig) -> list[Shape]:

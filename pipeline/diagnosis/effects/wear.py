@@ -26,6 +26,7 @@ class Wear(Cause):
     positive = True
     tunable = ("exponent", "run_in_cycles")
     shape_doubt = 0.03
+    vary = "cycle"
     reveals = "many more cycles at constant temperature"
 
     def shapes(self, rig: Rig) -> list[Shape]:

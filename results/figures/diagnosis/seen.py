@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.diagnosis.diagnose import Diagnosis
 from pipeline.diagnosis.effects.operators import rising
 from pipeline.diagnosis.record import History, Sweep
-from pipeline.diagnosis.solution import Solution, solved
+from pipeline.diagnosis.solution import Solution, calibrated_residual, less_zero
 from pipeline.diagnosis.sweep import Explained
 
 MOST_POINTS = 4000
@@ -26,8 +26,6 @@ LABELS = {
     "unit": "unit under test",
 }
 LONGEST_NAME = 12
-ALLOWED = 2.0
-"""Standard deviations by which a calibration may move without being a finding."""
 
 
 @dataclass(frozen=True)
@@ -80,32 +78,13 @@ class Seen:
 
     @cached_property
     def calibrated(self) -> np.ndarray:
-        """(n,) measured less the simulation alone, calibrated as far as its uncertainty goes.
-
-        Stiffness and gap, common and each unit's own, move by no more than ALLOWED of their stated
-        standard deviations; zeros are free.
-        """
-        race = self.solution.race
-        columns, prior = race.columns.base, race.columns.base_prior
-        mean = solved(race, ()).fit.mean[: columns.shape[1]].copy()
-        units = self.solution.units
-        limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
-        limit = ALLOWED * prior[limited]
-        mean[limited] = np.clip(mean[limited], -limit, limit)
-        left = race.target - columns[:, units:] @ mean[units:]
-        return self._zeroed(left)
+        """(n,) measured less the simulation alone, calibrated as far as its uncertainty goes."""
+        return calibrated_residual(self.solution.race)
 
     @cached_property
     def nominal(self) -> np.ndarray:
         """(n,) measured less simulated angle, the zero of each unit fitted."""
-        return self._zeroed(self.explained.prepared.target)
-
-    def _zeroed(self, values: np.ndarray) -> np.ndarray:
-        out = values.copy()
-        for rows in self.history.unit_slices:
-            own = rows[self.kept[rows]]
-            out[rows] -= out[own if len(own) else rows].mean()
-        return out
+        return less_zero(self.explained.prepared.target, self.kept, self.history)
 
     @property
     def channels(self) -> list[Channel]:
