@@ -24,6 +24,7 @@ from results.job import (
     stiffness_option,
     tell,
 )
+from results.study.command import register as register_study
 
 app = typer.Typer(
     name="flexspline",
@@ -202,6 +203,8 @@ def schema() -> None:
 
         print(as_json(json_schema()))
 
+
+register_study(app)
 
 if __name__ == "__main__":
     main()

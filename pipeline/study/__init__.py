@@ -1,0 +1,1 @@
+"""Studies: many designs evaluated, stored as they finish, compared."""

@@ -1,0 +1,88 @@
+"""Where evaluations run: local Dask processes, or the cluster of a scheduler."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from geometry.errors import ComputationError
+from pipeline.study.load import StudyError
+
+RETRIES = 2
+"""A design whose worker dies is tried again so many times."""
+CONNECT_S = 30.0
+
+
+class ClusterError(ComputationError):
+    """The cluster went away."""
+
+
+@dataclass(frozen=True)
+class Hands:
+    """Who evaluates: an executor, how many designs at once, and which errors mean a lost worker."""
+
+    executor: Executor
+    width: Callable[[], int]
+    lost: tuple[type[BaseException], ...] = ()
+
+    def submit(self, function: Callable, *arguments: object) -> Future:
+        return self.executor.submit(function, *arguments)
+
+
+@contextmanager
+def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
+    """Local worker processes, one thread each, or a running cluster's workers.
+
+    Raises
+    ------
+    StudyError : nobody answers at the scheduler's address.
+    ClusterError : it went away meanwhile.
+    """
+    import dask
+    import distributed
+    from distributed.comm import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    Client: Any = distributed.Client  # untyped in a typed package
+    LocalCluster: Any = distributed.LocalCluster
+
+    settings = {
+        "distributed.scheduler.allowed-failures": RETRIES,
+        "distributed.comm.timeouts.connect": f"{CONNECT_S:g}s",
+        "distributed.worker.daemon": True,
+        "distributed.admin.tick.limit": "60s",
+        "distributed.logging.distributed": "critical",
+    }
+    with dask.config.set(settings):
+        if scheduler:
+            try:
+                client = Client(scheduler, timeout=CONNECT_S)
+            except (OSError, ValueError, TimeoutError) as fault:
+                reason = f"no Dask scheduler answers there ({fault})"
+                raise StudyError("run.scheduler", scheduler, reason) from fault
+            with client:
+                yield Hands(
+                    client.get_executor(pure=False, retries=0),
+                    lambda: max(1, sum(client.nthreads().values())),
+                    (KilledWorker,),
+                )
+            return
+        with (
+            LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+            ) as cluster,
+            Client(cluster) as client,
+        ):
+            try:
+                yield Hands(client.get_executor(pure=False), lambda: workers, (KilledWorker,))
+            except CommClosedError as fault:
+                raise ClusterError(f"the local cluster went away: {fault}") from fault

@@ -1,0 +1,139 @@
+"""The loop of a study: claim a design, have it evaluated, store its row; until all are done."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from pipeline.study.cluster import RETRIES, Hands
+from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
+
+if TYPE_CHECKING:
+    from optuna.trial import FrozenTrial
+
+POLL_S = 1.0
+"""How long to wait for a result before looking after the rest."""
+
+
+class Source(Protocol):
+    """Where designs come from and what their objectives are."""
+
+    @property
+    def size(self) -> int:
+        """How many designs the study wants."""
+
+    def claim(self, ledger: Ledger, slot: int) -> Job | None:
+        """A design for a slot that nobody had before; None where another process was faster."""
+
+    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+        """The same design once more."""
+
+    def task(self, values: Mapping[str, float]) -> Task:
+        """What a worker is to do."""
+
+    def objectives(self, outcome: Outcome) -> list[float] | None:
+        """What Optuna is told; None for a design that has no figures."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a study is: all rows, rows of this process, its seconds, how many are wanted."""
+
+    rows: list[Row]
+    own: int
+    seconds: float
+    size: int
+
+
+def carry_out(
+    source: Source,
+    ledger: Ledger,
+    hands: Hands,
+    evaluate: Callable[[Task], Outcome],
+    watch: Callable[[Progress], None],
+) -> list[Row]:
+    """Evaluate until every design has a row, whoever made it; the rows by slot.
+
+    `watch` hears of every finished design. An error that is not ours ends the study: what is
+    finished is stored.
+    """
+    began = beaten = time.monotonic()
+    own = 0
+    pending: dict[Future, Job] = {}
+    _adopt(source, ledger)
+    ledger.beat()
+    while True:
+        while len(pending) < hands.width():
+            job = _next(source, ledger)
+            if job is None:
+                break
+            pending[hands.submit(evaluate, source.task(job.values))] = job
+        if not pending:
+            rows = ledger.rows()
+            if len(rows) >= source.size:
+                return rows
+            time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
+            _adopt(source, ledger)
+        else:
+            done, _ = wait(pending, timeout=POLL_S, return_when=FIRST_COMPLETED)
+            for future in done:
+                outcome = _outcome(future, hands)
+                ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
+                own += 1
+            if done:
+                watch(Progress(ledger.rows(), own, time.monotonic() - began, source.size))
+        if time.monotonic() - beaten > BEAT_S:
+            beaten = time.monotonic()
+            ledger.beat()
+
+
+def is_complete(source: Source, ledger: Ledger) -> bool:
+    """Whether every design has its row already."""
+    _adopt(source, ledger)
+    return len(ledger.rows()) >= source.size
+
+
+def _outcome(future: Future, hands: Hands) -> Outcome:
+    try:
+        return future.result()
+    except hands.lost:
+        return Outcome(reason=f"its worker died {RETRIES + 1} times")
+
+
+def _next(source: Source, ledger: Ledger) -> Job | None:
+    """The first design that nobody has: a dead process's, else a new one."""
+    while True:
+        taken = ledger.by_slot()
+        slot = next((s for s in range(source.size) if _is_free(ledger, taken.get(s, []))), None)
+        if slot is None:
+            return None
+        before = taken.get(slot)
+        if not before:
+            job = source.claim(ledger, slot)
+        else:
+            attempt = max(t.user_attrs[CLAIM]["attempt"] for t in before) + 1
+            job = source.again(ledger, slot, attempt, before[0])
+        if job is not None:
+            return job
+
+
+def _is_free(ledger: Ledger, trials: list[FrozenTrial]) -> bool:
+    """No row, and nobody alive at it."""
+    if any(ROW in t.user_attrs for t in trials):
+        return False
+    return all(t.state.is_finished() or ledger.gone(t) for t in trials)
+
+
+def _adopt(source: Source, ledger: Ledger) -> None:
+    """Close what dead processes left open: with its row where that was stored, else as failed."""
+    for trials in ledger.by_slot().values():
+        for trial in trials:
+            if trial.state.is_finished() or not ledger.gone(trial):
+                continue
+            row = trial.user_attrs.get(ROW)
+            values = source.objectives(Outcome(**row)) if row else None
+            ledger.tell(trial.number, values)

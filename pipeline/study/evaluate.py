@@ -1,0 +1,200 @@
+"""One design of a study: its figures by the fast model, or why there are none.
+
+The fast model is the axisymmetric one of the same meridian: bolt holes and keyway are left out. K is
+proportional to Young's modulus, so parts are solved for 1 GPa and kept: a design that differs in a
+clearance, the torque or the modulus costs nothing.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+from fea.axisymmetric.contact import contact_stiffness
+from fea.axisymmetric.lobes import lobe_stiffness
+from fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.types import Elastic
+from geometry.design import Cup, Design, Hat, Shaft
+from geometry.errors import ComputationError, DesignError
+from geometry.load import design_from
+from geometry.meridian import Meridian, cup_meridian, hat_meridian, shaft_meridian
+from pipeline.backlash import StiffnessValueError, backlash
+from pipeline.bearing_play import BearingPlayDomainError
+from pipeline.cache import Cache
+from pipeline.diagnosis.specimens.designs import with_values, without_holes
+from pipeline.parts import DRIVEN, Workshop
+from pipeline.progress import Progress
+from pipeline.rim import wave_generator_amplitude
+from pipeline.storage import cache_folder
+from pipeline.study.figures import SIZES, Solve
+from pipeline.study.mass import part_mass_g
+
+TORSION_TOLERANCE = 2e-3
+LOBE_TOLERANCE = 1e-2
+STRESS_TOLERANCE = 1e-2
+"""Finer costs more than it tells among designs that differ by percents; bounds are in the row."""
+KEPT = 512
+"""Solved parts that a worker remembers."""
+
+OUR_ERRORS = (DesignError, ComputationError, BearingPlayDomainError, StiffnessValueError)
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker is asked: tables of the design file, values by dotted key, which solves."""
+
+    tables: Mapping[str, Any]
+    values: Mapping[str, float]
+    solves: tuple[Solve, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Figures by result.json key, or the reason why there are none; seconds of work."""
+
+    figures: Mapping[str, float] = field(default_factory=dict)
+    reason: str = ""
+    seconds: float = 0.0
+
+
+def evaluate(task: Task) -> Outcome:
+    """Build and solve one design; only our own errors become a reason."""
+    began = time.perf_counter()
+    try:
+        figures = figures_of(with_values(design_from(task.tables), task.values), task.solves)
+    except OUR_ERRORS as fault:
+        return Outcome(reason=str(fault), seconds=time.perf_counter() - began)
+    return Outcome(figures, seconds=time.perf_counter() - began)
+
+
+def figures_of(design: Design, solves: tuple[Solve, ...]) -> dict[str, float]:
+    """All figures that the solves give, and the sizes.
+
+    Raises
+    ------
+    DesignError, ComputationError, BearingPlayDomainError
+    """
+    plain = without_holes(_with_equivalent_ring(design))
+    f, wall = plain.flexspline, plain.flexspline.wall_thickness_mm
+    own, nu = plain.material.flexspline, plain.material.flexspline.poissons_ratio
+    E = own.youngs_modulus_GPa
+    found: dict[str, float] = {}
+    lobed = design.solver.load_case == "lobes"
+    if "lobes" in solves or lobed:
+        found |= _stiffness("K_b_lobes", _lobes(f, nu, True), E)
+    if "unsupported" in solves:
+        found |= _stiffness("K_b_lobes_unsupported", _lobes(f, nu, False), E)
+    if "contact" in solves:
+        found |= _stiffness("K_b_lobes_contact", _contact(f, nu), E)
+    if "ellipse" in solves:
+        w0 = wave_generator_amplitude(plain)
+        found["wave_generator_peak_mises_MPa"] = _ellipse(f, nu, wall) * w0 * E
+    if "torque" in solves:
+        torque, shaft_nu = design.load.torque_Nm, plain.shaft_material.poissons_ratio
+        found["torque_peak_mises_MPa"] = _twisted(f, nu, wall) * torque
+        found["shaft_torque_peak_mises_MPa"] = _twisted(plain.shaft, shaft_nu, wall) * torque
+    if "torsion" in solves:
+        shaft = plain.shaft_material
+        found |= _stiffness("K_b", _torsion(f, nu), E)
+        found |= _stiffness(
+            "K_e", _torsion(plain.shaft, shaft.poissons_ratio), shaft.youngs_modulus_GPa
+        )
+        found |= _sum(design, found["K_b_lobes_Nm_per_rad" if lobed else "K_b_Nm_per_rad"], found)
+    sizes = (
+        part_mass_g(design, "flexspline"), design.flexspline.length_mm,
+        part_mass_g(design, "shaft"), design.shaft.length,
+    )  # fmt: skip
+    return found | dict(zip(SIZES, sizes, strict=True))
+
+
+def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, float]:
+    K_e = found["K_e_Nm_per_rad"]
+    total = backlash(design, K_b, K_e)
+    terms = ("shaft", "flexspline", "flank_clearance", "bearing_play", "total", "std")
+    return {
+        "K_series_Nm_per_rad": 1 / (1 / K_e + 1 / K_b),
+        **{f"backlash_arcsec.{t}": float(getattr(total, f"{t}_arcsec")) for t in terms},
+    }
+
+
+def _with_equivalent_ring(design: Design) -> Design:
+    """With the plain ring that stands for drawn teeth, as the chain has it."""
+    if design.flexspline.teeth == "none":
+        return design
+    shop = Workshop(design, Cache(cache_folder(), _ring_types(), _silent), Progress())
+    return shop.part("flexspline").shop.design
+
+
+def _ring_types() -> tuple[type, ...]:
+    from pipeline.chain import CACHED_TYPES
+
+    return CACHED_TYPES
+
+
+def _silent(line: str) -> None:
+    """A worker's notices go nowhere; what matters comes back as an error."""
+
+
+def _stiffness(name: str, of_1_GPa: tuple[float, float, float], E_GPa: float) -> dict[str, float]:
+    K, low, high = (k * E_GPa for k in of_1_GPa)
+    bounds = f"{name}_bounds_Nm_per_rad"
+    return {f"{name}_Nm_per_rad": K, f"{bounds}[0]": low, f"{bounds}[1]": high}
+
+
+Part = Cup | Hat | Shaft
+
+
+def _name(part: Part) -> str:
+    return "shaft" if isinstance(part, Shaft) else "flexspline"
+
+
+def _outline(part: Part) -> Meridian:
+    if isinstance(part, Shaft):
+        return shaft_meridian(part)
+    return cup_meridian(part) if isinstance(part, Cup) else hat_meridian(part)
+
+
+def _unit(nu: float) -> Elastic:
+    return Elastic(1e3, nu)
+
+
+def _remembered(solve: Callable[..., Any]) -> Callable[..., Any]:
+    return lru_cache(maxsize=KEPT)(solve)
+
+
+@_remembered
+def _torsion(part: Part, nu: float) -> tuple[float, float, float]:
+    found = torsional_stiffness(_outline(part), _unit(nu), DRIVEN[_name(part)], TORSION_TOLERANCE)
+    return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
+
+
+@_remembered
+def _lobes(part: Part, nu: float, supported: bool) -> tuple[float, float, float]:
+    found = lobe_stiffness(_outline(part), _unit(nu), supported, LOBE_TOLERANCE)
+    return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
+
+
+@_remembered
+def _contact(part: Part, nu: float) -> tuple[float, float, float]:
+    supported = lobe_stiffness(_outline(part), _unit(nu), True, LOBE_TOLERANCE)
+    found = contact_stiffness(_outline(part), _unit(nu), supported)
+    return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
+
+
+@_remembered
+def _ellipse(part: Part, nu: float, wall_mm: float) -> float:
+    """MPa per mm of w0 and GPa of E."""
+    peak = ellipse_stress(_outline(part), _unit(nu), 1.0, wall_mm, STRESS_TOLERANCE).peak
+    return peak.mises_MPa
+
+
+@_remembered
+def _twisted(part: Part, nu: float, wall_mm: float) -> float:
+    """MPa per N·m."""
+    driven = DRIVEN[_name(part)]
+    field = torsion_stress(_outline(part), _unit(nu), driven, 1.0, wall_mm, STRESS_TOLERANCE)
+    return field.peak.mises_MPa

@@ -1,0 +1,53 @@
+"""Which figures a study can ask for, by their keys in result.json, and which solve gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Literal
+
+Solve = Literal["torsion", "lobes", "unsupported", "contact", "ellipse", "torque"]
+
+
+def _stiffness(name: str) -> tuple[str, ...]:
+    bounds = f"{name}_bounds_Nm_per_rad"
+    return (f"{name}_Nm_per_rad", f"{bounds}[0]", f"{bounds}[1]")
+
+
+GIVEN_BY: dict[Solve, tuple[str, ...]] = {
+    "torsion": (
+        *_stiffness("K_b"),
+        *_stiffness("K_e"),
+        "K_series_Nm_per_rad",
+        "backlash_arcsec.shaft",
+        "backlash_arcsec.flexspline",
+        "backlash_arcsec.flank_clearance",
+        "backlash_arcsec.bearing_play",
+        "backlash_arcsec.total",
+        "backlash_arcsec.std",
+    ),
+    "lobes": _stiffness("K_b_lobes"),
+    "unsupported": _stiffness("K_b_lobes_unsupported"),
+    "contact": _stiffness("K_b_lobes_contact"),
+    "ellipse": ("wave_generator_peak_mises_MPa",),
+    "torque": ("torque_peak_mises_MPa", "shaft_torque_peak_mises_MPa"),
+}
+SIZES = ("flexspline_mass_g", "flexspline_length_mm", "shaft_mass_g", "shaft_length_mm")
+"""Need no solve."""
+FIGURES: tuple[str, ...] = (*(k for keys in GIVEN_BY.values() for k in keys), *SIZES)
+USUAL: tuple[Solve, ...] = ("torsion", "lobes", "ellipse")
+"""Solved for every design of a grid, sobol or optimize study, asked for or not."""
+
+
+def needed(asked: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
+    """The solves that give the figures asked for, beside the usual ones."""
+    wanted = set(asked)
+    return tuple(s for s, keys in GIVEN_BY.items() if s in usual or wanted & set(keys))
+
+
+def not_a_figure(key: str) -> str:
+    """Why a key is refused: the nearest known one, or all of them."""
+    near = get_close_matches(key[:200], FIGURES, n=1, cutoff=0.6)
+    if near:
+        return f"unknown figure; did you mean {near[0]}?"
+    return f"unknown figure; a study computes {', '.join(FIGURES)}"

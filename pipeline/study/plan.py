@@ -1,0 +1,118 @@
+"""Which designs a study evaluates: known beforehand for a grid or sobol, one by one for optimize."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from pipeline.study.load import Study
+
+Values = Mapping[str, float]
+
+
+class Plan(Protocol):
+    """Values of design `index`, the same whoever asks and whenever."""
+
+    @property
+    def size(self) -> int:
+        """How many designs."""
+
+    def point(self, index: int) -> Values:
+        """Values by varied key."""
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A plan held as an array (n, k) of values for k keys."""
+
+    keys: tuple[str, ...]
+    points: np.ndarray
+
+    @property
+    def size(self) -> int:
+        return len(self.points)
+
+    def point(self, index: int) -> Values:
+        return dict(zip(self.keys, (float(v) for v in self.points[index]), strict=True))
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Every combination; the last key changes fastest."""
+
+    axes: Mapping[str, Sequence[float]]
+
+    @property
+    def size(self) -> int:
+        return int(np.prod([len(a) for a in self.axes.values()]))
+
+    def point(self, index: int) -> Values:
+        shape = [len(a) for a in self.axes.values()]
+        at = np.unravel_index(index, shape)
+        return {
+            key: float(axis[int(i)]) for (key, axis), i in zip(self.axes.items(), at, strict=True)
+        }
+
+
+def grid(study: Study) -> Grid:
+    """`values` and `steps` as given; other spans share `evaluations` evenly, at least two each."""
+    spans, budget = study.file.vary, study.file.run.evaluations
+    fixed = {k: len(s.values) if s.values else s.steps for k, s in spans.items()}
+    taken = int(np.prod([n for n in fixed.values() if n] or [1]))
+    open_keys = [k for k, n in fixed.items() if not n]
+    share = (budget / taken) ** (1 / len(open_keys)) if open_keys else 0.0
+    each = max(2, int(share + 1e-9))
+    axes: dict[str, list[float]] = {}
+    for key, span in spans.items():
+        if span.values is not None:
+            axes[key] = list(span.values)
+            continue
+        axis = np.linspace(*span.ends, span.steps or each)
+        if key in study.whole:
+            axis = np.unique(np.round(axis))
+        axes[key] = [float(v) for v in axis]
+    return Grid(axes)
+
+
+@dataclass(frozen=True)
+class Sobol:
+    """Owen-scrambled Sobol points; a longer study begins with the same designs."""
+
+    study: Study
+
+    @property
+    def size(self) -> int:
+        return self.study.file.run.evaluations
+
+    def point(self, index: int) -> Values:
+        from scipy.stats import qmc
+
+        spans = self.study.file.vary
+        engine = qmc.Sobol(len(spans), scramble=True, seed=self.study.file.run.seed)
+        if index:
+            engine.fast_forward(index)
+        unit = engine.random(1)[0]
+        return {
+            key: from_unit(self.study, key, float(u)) for key, u in zip(spans, unit, strict=True)
+        }
+
+
+def from_unit(study: Study, key: str, u: float) -> float:
+    """A number in [0, 1) spread over a key's span."""
+    span = study.file.vary[key]
+    if span.values is not None:
+        return span.values[min(int(u * len(span.values)), len(span.values) - 1)]
+    low, high = span.ends
+    if key in study.whole:
+        count = int(high) - int(low) + 1
+        return float(int(low) + min(int(u * count), count - 1))
+    return low + u * (high - low)
+
+
+def linked(study: Study, values: Values) -> dict[str, float]:
+    """With the keys of [link] that follow the varied ones."""
+    follow = {k: link.times * values[link.of] + link.plus for k, link in study.file.link.items()}
+    return {**values, **follow}

@@ -1,0 +1,139 @@
+"""The study file's schema: frozen, strict; what one key alone must hold stands here."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Method = Literal["grid", "sobol", "optimize", "tolerance"]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class Span(_Frozen):
+    """A design key that a study varies: between two ends, or over listed values."""
+
+    min: Number | None = None
+    max: Number | None = None
+    steps: int | None = Field(default=None, ge=2, le=10_000, description="of a grid, ends included")
+    values: Annotated[tuple[Number, ...] | None, Field(min_length=1, max_length=10_000)] = Field(
+        default=None, strict=False
+    )
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Least and largest value; the loader has seen that they are there."""
+        if self.values is not None:
+            return min(self.values), max(self.values)
+        if self.min is None or self.max is None:
+            raise LookupError("a span without ends was not refused")
+        return self.min, self.max
+
+
+class Link(_Frozen):
+    """A design key that follows another: times · value + plus."""
+
+    of: str
+    times: Number = 1.0
+    plus: Number = 0.0
+
+
+class Limit(_Frozen):
+    """What a figure must keep to, either end included."""
+
+    min: Number | None = None
+    max: Number | None = None
+
+    def excess(self, value: float) -> float:
+        """How far outside, at most 0 inside; in the figure's unit."""
+        over = [value - self.max] if self.max is not None else []
+        under = [self.min - value] if self.min is not None else []
+        return max([*over, *under])
+
+
+class Spread(_Frozen):
+    """What a number may be off by: uniform within ± `plus_minus`, or normal with `std`."""
+
+    plus_minus: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    std: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+
+
+class Run(_Frozen):
+    """How a study is carried out."""
+
+    method: Method = "sobol"
+    evaluations: int = Field(default=100, ge=1, le=1_000_000)
+    seed: int = Field(default=1, ge=0, le=2**31 - 1)
+    workers: int = Field(default=2, ge=1, le=256, description="local processes")
+    scheduler: str = Field(default="", max_length=500, description="a Dask scheduler's address")
+    storage: str = Field(default="", max_length=500, description="database URL; study.db if empty")
+    verify: int = Field(default=0, ge=0, le=100, description="designs solved again, solid model")
+
+
+class StudyFile(_Frozen):
+    """A study as written."""
+
+    design: str = Field(min_length=1, max_length=1000)
+    vary: dict[str, Span] = {}
+    link: dict[str, Link] = {}
+    tolerance: dict[str, Spread] = {}
+    objective: dict[str, Literal["minimize", "maximize"]] = {}
+    constraint: dict[str, Limit] = {}
+    run: Run = Run()
+
+
+WORDS: dict[str, str] = {
+    "design": 'the path of a design file, e.g. "xb1-40.toml"',
+    "vary": "a table [vary] of design keys",
+    "vary.*": "{ min = …, max = … } or { values = […] }",
+    "vary.*.min": "a number below max",
+    "vary.*.max": "a number above min",
+    "vary.*.steps": "a whole number from 2 to 10000",
+    "vary.*.values": "a list of 1 to 10000 numbers",
+    "link": "a table [link] of design keys",
+    "link.*": '{ of = "design key", times = 1.0, plus = 0.0 }',
+    "link.*.of": "a design key",
+    "link.*.times": "a number",
+    "link.*.plus": "a number",
+    "tolerance": "a table [tolerance] of design keys",
+    "tolerance.*": "{ plus_minus = … } or { std = … }",
+    "tolerance.*.plus_minus": "a number above 0",
+    "tolerance.*.std": "a number above 0",
+    "objective": "a table [objective] of figures",
+    "objective.*": '"minimize" or "maximize"',
+    "constraint": "a table [constraint] of figures",
+    "constraint.*": "{ min = … }, { max = … } or both",
+    "constraint.*.min": "a number",
+    "constraint.*.max": "a number",
+    "run": "a table [run]",
+    "run.method": '"grid", "sobol", "optimize" or "tolerance"',
+    "run.evaluations": "a whole number from 1 to 1000000",
+    "run.seed": "a whole number from 0 to 2147483647",
+    "run.workers": "a whole number from 1 to 256",
+    "run.scheduler": 'the address of a Dask scheduler, e.g. "tcp://host:8786", or ""',
+    "run.storage": 'a database URL, e.g. "sqlite:///study.db", or ""',
+    "run.verify": "a whole number from 0 to 100",
+}
+"""What every key may hold, in words; `*` is a design key or a figure."""
+
+KEYS: dict[str, tuple[str, ...]] = {
+    "": tuple(StudyFile.model_fields),
+    "vary.*": tuple(Span.model_fields),
+    "link.*": tuple(Link.model_fields),
+    "tolerance.*": tuple(Spread.model_fields),
+    "constraint.*": tuple(Limit.model_fields),
+    "run": tuple(Run.model_fields),
+}
+"""Keys that each table takes."""
+
+
+def pattern(location: tuple[Any, ...]) -> str:
+    """A location of pydantic's as a key of WORDS: ("vary", "a.b", "min") → "vary.*.min"."""
+    parts = [str(p) for p in location if not isinstance(p, int)]
+    if len(parts) > 1 and parts[0] != "run":
+        parts[1] = "*"
+    return ".".join(parts[:3])

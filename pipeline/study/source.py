@@ -1,0 +1,119 @@
+"""Sources of designs: a plan known beforehand, or Optuna's sampler that learns from the rows."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.figures import Solve, needed
+from pipeline.study.load import Study
+from pipeline.study.plan import Plan, linked
+from pipeline.study.store import CLAIM, Claim, Job, Ledger
+
+if TYPE_CHECKING:
+    from optuna.distributions import BaseDistribution
+    from optuna.trial import FrozenTrial
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What both sources do alike."""
+
+    study: Study
+    solves: tuple[Solve, ...]
+
+    @cached_property
+    def _tables(self) -> dict[str, Any]:
+        return self.study.design.model_dump(mode="json", exclude_none=True)
+
+    @property
+    def over(self) -> Mapping[str, BaseDistribution]:
+        """Optuna's distributions of the varied keys."""
+        return distributions(self.study)
+
+    def task(self, values: Mapping[str, float]) -> Task:
+        return Task(self._tables, linked(self.study, values), self.solves)
+
+    def objectives(self, outcome: Outcome) -> list[float] | None:
+        if outcome.reason:
+            return None
+        return [outcome.figures[k] for k in self.study.file.objective] or [0.0]
+
+    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+        return ledger.create(slot, attempt, before.params, before.distributions)
+
+
+@dataclass(frozen=True)
+class Planned(_Asked):
+    """Designs of a plan."""
+
+    plan: Plan
+
+    @property
+    def size(self) -> int:
+        return self.plan.size
+
+    def claim(self, ledger: Ledger, slot: int) -> Job | None:
+        return ledger.create(slot, 0, self.plan.point(slot), self.over)
+
+
+@dataclass(frozen=True)
+class Sampled(_Asked):
+    """Designs that Optuna's sampler suggests, learning from those before."""
+
+    @property
+    def size(self) -> int:
+        return self.study.file.run.evaluations
+
+    def claim(self, ledger: Ledger, slot: int) -> Job | None:
+        from dataclasses import asdict
+
+        trial = ledger.trials.ask(fixed_distributions=dict(self.over))
+        trial.set_user_attr(CLAIM, asdict(Claim(slot, 0, ledger.owner)))
+        return Job(trial._trial_id, trial.number, slot, trial.params)
+
+
+def solves_of(study: Study, usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
+    """What every design of a study is solved for."""
+    return needed({**study.file.objective, **study.file.constraint}, usual)
+
+
+def distributions(study: Study) -> dict[str, BaseDistribution]:
+    """Optuna's words for [vary]."""
+    from optuna.distributions import (
+        CategoricalDistribution,
+        FloatDistribution,
+        IntDistribution,
+    )
+
+    found: dict[str, BaseDistribution] = {}
+    for key, span in study.file.vary.items():
+        if span.values is not None:
+            found[key] = CategoricalDistribution(span.values)
+        elif key in study.whole:
+            low, high = span.ends
+            found[key] = IntDistribution(int(low), int(high))
+        else:
+            found[key] = FloatDistribution(*span.ends)
+    return found
+
+
+def study_name(study: Study) -> str:
+    """The file's name and a digest of all that changes what a row means, or which rows there are."""
+    file = study.file.model_dump(mode="json", exclude={"run", "design"})
+    run = study.file.run
+    told: dict[str, Any] = {
+        "design": study.design.model_dump(mode="json"),
+        "study": file,
+        "method": run.method,
+        "seed": run.seed,
+    }
+    if run.method in ("grid", "tolerance"):  # their points depend on how many there are
+        told["evaluations"] = run.evaluations
+    digest = hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:12]
+    return f"{study.name}-{run.method}-{digest}"

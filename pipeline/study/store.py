@@ -1,0 +1,208 @@
+"""Trials in Optuna's storage: claimed by being created, finished with their row, never lost.
+
+A design of a study is a slot, 0, 1, 2, …. Whoever wants to evaluate a slot creates a RUNNING trial that
+says which slot, which attempt and who; trial numbers are given one after the other by the database, so
+among trials that claim the same attempt of the same slot the lowest number has it and the others
+withdraw. (Optuna's own queue of waiting trials is not safe between processes on SQLite: two can pop one
+trial.) A trial whose owner is gone is closed and its slot's next attempt is free.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from geometry.errors import DesignError
+from pipeline.study.evaluate import Outcome
+
+if TYPE_CHECKING:
+    from optuna import Study as Trials
+    from optuna.distributions import BaseDistribution
+    from optuna.samplers import BaseSampler
+    from optuna.storages import BaseStorage
+    from optuna.trial import FrozenTrial
+
+CLAIM, ROW = "claim", "row"
+BEAT_S = 10.0
+"""How often a process says that it lives."""
+SILENT_S = 60.0
+"""A process of another machine that said nothing for so long is gone."""
+LOCK_S = 60
+"""How long to wait for another process that writes to the same SQLite file."""
+OPENINGS = 6
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Which design, which attempt at it, by which process."""
+
+    slot: int
+    attempt: int
+    owner: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """One finished design: values of the varied keys and what came out."""
+
+    slot: int
+    values: Mapping[str, float]
+    outcome: Outcome
+
+
+@dataclass(frozen=True)
+class Job:
+    """A claimed design: the trial that holds it."""
+
+    trial_id: int
+    number: int
+    slot: int
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """The trials of one study, as this process uses them."""
+
+    trials: Trials
+    storage: BaseStorage
+    owner: str
+
+    def all(self) -> list[FrozenTrial]:
+        """Every trial, as the database has it now."""
+        return self.trials.get_trials(deepcopy=False)
+
+    def rows(self) -> list[Row]:
+        """Finished designs by slot; should a slot have two, the first."""
+        found: dict[int, Row] = {}
+        for trial in self.all():
+            if ROW in trial.user_attrs and trial.state.is_finished():
+                slot = trial.user_attrs[CLAIM]["slot"]
+                found.setdefault(slot, Row(slot, trial.params, Outcome(**trial.user_attrs[ROW])))
+        return [found[slot] for slot in sorted(found)]
+
+    def by_slot(self) -> dict[int, list[FrozenTrial]]:
+        """Trials that claim each slot, in their order."""
+        found: dict[int, list[FrozenTrial]] = {}
+        for trial in self.all():
+            if CLAIM in trial.user_attrs:
+                found.setdefault(trial.user_attrs[CLAIM]["slot"], []).append(trial)
+        return found
+
+    def create(
+        self,
+        slot: int,
+        attempt: int,
+        values: Mapping[str, float],
+        over: Mapping[str, BaseDistribution],
+    ) -> Job | None:
+        """A RUNNING trial, made in one transaction; None where another process has the attempt."""
+        from optuna.trial import TrialState, create_trial
+
+        claim = asdict(Claim(slot, attempt, self.owner))
+        self.trials.add_trial(
+            create_trial(
+                state=TrialState.RUNNING,
+                params=dict(values),
+                distributions=dict(over),
+                user_attrs={CLAIM: claim},
+            )
+        )
+        rivals = [
+            t for t in self.by_slot()[slot] if t.user_attrs[CLAIM]["attempt"] == attempt
+        ]  # fmt: skip
+        mine = next(t for t in reversed(rivals) if t.user_attrs[CLAIM]["owner"] == self.owner)
+        if rivals[0].number == mine.number:
+            return Job(mine._trial_id, mine.number, slot, values)
+        self.tell(mine.number, None)
+        return None
+
+    def finish(self, job: Job, outcome: Outcome, values: list[float] | None) -> None:
+        """Store the row, then close the trial; a stop between the two loses nothing."""
+        self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(outcome))
+        self.tell(job.number, values)
+
+    def tell(self, number: int, values: list[float] | None) -> None:
+        """Close a trial: with its objectives, or as failed; closed ones stay as they are."""
+        from optuna.exceptions import UpdateFinishedTrialError
+        from optuna.trial import TrialState
+
+        state = TrialState.FAIL if values is None else TrialState.COMPLETE
+        with suppress(UpdateFinishedTrialError):  # another process did so just now
+            self.trials.tell(number, values, state=state, skip_if_finished=True)
+
+    def beat(self) -> None:
+        """Say that this process lives, for those on other machines."""
+        self.trials.set_user_attr(f"beat {self.owner}", time.time())
+
+    def gone(self, trial: FrozenTrial) -> bool:
+        """Whether the process that claimed a trial is no more."""
+        owner = trial.user_attrs[CLAIM]["owner"]
+        host, pid, born = owner.rsplit("/", 2)
+        if host == socket.gethostname():
+            return not _lives(int(pid), born)
+        beat = self.trials.user_attrs.get(f"beat {owner}", 0.0)
+        return bool(time.time() - beat > SILENT_S)
+
+
+def this_process() -> str:
+    """host/pid/second of birth: a number that the system gives twice is still told apart."""
+    import psutil
+
+    return f"{socket.gethostname()}/{os.getpid()}/{psutil.Process().create_time():.0f}"
+
+
+def _lives(pid: int, born: str) -> bool:
+    import psutil
+
+    try:
+        process = psutil.Process(pid)
+        alive = process.status() != psutil.STATUS_ZOMBIE
+        return alive and f"{process.create_time():.0f}" == born
+    except psutil.NoSuchProcess:
+        return False
+
+
+def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSampler) -> Ledger:
+    """The study of that name in a database, made if it is not there.
+
+    Raises
+    ------
+    StorageError : the database cannot be opened.
+    """
+    import optuna
+    from optuna.storages import RDBStorage
+    from sqlalchemy.exc import SQLAlchemyError
+
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else {}
+    for attempt in range(OPENINGS):
+        try:
+            storage = RDBStorage(url, engine_kwargs=args)
+            trials = optuna.create_study(
+                storage=storage,
+                study_name=name,
+                directions=list(directions),  # type: ignore[arg-type]
+                sampler=sampler,
+                load_if_exists=True,
+            )
+            return Ledger(trials, storage, this_process())
+        except (SQLAlchemyError, ImportError, RuntimeError) as fault:
+            # two processes that make the tables at once: the second finds them on its next try
+            if attempt == OPENINGS - 1 or not isinstance(fault, SQLAlchemyError):
+                raise StorageError(url, str(fault)) from fault
+            time.sleep(0.5 * (attempt + 1))
+    raise AssertionError("the last attempt returns or raises")
+
+
+class StorageError(DesignError):
+    """A database that cannot be opened; `url` and why."""
+
+    def __init__(self, url: str, reason: str) -> None:
+        self.url = url
+        super().__init__("run.storage", url, f"cannot be opened: {reason.splitlines()[0]}")

@@ -1,0 +1,45 @@
+"""`flexspline study` and what it writes."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from results.job import Json, Out, answered, folder_of, tell
+
+StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this room."""
+    app.command()(study)
+
+
+def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
+    """Sweep, optimise or tolerance a design; resumable at any moment."""
+    with answered(file):
+        from pipeline.study.cluster import dask_hands
+        from pipeline.study.load import load_study
+        from pipeline.study.run import ledger_of, run_study
+        from results.records import as_json
+        from results.study.progress import Watch
+        from results.study.record import summary, words
+        from results.study.tables import table_of, write_csv, write_parquet
+
+        asked = load_study(file)
+        folder = folder_of(file, out)
+        run = asked.file.run
+        ledger = ledger_of(asked, folder)
+        if kept := len(ledger.rows()):
+            tell(f"{kept} designs are finished already")
+        hands = partial(dask_hands, run.workers, run.scheduler)
+        result = run_study(asked, ledger, hands, Watch(asked))
+        table = table_of(result)
+        write_csv(folder / "study.csv", table)
+        write_parquet(folder / "study.parquet", table)
+        record: dict[str, Any] = summary(result)
+        record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
+        print(as_json(record) if json else words(result, record))

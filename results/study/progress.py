@@ -1,0 +1,56 @@
+"""A line on stderr while a study runs: how far, how fast, best so far, time left."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass, field
+
+from pipeline.study.drive import Progress
+from pipeline.study.load import Study
+from pipeline.study.result import StudyResult
+from results.study.labels import entry
+
+EVERY_S = 5.0
+"""Between two lines where stderr is no terminal; on one the line is renewed in place."""
+
+
+@dataclass
+class Watch:
+    """Prints progress, not more often than is readable."""
+
+    study: Study
+    last: float = field(default=-1e9)
+
+    def __call__(self, progress: Progress) -> None:
+        finished = len(progress.rows) >= progress.size
+        terminal = sys.stderr.isatty()
+        if time.monotonic() - self.last < (0.2 if terminal else EVERY_S) and not finished:
+            return
+        self.last = time.monotonic()
+        text = line(self.study, progress)
+        end = "\n" if finished or not terminal else ""
+        start = "\r\x1b[K" if terminal else ""
+        print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
+
+
+def line(study: Study, progress: Progress) -> str:
+    """One line of progress."""
+    done, size = len(progress.rows), progress.size
+    rate = progress.own / progress.seconds if progress.seconds > 0 else 0.0
+    parts = [f"{done} of {size} designs", f"{rate:.2f} per s"]
+    failed = sum(bool(r.outcome.reason) for r in progress.rows)
+    if failed:
+        parts.append(f"{failed} cannot be built or solved")
+    best = StudyResult(study, tuple(progress.rows)).pareto if study.file.objective else ()
+    for i, key in enumerate(study.file.objective if best else ()):
+        row = best[0] if i == 0 else min(best, key=lambda r: _cost(study, key, r.outcome.figures))
+        parts.append(f"best {entry(key).with_unit(row.outcome.figures[key])}")
+    if rate > 0 and done < size:
+        parts.append(f"{(size - done) / rate:.0f} s left")
+    return " · ".join(parts)
+
+
+def _cost(study: Study, key: str, figures: object) -> float:
+    value = float(figures[key])  # type: ignore[index]
+    return value if study.file.objective[key] == "minimize" else -value

@@ -1,0 +1,53 @@
+"""study.csv and study.parquet: one row per design."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+from pipeline.study.result import StudyResult
+from results.atomic import write_bytes
+
+Table = dict[str, list[Any]]
+
+
+def table_of(result: StudyResult) -> Table:
+    """Columns by name: slot, varied keys, figures, whether the constraints hold, reason, seconds.
+
+    A figure that a design does not have is None.
+    """
+    rows = result.rows
+    keys = list(dict.fromkeys(k for r in rows for k in r.values))
+    figures = list(dict.fromkeys(k for r in rows for k in r.outcome.figures))
+    feasible = {r.slot for r in result.feasible}
+    table: Table = {"design": [r.slot for r in rows]}
+    table |= {k: [r.values[k] for r in rows] for k in keys}
+    table |= {k: [r.outcome.figures.get(k) for r in rows] for k in figures}
+    table["feasible"] = [r.slot in feasible for r in rows]
+    table["reason"] = [r.outcome.reason for r in rows]
+    table["wall_s"] = [round(r.outcome.seconds, 4) for r in rows]
+    return table
+
+
+def write_csv(path: Path, table: Table) -> None:
+    """Comma-separated, one header line, all digits of every number."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(table)
+    for row in zip(*table.values(), strict=True):
+        writer.writerow(
+            ["" if v is None else str(v).lower() if isinstance(v, bool) else v for v in row]
+        )
+    write_bytes(path, out.getvalue().encode())
+
+
+def write_parquet(path: Path, table: Table) -> None:
+    """The same columns, typed."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    sink = pa.BufferOutputStream()
+    parquet.write_table(pa.table(table), sink)
+    write_bytes(path, sink.getvalue().to_pybytes())

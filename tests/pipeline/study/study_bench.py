@@ -1,0 +1,43 @@
+"""Studies for tests: a file's tables as text, workers that are threads of this process, quick evaluations."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+
+from pipeline.study.cluster import Hands
+from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.load import Study, study_from
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
+
+GRID = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ min = 0.3, max = 0.5, steps = 3 }}
+"{LENGTH}" = {{ values = [25.0, 30.0] }}
+[objective]
+"K_b_Nm_per_rad" = "maximize"
+[run]
+method = "grid"
+"""
+
+
+def study_of(text: str, name: str = "test") -> Study:
+    return study_from(tomllib.loads(text), EXAMPLES, name)
+
+
+@contextmanager
+def threads(count: int = 1) -> Iterator[Hands]:
+    with ThreadPoolExecutor(count) as executor:
+        yield Hands(executor, lambda: count)
+
+
+def quick(task: Task) -> Outcome:
+    """Known figures without FE: K_b = 1000 · wall + length."""
+    wall, length = task.values.get(WALL, 0.4), task.values.get(LENGTH, 30.0)
+    return Outcome({"K_b_Nm_per_rad": 1e3 * wall + length})

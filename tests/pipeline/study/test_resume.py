@@ -1,0 +1,129 @@
+"""Nothing finished is lost, nothing is done twice, a dead process's designs are taken over."""
+
+import multiprocessing
+import os
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
+
+from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.run import ledger_of, run_study
+
+SIZE = 40
+LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")
+
+
+def silent(progress: object) -> None:
+    pass
+
+
+class Counted:
+    """Appends a line per evaluation that ended; a line this short is written whole."""
+
+    def __init__(self, path: Path, seconds: float) -> None:
+        self.path, self.seconds = path, seconds
+
+    def __call__(self, task: Task) -> Outcome:
+        time.sleep(self.seconds)
+        outcome = quick(task)
+        with open(self.path, "ab", buffering=0) as out:
+            out.write(f"{task.values[WALL]!r} {task.values[LENGTH]!r}\n".encode())
+        return outcome
+
+    def lines(self) -> list[str]:
+        return self.path.read_text().splitlines() if self.path.exists() else []
+
+
+def work(folder: Path, seconds: float) -> None:
+    study = study_of(LONG_GRID)
+    ledger = ledger_of(study, folder)
+    run_study(study, ledger, threads, silent, Counted(folder / "done", seconds))
+
+
+def started(folder: Path, seconds: float) -> multiprocessing.Process:
+    process = multiprocessing.get_context("fork").Process(target=work, args=(folder, seconds))
+    process.start()
+    return process
+
+
+def test_a_grid_has_every_combination_once(tmp_path: Path) -> None:
+    study = study_of(GRID)
+    rows = run_study(study, ledger_of(study, tmp_path), threads, silent, quick).rows
+    assert sorted((r.values[WALL], r.values[LENGTH]) for r in rows) == sorted(
+        (w, n) for w in (0.3, 0.4, 0.5) for n in (25.0, 30.0)
+    )
+    assert all(r.outcome == quick(Task({}, r.values, ())) for r in rows)
+
+
+def test_the_same_command_again_evaluates_nothing(tmp_path: Path) -> None:
+    study, counted = study_of(GRID), Counted(tmp_path / "done", 0.0)
+    first = run_study(study, ledger_of(study, tmp_path), threads, silent, counted).rows
+    again = run_study(study, ledger_of(study, tmp_path), threads, silent, counted).rows
+    assert again == first
+    assert len(counted.lines()) == len(first) == 6
+
+
+def killed_and_resumed(folder: Path, kills: int, seed: int) -> None:
+    """Kill -9 at random moments, then let it finish."""
+    random = np.random.default_rng(seed)
+    counted = Counted(folder / "done", 0.02)
+    for _ in range(kills):
+        process = started(folder, counted.seconds)
+        deadline = time.monotonic() + 30
+        enough = len(counted.lines()) + int(random.integers(0, 3))
+        while len(counted.lines()) < min(enough, SIZE) and time.monotonic() < deadline:
+            time.sleep(0.002)
+        time.sleep(random.uniform(0, 0.05))
+        os.kill(process.pid, signal.SIGKILL)
+        process.join()
+    finished = {r.slot: r for r in ledger_of(study_of(LONG_GRID), folder).rows()}
+    work(folder, counted.seconds)
+    rows = {r.slot: r for r in ledger_of(study_of(LONG_GRID), folder).rows()}
+    assert sorted(rows) == list(range(SIZE))
+    assert {s: rows[s] for s in finished} == finished  # nothing finished was lost or redone
+    # a kill hits at most one design of the one thread between its end and its row being stored
+    assert SIZE <= len(counted.lines()) <= SIZE + kills
+    assert len(set(counted.lines())) == SIZE
+
+
+def test_killed_at_random_moments(tmp_path: Path) -> None:
+    killed_and_resumed(tmp_path, 4, seed=1)
+
+
+@pytest.mark.long
+def test_killed_twenty_times(tmp_path: Path) -> None:
+    killed_and_resumed(tmp_path, 20, seed=2)
+
+
+def test_two_processes_share_a_study(tmp_path: Path) -> None:
+    both = [started(tmp_path, 0.02) for _ in range(2)]
+    for process in both:
+        process.join(60)
+        assert process.exitcode == 0
+    lines = Counted(tmp_path / "done", 0).lines()
+    assert len(lines) == len(set(lines)) == SIZE
+    assert len(ledger_of(study_of(LONG_GRID), tmp_path).rows()) == SIZE
+
+
+def test_a_design_that_cannot_be_built_is_a_row_with_its_reason(tmp_path: Path) -> None:
+    text = GRID.replace("[25.0, 30.0]", "[5.0]").replace(
+        "max = 0.5, steps = 3", "max = 0.4, steps = 2"
+    )
+    study = study_of(text)
+    result = run_study(study, ledger_of(study, tmp_path), threads, silent)
+    assert len(result.rows) == 2
+    assert result.built == ()
+    assert all("ring_width_mm" in r.outcome.reason for r in result.rows)
+
+
+def test_a_bug_is_no_reason(tmp_path: Path) -> None:
+    def broken(task: Task) -> Outcome:
+        raise ZeroDivisionError
+
+    study = study_of(GRID)
+    with pytest.raises(ZeroDivisionError):
+        run_study(study, ledger_of(study, tmp_path), threads, silent, broken)

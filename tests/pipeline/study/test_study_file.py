@@ -1,0 +1,35 @@
+"""A wrong study file is refused with one line: key, value, what works."""
+
+import pytest
+from study_bench import GRID, study_of
+
+from pipeline.study.load import StudyError
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "said"),
+    [
+        ('method = "grid"', 'method = "gird"', "run.method", '"grid", "sobol"'),
+        ('method = "grid"', 'methode = "grid"', "run.methode", "did you mean method?"),
+        ('method = "grid"', "workers = 0", "run.workers", "from 1 to 256"),
+        ('method = "grid"', "evaluations = 1.5", "run.evaluations", "a whole number"),
+        ('"K_b_Nm_per_rad"', '"K_b_Nm"', 'objective."K_b_Nm"', "did you mean K_b_Nm_per_rad?"),
+        ('"maximize"', '"maximum"', 'objective.K_b_Nm_per_rad', '"minimize" or "maximize"'),
+        ("wall_thickness_mm", "wall_thicknes_mm", "wall_thicknes_mm", "wall_thickness_mm?"),
+        ("min = 0.3", "min = 0.6", "wall_thickness_mm", "below max = 0.5"),
+        ("min = 0.3", "min = -0.3", "wall_thickness_mm", "from 0.001 to 10000"),
+        ("min = 0.3, ", "", "wall_thickness_mm", "min = …, max = …"),
+        ("values = [25.0, 30.0]", "values = []", "length_mm", "1 to 10000 numbers"),
+        ("values = [25.0, 30.0]", "value = [25.0]", "value", "did you mean values?"),
+        ("xb1-40.toml", "no.toml", "design", "no such file"),
+        ("[vary]", "[varied]", "varied", "did you mean vary?"),
+    ],
+)  # fmt: skip
+def test_refused(old: str, new: str, key: str, said: str) -> None:
+    assert old in GRID
+    with pytest.raises(StudyError) as caught:
+        study_of(GRID.replace(old, new))
+    line = str(caught.value)
+    assert key in line
+    assert said in line
+    assert "\n" not in line
