@@ -21,7 +21,7 @@ from pipeline.diagnosis.noise import (
 )
 from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import Sweep
-from pipeline.diagnosis.rows import naming_rows
+from pipeline.diagnosis.rows import naming_rows, settling, turning
 from pipeline.diagnosis.search import NAMED_COST, Candidate, Search
 from pipeline.diagnosis.solution import Solution, solved
 from pipeline.diagnosis.terms import Race, race, with_terms
@@ -33,6 +33,8 @@ ROUNDS = 1
 """Of noise estimated from what the best set leaves."""
 TUNINGS, KINDS = 3, 3
 OFFSET_ROUNDS = 4
+BESIDE_STEP = 0.01
+"""Of the largest torque: nearer to a step of the gap no row judges where the step is."""
 OFFSET_NATS, OFFSET_SURE = 9.0, 20.0
 OFFSET_LEAST = (0.012, 0.005)
 """Of the largest torque: smaller offsets move nothing that counts; the second where it is sure."""
@@ -212,7 +214,7 @@ def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     seen = seen_crossing(prepared, weighed.solution)
     plain = Explained(prepared, weighed, seen, 0.0, 0.0 if seen is None else seen.nats)
     guess = first_offset(sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, prepared.band_Nm)
-    far = abs(guess) > 2 * prepared.band_Nm
+    far = abs(guess) > prepared.band_Nm / 2
     if not far and (seen is None or not _counts(seen, prepared)):
         return plain
     assert seen is not None or far
@@ -246,8 +248,17 @@ def _with_offset(sweep: Sweep, prediction: Prediction, offset_Nm: float) -> Expl
 
 
 def _better(shifted: Explained, plain: Explained) -> bool:
-    """Whether rows that both races use are better explained with the offset, the cause's cost paid."""
-    common = shifted.prepared.kept & plain.prepared.kept
+    """Whether the record is better explained with the offset, the cause's cost paid.
+
+    Judged on all rows but those whose side of the gap is unsure with it or without.
+    """
+    torque = plain.prepared.rig.history.torque_Nm
+    side = max(
+        BESIDE_STEP * plain.prepared.rig.torque_Nm, 4 * torque_noise_Nm(plain.prepared.rig.history)
+    )
+    common = (np.abs(torque) > side) & (np.abs(torque - shifted.offset_Nm) > side)
+    common &= ~(shifted.prepared.outlier & plain.prepared.outlier)
+    common &= ~(turning(plain.prepared.rig.history) | settling(plain.prepared.rig.history))
     quieter = min((shifted, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
 
     def total(e: Explained) -> float:

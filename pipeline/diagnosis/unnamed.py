@@ -22,6 +22,8 @@ SPLINE = 6
 LEADS = "output leads torque"
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 LEADING_LAGS = (0.05, 0.15, 0.4)
+CLEAR = 8.0
+"""Torque noises that a lag's change of torque must exceed."""
 SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 STEPS = 25
 TELLING = 7
@@ -123,8 +125,9 @@ def _leading(rig: Rig) -> Made:
         yield "direction", LEADS, (state / r)[:, None]
         yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
     ramp = ramp_s(rig.history)
+    shortest = CLEAR * torque_noise_Nm(rig.history) / rig.torque_Nm
     for share in LEADING_LAGS if ramp > 0 else ():
-        lagging = lags(torque, rig.history, np.array([share * ramp]))[:, 0]
+        lagging = lags(torque, rig.history, np.array([max(share, shortest) * ramp]))[:, 0]
         yield "direction", LEADS, (torque - lagging)[:, None]
 
 

@@ -20,7 +20,7 @@ others' misfit may feed it."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
-CANCELLING = 0.85
+CANCELLING = 0.75
 """Correlation of two effects, each at least half as large as the other, that nearly cancel."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 """The contract's limits for a rival."""

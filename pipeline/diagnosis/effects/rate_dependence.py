@@ -13,6 +13,7 @@ from pipeline.diagnosis.record import History
 
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""
+CLEAR = 8.0
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 
 
@@ -36,16 +37,23 @@ class RateDependence(Cause):
         if ramp <= 0:
             return []
         rate = rig.torque_Nm / ramp
+        noise = torque_noise_Nm(rig.history)
+        # over a shorter time the torque's noise is a good part of its change
+        shortest = CLEAR * noise / rate
         common = {
-            "rate_Nm_per_s": rate, "ramp_s": ramp, "deadband_Nm": 2 * torque_noise_Nm(rig.history),
+            "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest, "deadband_Nm": 2 * noise,
         }  # fmt: skip
-        found: list[Shape] = [{"lag_s": s * ramp, "exponent": 1.0, **common} for s in LAG_SHARES]
-        found += [{"lag_s": LAG_SHARES[1] * ramp, "exponent": n, **common} for n in EXPONENTS]
+        lags_s = sorted({max(s * ramp, shortest) for s in LAG_SHARES})
+        found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
+        found += [
+            {"lag_s": max(LAG_SHARES[1] * ramp, shortest), "exponent": n, **common}
+            for n in EXPONENTS
+        ]
         return found
 
     def possible(self, shape: Shape) -> bool:
         longest = LAG_SHARES[-1] * shape["ramp_s"]
-        return 0.4 <= shape["exponent"] <= 1.8 and shape["lag_s"] <= longest
+        return 0.4 <= shape["exponent"] <= 1.8 and shape["shortest_s"] <= shape["lag_s"] <= longest
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, n = shape["lag_s"], shape["exponent"]

@@ -13,7 +13,7 @@ MODULUS_SPREAD = 0.1
 """Standard deviation of ln E where the material is another one than stated."""
 SERIES_SPREAD = 0.3
 """Of an added compliance, as a share of the median specimen's."""
-ZONES = ((1.0, 0.12, 0.45), (0.5, 0.35, 0.15))
+ZONES = ((1.0, 0.12, 0.35), (0.5, 0.35, 0.15))
 """Prior mean, standard deviation and odds of the load zone: where the simulation spreads the torque
 evenly, a real wave generator mostly takes it at its lobes, or part of the way."""
 WRONG_TOLERANCES = 3.0
