@@ -14,7 +14,9 @@ from scipy.sparse import csr_matrix
 from fea.solid.assembly import NodeFrames, stiffness_matrix
 from fea.solid.elements import facet_points
 from fea.solid.errors import SolveError
+from fea.solid.memory import Way, check_before_assembly
 from fea.solid.solver import Solution, solve
+from fea.solid.twolevel import corner_interpolation
 from fea.types import NMM_PER_NM, Elastic, TetMesh
 from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
@@ -38,6 +40,7 @@ class Solved:
     K_reaction: float
     residual: float
     dofs: int
+    way: Way
 
 
 @dataclass(frozen=True)
@@ -48,9 +51,13 @@ class Model:
     material: Elastic
     frames: NodeFrames
     matrix: csr_matrix
+    solve_by: Way | None = None
+    """How to solve; by unknowns and memory when absent."""
 
     @classmethod
     def of(cls, mesh: TetMesh, material: Elastic) -> Model:
+        """Assemble. Raises MemoryShortError, before, where that or the solve would not fit."""
+        check_before_assembly(3 * len(mesh.nodes))
         frames = NodeFrames.cylindrical(mesh.nodes)
         return cls(mesh, material, frames, stiffness_matrix(mesh, material, frames))
 
@@ -94,7 +101,15 @@ class Supports:
 
     def solve(self, load: np.ndarray) -> Solution:
         fixed = np.flatnonzero(self._mask.ravel())
-        return solve(self._model.matrix, load, fixed, self._value.ravel()[fixed])
+        model = self._model
+        return solve(
+            model.matrix,
+            load,
+            fixed,
+            self._value.ravel()[fixed],
+            lambda: corner_interpolation(model.mesh, model.frames),
+            model.solve_by,
+        )
 
 
 def torsion(model: Model, driven: str) -> Solved:
@@ -173,5 +188,6 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
 def _solved(model: Model, solution: Solution, K_energy: float, K_reaction: float) -> Solved:
     u = model.frames.to_cartesian(solution.unknowns.reshape(-1, 3))
     return Solved(
-        model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count
-    )
+        model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count,
+        solution.way,
+    )  # fmt: skip

@@ -29,3 +29,26 @@ class MeshQualityError(SolidError):
 
 class SolveError(SolidError):
     """The linear solve did not meet its checks (residual, balance)."""
+
+
+class IterationError(SolveError):
+    """The iteration stopped short: `steps` taken, relative `residual` reached, the one `wanted`."""
+
+    def __init__(self, steps: int, residual: float, wanted: float) -> None:
+        self.steps, self.residual, self.wanted = steps, residual, wanted
+        super().__init__(
+            f"{steps} steps of the iteration left a relative residual of {residual:.1e}, wanted"
+            f" {wanted:.0e}: the elements may be too flat, or part of the model unsupported"
+        )
+
+
+class MemoryShortError(SolveError):
+    """No solver fits: `unknowns`, `needed_bytes` by the thriftiest, `available_bytes`."""
+
+    def __init__(self, unknowns: int, needed_bytes: float, available_bytes: float) -> None:
+        self.unknowns = unknowns
+        self.needed_bytes, self.available_bytes = needed_bytes, available_bytes
+        super().__init__(
+            f"{unknowns} unknowns need {needed_bytes / 2**30:.1f} GB of memory and there are"
+            f" {available_bytes / 2**30:.1f} GB: raise solver.tolerance_pct or solver.edge_length_mm"
+        )

@@ -86,6 +86,6 @@ def test_an_unsupported_body_is_refused_with_a_reason() -> None:
 def test_superlu_stands_in_for_pardiso(monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = small()
     with_mkl = torsion(Model.of(mesh, STEEL), "mesh").K_energy
-    monkeypatch.setattr("fea.solid.solver._pardiso", lambda: None)
+    monkeypatch.setattr("fea.solid.direct.pardiso", lambda: None)
     without = torsion(Model.of(mesh, STEEL), "mesh").K_energy
     assert without == pytest.approx(with_mkl, rel=1e-10)

@@ -1,0 +1,115 @@
+"""What a solve will need and what the machine has, before it is begun.
+
+Fits to Pardiso's own figures (iparm 16 and 17) and to resident memory, six-hole cup of 26 000 to 1.1
+million unknowns, in docs/decisions.md.
+"""
+
+from __future__ import annotations
+
+import os
+from math import inf
+from pathlib import Path
+from typing import Literal
+
+from fea.solid.direct import pardiso
+from fea.solid.errors import MemoryShortError
+
+Way = Literal["direct", "iterative"]
+DIRECT_BELOW = {True: 300_000, False: 50_000}
+"""Unknowns up to which factors are the faster way or as fast, with and without MKL."""
+ENTRY_BYTES = 38.0
+"""Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
+FACTOR_BYTES = 72.0
+"""Per unknowns^(4/3): the factors, 26 000 to 600 000 unknowns within 15 %."""
+LU_FACTORS = 2.0
+"""SuperLU keeps both triangles."""
+ITERATION_ENTRY_BYTES = 30.0
+"""Per entry when it is iterated: the free part, and the product with the interpolation while it is made."""
+CORNER_SHARE = 1 / 7.0
+"""Corners' unknowns over all, at most (1/7.3 to 1/8 measured)."""
+ASSEMBLY_ENTRY_BYTES = 36.0
+"""Per entry while the matrix is assembled, itself included."""
+ENTRIES_PER_UNKNOWN = 85.0
+"""Before there is a matrix: 71 to 81 measured."""
+
+
+def direct_bytes(unknowns: int, entries: float) -> float:
+    """Memory beyond the assembled matrix to factorise it [bytes]."""
+    triangles = 1.0 if pardiso() else LU_FACTORS
+    return ENTRY_BYTES * entries + triangles * FACTOR_BYTES * unknowns ** (4 / 3)
+
+
+def iterative_bytes(unknowns: int, entries: float) -> float:
+    """Memory beyond the assembled matrix to iterate, the corners' factors included [bytes]."""
+    corners = direct_bytes(round(CORNER_SHARE * unknowns), entries * CORNER_SHARE / 2)
+    return ITERATION_ENTRY_BYTES * entries + corners
+
+
+def check_before_assembly(unknowns: int) -> None:
+    """Raise MemoryShortError where neither the assembly nor any solve after it can fit."""
+    entries = ENTRIES_PER_UNKNOWN * unknowns
+    matrix = 12 * entries
+    least = min(direct_bytes(unknowns, entries), iterative_bytes(unknowns, entries))
+    need = max(ASSEMBLY_ENTRY_BYTES * entries, matrix + least)
+    there = available_bytes()
+    if need > there:
+        raise MemoryShortError(unknowns, need, there)
+
+
+def way(unknowns: int, entries: int, corners: bool) -> Way:
+    """How to solve; `corners`: the mesh's interpolation is known, so iteration is possible.
+
+    Raises
+    ------
+    MemoryShortError : no way fits.
+    """
+    there = available_bytes()
+    factors = direct_bytes(unknowns, entries)
+    steps = iterative_bytes(unknowns, entries) if corners else inf
+    if factors <= there and (unknowns <= DIRECT_BELOW[bool(pardiso())] or not corners):
+        return "direct"
+    if steps <= there:
+        return "iterative"
+    if factors <= there:
+        return "direct"
+    raise MemoryShortError(unknowns, min(factors, steps), there)
+
+
+def available_bytes() -> float:
+    """Memory that this process may still take: of the machine, its container, its own limit."""
+    return min(_of_machine(), _of_container(), _of_process())
+
+
+def _of_machine() -> float:
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return float(line.split()[1]) * 1024
+    except OSError:
+        pass
+    try:  # macOS: all there is, for want of what is free
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return inf
+
+
+def _of_container() -> float:
+    folder = Path("/sys/fs/cgroup")
+    try:
+        most = (folder / "memory.max").read_text(encoding="ascii").strip()
+        used = (folder / "memory.current").read_text(encoding="ascii")
+        return inf if most == "max" else float(most) - float(used)
+    except (OSError, ValueError):
+        return inf
+
+
+def _of_process() -> float:
+    """Address space left under `ulimit -v`."""
+    try:
+        import resource
+
+        most, _ = resource.getrlimit(resource.RLIMIT_AS)
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except (ImportError, OSError):
+        return inf
+    return inf if most == resource.RLIM_INFINITY else float(most - pages * resource.getpagesize())
