@@ -23,11 +23,11 @@ FACTOR_BYTES = 72.0
 """Per unknowns^(4/3): the factors, 26 000 to 600 000 unknowns within 15 %."""
 LU_FACTORS = 2.0
 """SuperLU keeps both triangles."""
-ITERATION_ENTRY_BYTES = 30.0
+ITERATION_ENTRY_BYTES = 24.0
 """Per entry when it is iterated: the free part, and the product with the interpolation while it is made."""
 CORNER_SHARE = 1 / 7.0
 """Corners' unknowns over all, at most (1/7.3 to 1/8 measured)."""
-ASSEMBLY_ENTRY_BYTES = 36.0
+ASSEMBLY_ENTRY_BYTES = 30.0
 """Per entry while the matrix is assembled, itself included."""
 ENTRIES_PER_UNKNOWN = 85.0
 """Before there is a matrix: 71 to 81 measured."""
