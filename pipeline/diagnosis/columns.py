@@ -33,6 +33,8 @@ class Term:
     positive: bool
     """Whether its amplitudes may not be negative."""
     log_share: float
+    against: frozenset[str] = frozenset()
+    """Owners beside which it does not stand."""
     """Log of the share of its cause's (or channel's) prior that this shape has."""
 
     @property
@@ -82,8 +84,9 @@ def _competitor(rival: Unnamed, rivals: Sequence[Unnamed], at: int, rig: Rig) ->
     k = rival.columns.shape[1]
     prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec)
     return Term(
-        None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike)
-    )
+        None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike),
+        rival.against,
+    )  # fmt: skip
 
 
 CORNER = 4.0

@@ -122,13 +122,15 @@ class Search:
         pull = inverse @ cross
         found: list[Candidate] = []
         present = {race.terms[i].owner for i in c.terms if race.terms[i].cause}
+        shut = frozenset[str]().union(*(race.terms[i].against for i in c.terms))
         for group in self._groups:
             gain, valid = group.gains(race, cross, pull, mean, held)
             prior = group.log_share - np.where(
                 group.unnamed, UNNAMED_COST,
                 np.where([o in present for o in group.owners], ELEMENT_COST, NAMED_COST),
             )  # fmt: skip
-            score = np.where(valid, gain + prior, -np.inf)
+            barred = group.barred(present, shut)
+            score = np.where(valid & ~barred, gain + prior, -np.inf)
             for owner in set(group.owners):
                 mine = np.flatnonzero(group.is_owner[owner])
                 order = mine[np.argsort(-score[mine])][: None if not c.terms else 2]
@@ -171,6 +173,7 @@ class _Group:
     unnamed: np.ndarray
     positive: np.ndarray
     is_owner: dict[str, np.ndarray]
+    against: list[frozenset[str]]
 
     @staticmethod
     def of(race: Race, members: list[int]) -> _Group:
@@ -186,6 +189,16 @@ class _Group:
             np.array([t.cause is None for t in terms]),
             np.array([t.positive for t in terms]),
             {o: np.array([x == o for x in owners]) for o in set(owners)},
+            [t.against for t in terms],
+        )
+
+    def barred(self, present: set[str], shut: frozenset[str]) -> np.ndarray:
+        """(m,) members that do not stand beside the causes present, or are shut out by a term there."""
+        return np.array(
+            [
+                o in shut or not a.isdisjoint(present)
+                for o, a in zip(self.owners, self.against, strict=True)
+            ]
         )
 
     def gains(

@@ -20,6 +20,11 @@ NEW_SHARE = 0.25
 """Of a column's own size: one of which less is new beside torque and gap is no competitor."""
 SPLINE = 6
 LEADS = "output leads torque"
+OPPOSITE = {
+    "_leading": frozenset({"friction_hysteresis", "rate_dependence"}),
+    "_softening": frozenset({"stiffness_hardening"}),
+}
+"""What a competitor is the reverse of: beside it the two would cancel."""
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 LEADING_LAGS = (0.05, 0.15, 0.4)
 CLEAR = 8.0
@@ -44,6 +49,8 @@ class Unnamed:
     what: str
     columns: np.ndarray
     positive: bool = False
+    against: frozenset[str] = frozenset()
+    """Causes beside which it does not stand: it is their opposite, and the two would cancel."""
 
 
 def competitors(rig: Rig) -> list[Unnamed]:
@@ -66,7 +73,8 @@ def competitors(rig: Rig) -> list[Unnamed]:
             good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
                 positive = make in (_leading, _softening)
-                found.append(Unnamed(channel, what, rest[:, good] / rms[good], positive))
+                against = OPPOSITE.get(make.__name__, frozenset[str]())
+                found.append(Unnamed(channel, what, rest[:, good] / rms[good], positive, against))
     return found
 
 
