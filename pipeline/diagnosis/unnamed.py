@@ -60,7 +60,8 @@ def competitors(rig: Rig) -> list[Unnamed]:
     """
     h = rig.history
     # a wave in time with the torque's own period is the torque without its noise, and would win by that
-    free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
+    # and a wave in quadrature with it, beside a lag, is that too
+    free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign, _lagging(rig)])
     inverse = np.linalg.pinv(free)
     found = []
     for make in MAKERS:
@@ -79,6 +80,14 @@ def competitors(rig: Rig) -> list[Unnamed]:
 
 
 Made = Iterator[tuple[str, str, np.ndarray]]
+
+
+def _lagging(rig: Rig) -> np.ndarray:
+    """(n, 2) torque through a short and a long lag; no columns without time or movement."""
+    ramp = ramp_s(rig.history)
+    if ramp <= 0:
+        return np.empty((len(rig.history), 0))
+    return lags(rig.history.torque_Nm, rig.history, np.array([0.1, 0.4]) * ramp)
 
 
 def _steady(rig: Rig) -> np.ndarray:

@@ -17,6 +17,8 @@ BESIDE = 5
 SPAN = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
 FEWEST = 3
+PARTS = 60
+"""Of a cycle."""
 CLEAR = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
 LARGEST_NOISE = 0.02
@@ -36,7 +38,9 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history)
-    step = np.quantile(np.abs(np.diff(torque)), 0.75) if len(rows) > 1 else 0.0
+    # a ramp's step, from moves over a small part of a cycle: most rows may lie in holds
+    coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
+    step = np.quantile(np.abs(torque[coarse:] - torque[:-coarse]), 0.95) / coarse
     width = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, max(1, len(rows) // 20)))
     span = np.maximum(t[width:] - t[:-width], 1e-12)
     return Rates(width, (torque[width:] - torque[:-width]) / span)
