@@ -164,8 +164,8 @@ def _check_span(study: Study, key: str, span: Span) -> None:
     for value in span.values or span.ends:
         if is_whole(study.design, key) and value != int(value):
             raise StudyError(name, value, "must hold whole numbers")
-        least: float = node.get("minimum", node.get("exclusiveMinimum", value))
-        most: float = node.get("maximum", value)
+        least = float(node["minimum"] if "minimum" in node else node["exclusiveMinimum"])
+        most = float(node.get("maximum", value))
         if not least <= value <= most:
             words = allowed(location_of(key), study.design.flexspline.kind)
             raise StudyError(name, value, f"must be {words}")

@@ -6,12 +6,14 @@ shares the study. Seeded by (study's seed, trial's number) each trial has its ow
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pipeline.study.load import Study
+from pipeline.study.polish import near, polish_of
 from pipeline.study.store import ROW
 
 if TYPE_CHECKING:
@@ -23,48 +25,63 @@ POPULATION = (8, 50)
 STARTUP = 10
 
 
+def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:
+    """How far each constraint is overstepped, over the size of its limit; at most 0 where it holds."""
+    return [
+        limit.excess(figures[k]) / limit.size if k in figures else 1.0
+        for k, limit in study.file.constraint.items()
+    ]
+
+
 def sampler_of(study: Study) -> BaseSampler:
-    """TPE for one objective, NSGA-II for several, with the study's constraints."""
+    """TPE for one objective, its best polished towards the end; NSGA-II for several."""
     from optuna.samplers import BaseSampler, NSGAIISampler, TPESampler
 
     file = study.file
-    limits = file.constraint
 
-    def excesses(trial: FrozenTrial) -> Sequence[float]:
-        figures = trial.user_attrs.get(ROW, {}).get("figures") or {}
-        return [limit.excess(figures[k]) if k in figures else 1.0 for k, limit in limits.items()]
+    def told(trial: FrozenTrial) -> Sequence[float]:
+        return excesses(study, trial.user_attrs.get(ROW, {}).get("figures") or {})
 
-    constraints = excesses if limits else None
+    constraints = told if file.constraint else None
 
     def fresh(seed: int) -> BaseSampler:
-        if len(file.objective) > 1:
-            size = int(np.clip(file.run.evaluations // 8, *POPULATION))
-            return NSGAIISampler(population_size=size, seed=seed, constraints_func=constraints)
-        return TPESampler(
-            seed=seed, multivariate=True, n_startup_trials=STARTUP, constant_liar=True,
-            constraints_func=constraints,
-        )  # fmt: skip
+        with warnings.catch_warnings():
+            # Optuna 5 prefers Trial.set_constraint, which a trial that another process finishes
+            # cannot use; constraints_func works until its version 7
+            warnings.simplefilter("ignore", FutureWarning)
+            if len(file.objective) > 1:
+                size = int(np.clip(file.run.evaluations // 8, *POPULATION))
+                return NSGAIISampler(population_size=size, seed=seed, constraints_func=constraints)
+            return TPESampler(
+                seed=seed, multivariate=True, n_startup_trials=STARTUP, constant_liar=True,
+                constraints_func=constraints,
+            )  # fmt: skip
+
+    def seed_of(trial: FrozenTrial, *more: int) -> int:
+        words = [file.run.seed, trial.number, *more]
+        return int(np.random.SeedSequence(words).generate_state(1)[0])
 
     class Seeded(BaseSampler):
         """Delegates to a sampler seeded for the trial."""
 
-        def _of(self, trial: FrozenTrial) -> BaseSampler:
-            state = np.random.SeedSequence([file.run.seed, trial.number]).generate_state(1)
-            return fresh(int(state[0]))
-
         def infer_relative_search_space(self, study: Any, trial: FrozenTrial) -> dict[str, Any]:
-            return self._of(trial).infer_relative_search_space(study, trial)
+            return fresh(seed_of(trial)).infer_relative_search_space(study, trial)
 
         def sample_relative(self, study: Any, trial: FrozenTrial, search_space: Any) -> Any:
-            return self._of(trial).sample_relative(study, trial, search_space)
+            past = study.get_trials(deepcopy=False)
+            if len(file.objective) == 1:
+                sense = next(iter(file.objective.values()))
+                polish = polish_of(past, file.run.evaluations, sense, told)
+                if polish is not None:
+                    return near(polish, np.random.default_rng(seed_of(trial, 1)))
+            return fresh(seed_of(trial)).sample_relative(study, trial, search_space)
 
         def sample_independent(self, study: Any, trial: FrozenTrial, name: str, over: Any) -> Any:
             # one stream per key, or keys of equal spans would get equal numbers
-            words = [file.run.seed, trial.number, *name.encode()]
-            seed = int(np.random.SeedSequence(words).generate_state(1)[0])
+            seed = seed_of(trial, *name.encode())
             return fresh(seed).sample_independent(study, trial, name, over)
 
         def after_trial(self, study: Any, trial: FrozenTrial, state: Any, values: Any) -> None:
-            self._of(trial).after_trial(study, trial, state, values)
+            fresh(seed_of(trial)).after_trial(study, trial, state, values)
 
     return Seeded()

@@ -48,6 +48,11 @@ class Limit(_Frozen):
     min: Number | None = None
     max: Number | None = None
 
+    @property
+    def size(self) -> float:
+        """Of its limits: what an excess is compared with."""
+        return max(abs(x) for x in (self.min, self.max) if x is not None) or 1.0
+
     def excess(self, value: float) -> float:
         """How far outside, at most 0 inside; in the figure's unit."""
         over = [value - self.max] if self.max is not None else []

@@ -5,19 +5,26 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from pipeline.study.evaluate import Outcome, Task
 from pipeline.study.figures import Solve, needed
 from pipeline.study.load import Study
-from pipeline.study.plan import Plan, linked
+from pipeline.study.plan import Plan, from_unit, linked
 from pipeline.study.store import CLAIM, Claim, Job, Ledger
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
     from optuna.trial import FrozenTrial
+
+
+ASKED_AGAIN = 20
+"""A sampler that suggests a design the study has already is asked again so many times."""
+DRAWN_AGAIN = 200
 
 
 @dataclass(frozen=True)
@@ -71,11 +78,27 @@ class Sampled(_Asked):
         return self.study.file.run.evaluations
 
     def claim(self, ledger: Ledger, slot: int) -> Job | None:
-        from dataclasses import asdict
+        had = [t.params for t in ledger.all() if CLAIM in t.user_attrs]
+        for _ in range(ASKED_AGAIN):
+            trial = ledger.trials.ask(fixed_distributions=dict(self.over))
+            if trial.params not in had:
+                trial.set_user_attr(CLAIM, asdict(Claim(slot, 0, ledger.owner)))
+                return Job(trial._trial_id, trial.number, slot, trial.params)
+            ledger.tell(trial.number, None)
+        return ledger.create(slot, 0, self._unseen(slot, had), self.over)
 
-        trial = ledger.trials.ask(fixed_distributions=dict(self.over))
-        trial.set_user_attr(CLAIM, asdict(Claim(slot, 0, ledger.owner)))
-        return Job(trial._trial_id, trial.number, slot, trial.params)
+    def _unseen(self, slot: int, had: list[dict[str, Any]]) -> dict[str, float]:
+        """A random design that the study has not had; any, where its lists leave none."""
+        random = np.random.default_rng([self.study.file.run.seed, slot])
+        for _ in range(DRAWN_AGAIN):
+            unit = random.random(len(self.study.file.vary))
+            values = {
+                key: from_unit(self.study, key, float(u))
+                for key, u in zip(self.study.file.vary, unit, strict=True)
+            }
+            if values not in had:
+                break
+        return values
 
 
 def solves_of(study: Study, usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
