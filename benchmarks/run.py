@@ -42,7 +42,7 @@ def main() -> None:
     options = parser.parse_args()
     old = json.loads(RESULTS.read_text(encoding="utf-8")) if options.resume else {}
     everybody = peers(options.peers_python)
-    kept = {k: old[k] for k in ("references", "tuning", "scaling") if k in old}
+    kept = {k: old[k] for k in ("references", "tuning", "scaling", "load_at_scaling") if k in old}
     result: dict[str, Any] = {"machine": machine(options.peers_python), "tuning": {}} | kept
     with tempfile.TemporaryDirectory() as name:
         steps = Path(name)
@@ -55,6 +55,7 @@ def main() -> None:
         result["times"] = timed(everybody, known, result, steps, options.rounds)
         save(result)
     if "scaling" not in result:
+        result["load_at_scaling"] = [round(x, 2) for x in os.getloadavg()]
         result["scaling"] = growth()
         save(result)
     (ROOT / "docs" / "benchmarks.md").write_text(page(result), encoding="utf-8")
