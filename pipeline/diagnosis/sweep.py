@@ -214,14 +214,12 @@ def diagnosed(sweep: Sweep, prediction: Prediction) -> Explained:
     seen = seen_crossing(prepared, weighed.solution)
     plain = Explained(prepared, weighed, seen, 0.0, 0.0 if seen is None else seen.nats)
     guess = first_offset(sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, prepared.band_Nm)
-    far = abs(guess) > prepared.band_Nm / 2
-    if not far and (seen is None or not _counts(seen, prepared)):
+    if seen is not None and _counts(seen, prepared):
+        return _with_offset(sweep, prediction, seen.offset_Nm) or plain
+    if abs(guess) < prepared.band_Nm / 2:
         return plain
-    assert seen is not None or far
-    shifted = _with_offset(sweep, prediction, guess if far or seen is None else seen.offset_Nm)
-    if shifted is None or (far and not _better(shifted, plain)):
-        return plain
-    return shifted
+    shifted = _with_offset(sweep, prediction, guess)
+    return shifted if shifted is not None and _better(shifted, plain) else plain
 
 
 def _counts(seen: Crossing, prepared: Prepared) -> bool:
