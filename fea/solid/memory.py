@@ -93,12 +93,15 @@ def _of_machine() -> float:
         return inf
 
 
-def _of_container() -> float:
-    folder = Path("/sys/fs/cgroup")
+def _of_container(folder: Path = Path("/sys/fs/cgroup")) -> float:
+    """What the control group allows less what it holds; file pages that nobody uses will give way."""
     try:
         most = (folder / "memory.max").read_text(encoding="ascii").strip()
-        used = (folder / "memory.current").read_text(encoding="ascii")
-        return inf if most == "max" else float(most) - float(used)
+        used = float((folder / "memory.current").read_text(encoding="ascii"))
+        lines = (folder / "memory.stat").read_text(encoding="ascii").splitlines()
+        kinds = dict(line.split()[:2] for line in lines)
+        idle = float(kinds.get("inactive_file", 0))
+        return inf if most == "max" else float(most) - used + idle
     except (OSError, ValueError):
         return inf
 

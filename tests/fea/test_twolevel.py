@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -151,6 +153,26 @@ def test_way_by_unknowns_and_memory(
     monkeypatch.setattr(memory, "available_bytes", lambda: there_GB * 2**30)
     monkeypatch.setattr(memory, "pardiso", lambda: object)
     assert memory.way(unknowns, 80 * unknowns, corners) == way
+
+
+def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) -> None:
+    for name, text in (
+        ("memory.max", "8000\n"),
+        ("memory.current", "5000\n"),
+        ("memory.stat", "anon 3000\ninactive_file 1500\n"),
+    ):
+        (tmp_path / name).write_text(text, encoding="ascii")
+    assert memory._of_container(tmp_path) == 8000 - 5000 + 1500
+    (tmp_path / "memory.max").write_text("max\n", encoding="ascii")
+    assert memory._of_container(tmp_path) == float("inf")
+
+
+def test_memory_left_is_bounded_by_the_address_space() -> None:
+    code = "import fea.solid.memory as m; print(m.available_bytes())"
+    command = f"ulimit -v {3 * 2**20}; exec {sys.executable} -c '{code}'"
+    said = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True).stdout
+    # 3 GB less what the process holds already
+    assert 0 < float(said) < 3 * 2**30
 
 
 def test_a_million_unknowns_are_expected_to_fit_8_GB(monkeypatch: pytest.MonkeyPatch) -> None:
