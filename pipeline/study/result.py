@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pipeline.study.load import Study
+from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
 
 
@@ -15,6 +16,8 @@ class StudyResult:
 
     study: Study
     rows: tuple[Row, ...]
+    scatter: tuple[Scatter, ...] = ()
+    """Of a tolerance study, by figure."""
 
     @property
     def built(self) -> tuple[Row, ...]:

@@ -14,12 +14,16 @@ from pipeline.study.load import Study
 from pipeline.study.plan import Sobol, grid
 from pipeline.study.result import StudyResult
 from pipeline.study.samplers import sampler_of
+from pipeline.study.scatter import Scatter, scatter_of
 from pipeline.study.source import Planned, Sampled, solves_of, study_name
 from pipeline.study.store import Ledger, open_ledger
+from pipeline.study.tolerance import Scattered, outputs_of, scattered
 
 
 def source_of(study: Study) -> Source:
     """Where a study's designs come from."""
+    if study.file.run.method == "tolerance":
+        return scattered(study)
     solves = solves_of(study, USUAL)
     if study.file.run.method == "optimize":
         return Sampled(study, solves)
@@ -58,4 +62,9 @@ def run_study(
     if not is_complete(source, ledger):
         with hands() as open_hands:
             carry_out(source, ledger, open_hands, evaluation, watch)
-    return StudyResult(study, tuple(ledger.rows()[: source.size]))
+    rows = tuple(ledger.rows()[: source.size])
+    scatter: tuple[Scatter, ...] = ()
+    if isinstance(source, Scattered):
+        seed = study.file.run.seed
+        scatter = tuple(scatter_of(k, source.inputs, rows, seed) for k in outputs_of(study))
+    return StudyResult(study, rows, scatter)

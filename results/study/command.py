@@ -23,7 +23,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     with answered(file):
         from pipeline.study.cluster import dask_hands
         from pipeline.study.load import load_study
-        from pipeline.study.run import ledger_of, run_study
+        from pipeline.study.run import ledger_of, run_study, source_of
         from results.records import as_json
         from results.study.progress import Watch
         from results.study.record import summary, words
@@ -32,6 +32,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         asked = load_study(file)
         folder = folder_of(file, out)
         run = asked.file.run
+        source_of(asked)  # refuse before anything is written
         ledger = ledger_of(asked, folder)
         if kept := len(ledger.rows()):
             tell(f"{kept} designs are finished already")

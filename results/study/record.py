@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pipeline.study.result import StudyResult
+from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
 from results.records import program_version
 from results.study.labels import entry
@@ -25,6 +26,38 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "failed": len(result.rows) - len(result.built),
         "feasible": len(result.feasible),
         "best": [_row(r) for r in best],
+        **({"tolerance": [_scatter(s) for s in result.scatter]} if result.scatter else {}),
+    }
+
+
+def _scatter(s: Scatter) -> dict[str, Any]:
+    i = s.indices
+    by_input = zip(s.inputs, i.first, i.first_conf, i.total, i.total_conf, strict=True)
+    return {
+        "figure": s.key,
+        "mean": s.mean,
+        "std": s.std,
+        "range_95": [s.low, s.high],
+        "dropped_blocks": s.dropped,
+        "surface_rms": s.surface_rms,
+        "inputs": [
+            {
+                "key": x.key,
+                "nominal": x.nominal,
+                "std": x.std,
+                "distribution": "normal" if x.normal else "uniform",
+                "sobol_first": float(first),
+                "sobol_first_conf": float(first_conf),
+                "sobol_total": float(total),
+                "sobol_total_conf": float(total_conf),
+                "tightened": [
+                    {"factor": t.factor, "range_95_width": t.width, "bought": t.bought}
+                    for t in s.tightened
+                    if t.key == x.key
+                ],
+            }
+            for x, first, first_conf, total, total_conf in by_input
+        ],
     }
 
 
@@ -52,4 +85,24 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
             for k in file.objective
         )
         lines.append(f"  design {row.slot}: {values}: {figures}")
+    for s in result.scatter:
+        lines += _scatter_words(s)
     return "\n".join([*lines, *(f"  {name}" for name in record["files"])])
+
+
+def _scatter_words(s: Scatter) -> list[str]:
+    figure = entry(s.key)
+    lines = [
+        f"  {figure.name}: mean {figure.with_unit(s.mean)}, standard deviation "
+        f"{figure.with_unit(s.std)}, 95 % from {figure.range_text(s.low, s.high)} {figure.unit}"
+    ]
+    order = sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i])
+    for i in order:
+        x = s.inputs[i]
+        half = next(t for t in s.tightened if t.key == x.key and t.factor == 0.5)
+        lines.append(
+            f"    {entry(x.key).name}: Sobol index {s.indices.first[i]:.2f} ± "
+            f"{s.indices.first_conf[i]:.2f}, total {s.indices.total[i]:.2f} ± "
+            f"{s.indices.total_conf[i]:.2f}; half its scatter buys {half.bought:.2f} {figure.unit}"
+        )
+    return lines

@@ -1,0 +1,196 @@
+"""What a design may be off by, through the whole chain: the inputs that scatter and their samples.
+
+Saltelli's scheme (Comput. Phys. Commun. 181, 2010, 259-270): two Sobol-sequence samples A and B of N points,
+and for each input a copy of A with that input from B, N(k + 2) designs in all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.schema import node_at
+from pipeline.diagnosis.specimens.designs import value_at, with_values
+from pipeline.study.evaluate import Task
+from pipeline.study.load import Study, StudyError, location_of
+from pipeline.study.plan import Listed, linked
+from pipeline.study.source import Planned, solves_of
+
+if TYPE_CHECKING:
+    from optuna.distributions import BaseDistribution
+
+MODULUS = "material.flexspline.youngs_modulus_GPa"
+SHAFT_MODULUS = "material.shaft.youngs_modulus_GPa"
+CLEARANCE, PLAY = "gear.flank_clearance_um", "bearing.radial_clearance_um"
+REACH = 4.0
+"""A normal input is cut off so many standard deviations away: 6e-5 of it is beyond."""
+LEAST_BASE = 8
+TOTAL = "backlash_arcsec.total"
+
+
+@dataclass(frozen=True)
+class Input:
+    """A number that scatters about its nominal value, within `low` and `high`.
+
+    `normal`: with standard deviation `std`, cut off at the ends; else uniform between them.
+    """
+
+    key: str
+    nominal: float
+    std: float
+    low: float
+    high: float
+    normal: bool
+
+    def at(self, unit: np.ndarray) -> np.ndarray:
+        """Values for uniform numbers in [0, 1], any shape."""
+        if not self.normal:
+            return self.low + unit * (self.high - self.low)
+        from scipy.stats import truncnorm
+
+        a, b = (self.low - self.nominal) / self.std, (self.high - self.nominal) / self.std
+        drawn = truncnorm.ppf(unit, a, b, loc=self.nominal, scale=self.std)
+        return np.clip(drawn, self.low, self.high)
+
+    def tightened(self, factor: float) -> Input:
+        """The same input with `factor` times the scatter."""
+        return Input(
+            self.key,
+            self.nominal,
+            self.std * factor,
+            self.nominal + (self.low - self.nominal) * factor,
+            self.nominal + (self.high - self.nominal) * factor,
+            self.normal,
+        )
+
+
+def inputs_of(study: Study) -> tuple[Input, ...]:
+    """The design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
+
+    Raises
+    ------
+    StudyError : nothing scatters, or a tolerance reaches beyond what can be built.
+    """
+    design, doubt = study.design, study.design.uncertainty
+    modulus = design.material.flexspline.youngs_modulus_GPa
+    stds = {
+        MODULUS: modulus * doubt.youngs_modulus_pct / 100,
+        CLEARANCE: doubt.flank_clearance_um,
+        PLAY: doubt.radial_clearance_um,
+    }
+    for key, spread in study.file.tolerance.items():
+        stds[key] = spread.std or 0.0
+    found = []
+    for key, std in stds.items():
+        spread_or_none = study.file.tolerance.get(key)
+        half = spread_or_none.plus_minus if spread_or_none else None
+        if not std and half is None:
+            continue
+        found.append(_input(design, key, std, half))
+    if not found:
+        raise StudyError("tolerance", None, "nothing scatters: give [tolerance] or [uncertainty]")
+    return tuple(found)
+
+
+def _input(design: Design, key: str, std: float, half: float | None) -> Input:
+    nominal = value_at(design, key)
+    if nominal is None:
+        raise StudyError(f'tolerance."{key}"', None, "is no number of the design file")
+    least, most = _range(design, key)
+    reach = half if half is not None else REACH * std
+    low, high = nominal - reach, nominal + reach
+    if half is None:
+        low, high = max(low, least), min(high, most)
+        return Input(key, nominal, std, low, high, True)
+    for end in (low, high):
+        try:
+            with_values(design, {key: end})
+        except DesignError as fault:
+            raise StudyError(f'tolerance."{key}".plus_minus', half, f"too wide: {fault}") from None
+    return Input(key, nominal, half / 3**0.5, low, high, False)
+
+
+def _range(design: Design, key: str) -> tuple[float, float]:
+    """What the design file allows at a key, and for the play where its model ends."""
+    node = node_at(location_of(key), design.flexspline.kind)
+    low, high = float(node.get("minimum", 1e-9)), float(node.get("maximum", np.inf))
+    if key == PLAY and design.bearing.bearing_play_model == "involute":
+        high = min(high, design.gear.bearing_play_limit_um)
+    return low, high
+
+
+def base_size(study: Study, k: int) -> int:
+    """N: the largest power of two with N(k + 2) within `run.evaluations`.
+
+    Raises
+    ------
+    StudyError : fewer than LEAST_BASE.
+    """
+    budget = study.file.run.evaluations
+    least = LEAST_BASE * (k + 2)
+    if budget < least:
+        reason = f"must be at least {least}: {LEAST_BASE} for each of {k} inputs and two samples"
+        raise StudyError("run.evaluations", budget, reason)
+    return int(2 ** np.floor(np.log2(budget / (k + 2))))
+
+
+def saltelli(inputs: tuple[Input, ...], base: int, seed: int) -> np.ndarray:
+    """Points (base·(k + 2), k), block by block: A, A with each input from B, B."""
+    from SALib.sample import sobol
+
+    unit = sobol.sample(problem(inputs), base, calc_second_order=False, seed=seed)
+    return np.column_stack([x.at(unit[:, i]) for i, x in enumerate(inputs)])
+
+
+def problem(inputs: tuple[Input, ...]) -> dict[str, Any]:
+    """SALib's word for k numbers in [0, 1]."""
+    names = [x.key for x in inputs]
+    return {"num_vars": len(inputs), "names": names, "bounds": [[0.0, 1.0]] * len(inputs)}
+
+
+def outputs_of(study: Study) -> tuple[str, ...]:
+    """The figures whose scatter is asked for: the objectives, or the backlash."""
+    return tuple(study.file.objective) or (TOTAL,)
+
+
+@dataclass(frozen=True)
+class Scattered(Planned):
+    """Designs of a tolerance study."""
+
+    inputs: tuple[Input, ...]
+
+    @cached_property
+    def over(self) -> Mapping[str, BaseDistribution]:
+        """Optuna's distributions of the inputs."""
+        from optuna.distributions import FloatDistribution
+
+        return {x.key: FloatDistribution(x.low, x.high) for x in self.inputs}
+
+    def task(self, values: Mapping[str, float]) -> Task:
+        """Young's modulus is one for both parts' doubt, as in the backlash's standard deviation."""
+        changed = linked(self.study, values)
+        material = self.study.design.material
+        if MODULUS in values and material.shaft is not None:
+            ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
+            changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
+        return Task(self._tables, changed, self.solves)
+
+
+def scattered(study: Study) -> Scattered:
+    """The source of a tolerance study.
+
+    Raises
+    ------
+    StudyError
+    """
+    inputs = inputs_of(study)
+    base = base_size(study, len(inputs))
+    points = saltelli(inputs, base, study.file.run.seed)
+    solves = solves_of(study, ("torsion",))
+    return Scattered(study, solves, Listed(tuple(x.key for x in inputs), points), inputs)
