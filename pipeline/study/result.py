@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pipeline.study.load import Study
 from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
+from pipeline.study.verified import Verified
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,8 @@ class StudyResult:
     rows: tuple[Row, ...]
     scatter: tuple[Scatter, ...] = ()
     """Of a tolerance study, by figure."""
+    verified: tuple[Verified, ...] = ()
+    """Of the best designs, by rank."""
 
     @property
     def built(self) -> tuple[Row, ...]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, ExitStack
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from pipeline.study.cluster import Hands
@@ -16,8 +18,9 @@ from pipeline.study.result import StudyResult
 from pipeline.study.samplers import sampler_of
 from pipeline.study.scatter import Scatter, scatter_of
 from pipeline.study.source import Planned, Sampled, solves_of, study_name
-from pipeline.study.store import Ledger, open_ledger
+from pipeline.study.store import Ledger, Row, open_ledger
 from pipeline.study.tolerance import Scattered, outputs_of, scattered
+from pipeline.study.verify import verify
 
 
 def source_of(study: Study) -> Source:
@@ -51,20 +54,30 @@ def run_study(
     hands: Callable[[], AbstractContextManager[Hands]],
     watch: Callable[[Progress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
+    say: Callable[[str], None] = lambda line: None,
 ) -> StudyResult:
-    """Evaluate what is not yet evaluated; all rows. `hands` opens only where there is work.
+    """Evaluate what is not yet evaluated, verify the best; `hands` opens only where there is work.
 
     Raises
     ------
     ComputationError : the cluster went away. Designs that fail are rows.
     """
     source = source_of(study)
-    if not is_complete(source, ledger):
-        with hands() as open_hands:
-            carry_out(source, ledger, open_hands, evaluation, watch)
-    rows = tuple(ledger.rows()[: source.size])
-    scatter: tuple[Scatter, ...] = ()
-    if isinstance(source, Scattered):
-        seed = study.file.run.seed
-        scatter = tuple(scatter_of(k, source.inputs, rows, seed) for k in outputs_of(study))
-    return StudyResult(study, rows, scatter)
+    with ExitStack() as stack:
+
+        @cache
+        def opened() -> Hands:
+            return stack.enter_context(hands())
+
+        if not is_complete(source, ledger):
+            carry_out(source, ledger, opened(), evaluation, watch)
+        rows = tuple(ledger.rows()[: source.size])
+        result = StudyResult(study, rows, _scatter(study, source, rows))
+        return replace(result, verified=verify(result, ledger, opened, source.task, say))
+
+
+def _scatter(study: Study, source: Source, rows: tuple[Row, ...]) -> tuple[Scatter, ...]:
+    if not isinstance(source, Scattered):
+        return ()
+    seed = study.file.run.seed
+    return tuple(scatter_of(k, source.inputs, rows, seed) for k in outputs_of(study))

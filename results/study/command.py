@@ -37,7 +37,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         if kept := len(ledger.rows()):
             tell(f"{kept} designs are finished already")
         hands = partial(dask_hands, run.workers, run.scheduler)
-        result = run_study(asked, ledger, hands, Watch(asked))
+        result = run_study(asked, ledger, hands, Watch(asked), say=tell)
         table = table_of(result)
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)

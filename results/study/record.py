@@ -7,10 +7,12 @@ from typing import Any
 from pipeline.study.result import StudyResult
 from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
+from pipeline.study.verified import Verified
 from results.records import program_version
 from results.study.labels import entry
 
 SHOWN = 5
+ALARM = "they disagree beyond their bounds; the fast model leaves out bolt holes and keyway"
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
@@ -26,8 +28,23 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "failed": len(result.rows) - len(result.built),
         "feasible": len(result.feasible),
         "best": [_row(r) for r in best],
+        **({"verified": [_verified(v) for v in result.verified]} if result.verified else {}),
         **({"tolerance": [_scatter(s) for s in result.scatter]} if result.scatter else {}),
     }
+
+
+def _verified(v: Verified) -> dict[str, Any]:
+    if v.reason:
+        return {"design": v.slot, "reason": v.reason}
+    figures: dict[str, dict[str, Any]] = {}
+    for c in v.checks:
+        figures[c.key] = {"fast": c.fast, "solid": c.solid, "agrees": c.agrees}
+        if c.fast_bounds and c.solid_bounds:
+            figures[c.key] |= {
+                "fast_bounds": list(c.fast_bounds),
+                "solid_bounds": list(c.solid_bounds),
+            }
+    return {"design": v.slot, "figures": figures}
 
 
 def _scatter(s: Scatter) -> dict[str, Any]:
@@ -85,9 +102,25 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
             for k in file.objective
         )
         lines.append(f"  design {row.slot}: {values}: {figures}")
+    for v in result.verified:
+        lines += _verified_words(v)
     for s in result.scatter:
         lines += _scatter_words(s)
     return "\n".join([*lines, *(f"  {name}" for name in record["files"])])
+
+
+def _verified_words(v: Verified) -> list[str]:
+    if v.reason:
+        return [f"  design {v.slot}, solid model: {v.reason}"]
+    lines = [f"  design {v.slot}, fast and solid model:"]
+    for c in v.checks:
+        figure = entry(c.key)
+        alarm = "" if c.agrees else f"  ALARM: {ALARM}"
+        lines.append(
+            f"    {figure.symbol} {figure.text(c.fast)} and {figure.with_unit(c.solid)} "
+            f"({c.difference_pct:+.1f} %){alarm}"
+        )
+    return lines
 
 
 def _scatter_words(s: Scatter) -> list[str]:

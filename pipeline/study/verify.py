@@ -1,0 +1,116 @@
+"""The best designs solved again with the solid model, holes and keyway included, beside the fast one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import as_completed
+from dataclasses import asdict
+
+from geometry.load import design_from
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
+from pipeline.diagnosis.specimens.designs import with_values
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from pipeline.storage import cache_folder
+from pipeline.study.cluster import Hands
+from pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
+from pipeline.study.figures import GIVEN_BY
+from pipeline.study.result import StudyResult
+from pipeline.study.store import Ledger, Row
+from pipeline.study.verified import Check, Verified
+
+VERIFIED = "verified"
+RIM = {*GIVEN_BY["lobes"], *GIVEN_BY["unsupported"], *GIVEN_BY["ellipse"]}
+
+
+def solid_outcome(task: Task, rim: bool) -> Outcome:
+    """A design's figures by the solid model; `rim`: the lobes and the ellipse too."""
+    try:
+        tables = dict(task.tables)
+        tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
+        design = with_values(design_from(tables), task.values)
+        shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, _silent), Progress())
+        lobed = design.solver.load_case == "lobes"
+        found = stiffnesses(shop, rim=rim or lobed)
+        total = backlash_of(design, found)
+    except OUR_ERRORS as fault:
+        return Outcome(reason=str(fault))
+    figures = {
+        "backlash_arcsec.shaft": total.shaft_arcsec,
+        "backlash_arcsec.flexspline": total.flexspline_arcsec,
+        "backlash_arcsec.total": total.total_arcsec,
+    }
+    for name in ("K_b", "K_e", "K_b_lobes", "K_b_lobes_unsupported"):
+        k = getattr(found, name)
+        if k is not None:
+            figures[f"{name}_Nm_per_rad"] = k.K_Nm_per_rad
+            figures[f"{name}_bounds_Nm_per_rad[0]"] = k.lower_Nm_per_rad
+            figures[f"{name}_bounds_Nm_per_rad[1]"] = k.upper_Nm_per_rad
+    if found.wave_generator_peak is not None:
+        figures["wave_generator_peak_mises_MPa"] = found.wave_generator_peak.mises_MPa
+    return Outcome(figures)
+
+
+def verify(
+    result: StudyResult,
+    ledger: Ledger,
+    hands: Callable[[], Hands],
+    task: Callable[[Mapping[str, float]], Task],
+    say: Callable[[str], None],
+) -> tuple[Verified, ...]:
+    """The first `run.verify` of the best designs; what is stored is not solved again."""
+    file = result.study.file
+    chosen = result.pareto[: file.run.verify] if file.objective else ()
+    rim = bool(RIM & {*file.objective, *file.constraint})
+    stored: dict[str, dict] = {
+        k: v for k, v in ledger.trials.user_attrs.items() if k.startswith(VERIFIED)
+    }
+    pending = {}
+    for row in chosen:
+        if f"{VERIFIED} {row.slot}" not in stored:
+            say(f"design {row.slot} with the solid model")
+            pending[hands().submit(solid_outcome, task(row.values), rim)] = row
+    for future in as_completed(pending):
+        name = f"{VERIFIED} {pending[future].slot}"
+        stored[name] = asdict(future.result())
+        ledger.trials.set_user_attr(name, stored[name])
+    case = result.study.design.solver.load_case
+    return tuple(checked(r, Outcome(**stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
+
+
+def checked(row: Row, solid: Outcome, load_case: str) -> Verified:
+    """Figures that both models have, side by side; `load_case` says which K_b is in the backlash."""
+    fast = row.outcome.figures
+    K_b = "K_b_lobes_Nm_per_rad" if load_case == "lobes" else "K_b_Nm_per_rad"
+    keys = [k for k in solid.figures if k in fast and not k.endswith(("]", "shaft", "flexspline"))]
+    checks = tuple(
+        Check(k, fast[k], _bounds(fast, k, K_b), solid.figures[k], _bounds(solid.figures, k, K_b))
+        for k in keys
+    )
+    return Verified(row.slot, checks, solid.reason)
+
+
+def _bounds(figures: Mapping[str, float], key: str, K_b: str) -> tuple[float, float] | None:
+    if key == "backlash_arcsec.total":
+        return _windup_bounds(figures, K_b)
+    stem = key.replace("_Nm_per_rad", "_bounds_Nm_per_rad")
+    if f"{stem}[0]" not in figures:
+        return None
+    return figures[f"{stem}[0]"], figures[f"{stem}[1]"]
+
+
+def _windup_bounds(figures: Mapping[str, float], K_b: str) -> tuple[float, float]:
+    """Of the total backlash: both wind-ups go as 1/K between K's bounds."""
+    off = [0.0, 0.0]
+    for term, key in (("shaft", "K_e_Nm_per_rad"), ("flexspline", K_b)):
+        bounds = _bounds(figures, key, K_b)
+        if bounds is not None:
+            for i, end in enumerate(reversed(bounds)):
+                off[i] += figures[f"backlash_arcsec.{term}"] * (figures[key] / end - 1)
+    total = figures["backlash_arcsec.total"]
+    return total + off[0], total + off[1]
+
+
+def _silent(line: str) -> None:
+    """A worker's notices go nowhere; what matters comes back as an error."""
