@@ -9,13 +9,14 @@ import numpy as np
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
 from pipeline.diagnosis.record import History
 from pipeline.diagnosis.result import Gain
+from pipeline.diagnosis.rows import turning
 from pipeline.diagnosis.search import Search
 from pipeline.diagnosis.solution import calibrated_residual, less_zero, solved
 from pipeline.diagnosis.sweep import Explained, Prepared
 from pipeline.diagnosis.terms import Race, race
 
 FEWEST_ROWS = 12
-CROSSING_SIGMAS = 3.0
+CROSSING_SIGMAS, CROSSING_LEAST = 3.0, 0.15
 """|T| within this of zero, in units of the torque noise, is the gap's crossing."""
 
 
@@ -61,6 +62,7 @@ def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
     label, out = split
     train = prepared.kept & ~out
     test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > _crossing(explained))
+    test &= ~turning(history)  # what a row there shows is a matter of sampling
     if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
         return None
     after = _predicted(prepared, train, causes)
@@ -81,8 +83,11 @@ def gain_of(explained: Explained, causes: Collection[str]) -> Gain | None:
 
 
 def _crossing(explained: Explained) -> float:
-    noise = CROSSING_SIGMAS * torque_noise_Nm(explained.prepared.rig.history)
-    return min(noise, explained.prepared.band_Nm)
+    """|T| [N·m] within which a held-out row is in the gap's crossing."""
+    prepared = explained.prepared
+    noise = CROSSING_SIGMAS * torque_noise_Nm(prepared.rig.history)
+    # means of blocks hide the noise of the single rows that are kept near zero
+    return min(max(noise, CROSSING_LEAST * prepared.band_Nm), prepared.band_Nm)
 
 
 def _fitting(prepared: Prepared, train: np.ndarray) -> Race:
