@@ -25,8 +25,10 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from pipeline.study.load import load_study
         from pipeline.study.run import ledger_of, run_study, source_of
         from results.records import as_json
+        from results.study.figures import write_figures
         from results.study.progress import Watch
         from results.study.record import summary, words
+        from results.study.report import write_study_report
         from results.study.tables import table_of, write_csv, write_parquet
 
         asked = load_study(file)
@@ -42,5 +44,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)
         record: dict[str, Any] = summary(result)
+        pictures = write_figures(folder, result)
         record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
+        write_study_report(folder / "report.pdf", result, pictures)
+        record["files"] += [str(p) for p in (*pictures, folder / "report.pdf")]
         print(as_json(record) if json else words(result, record))

@@ -17,6 +17,13 @@ _SIZES = {
 _UNITS = {"mm": "mm", "um": "µm", "GPa": "GPa", "MPa": "MPa", "Nm": "N·m", "deg": "deg", "pct": "%"}
 
 
+class _Dimension(Quantity):
+    """A design key: as many digits as it needs, at most five."""
+
+    def text(self, value: float) -> str:
+        return f"{value:.5g}"
+
+
 def entry(key: str) -> Quantity:
     """Name, unit and format of a figure or of a design key."""
     if key in BY_KEY:
@@ -32,10 +39,40 @@ def entry(key: str) -> Quantity:
 
 def _design_key(key: str) -> Quantity:
     """``flexspline.wall_thickness_mm`` → "wall thickness" in mm."""
+    if key.endswith("youngs_modulus_GPa"):
+        part = " of the shaft" if ".shaft." in key else ""
+        return Quantity(key, key, "GPa", f"Young's modulus{part}")
     head, _, last = key.rpartition(".")
     words, _, suffix = last.rpartition("_")
     unit = _UNITS.get(suffix, "")
     name = (words if unit else last).replace("_", " ")
     if head not in ("flexspline", "gear", "bearing", "load"):
         name = f"{head.replace('.', ' ').replace('_', ' ')} {name}"
-    return Quantity(key, key, unit, name)
+    return _Dimension(key, key, unit, name)
+
+
+def long_name(key: str) -> str:
+    """A key in words, without unit, over two lines where it is long."""
+    return _wrapped(entry(key).name)
+
+
+def axis_label(key: str) -> str:
+    """Label of an axis: words, symbol and unit."""
+    q = entry(key)
+    words = f"{q.name.split(',')[0]} {q.mathtext}" if q.symbol else q.name
+    return f"{words} in {q.unit}" if q.unit else words
+
+
+def lines_of(key: str) -> str:
+    """A key under a narrow column: symbol or wrapped words, the unit below."""
+    q = entry(key)
+    return f"{q.mathtext if q.symbol else _wrapped(q.name)}\n{q.unit}".strip()
+
+
+def _wrapped(name: str, width: int = 15) -> str:
+    lines = [""]
+    for word in name.split():
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return "\n".join(lines)

@@ -1,0 +1,89 @@
+"""Why the best designs win, in sentences with numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from pipeline.study.result import StudyResult
+from results.study.labels import entry
+
+STRONG = 0.3
+"""Rank correlation from which an influence is worth a sentence."""
+AT_END = 0.02
+"""Of a span: a best design so near its end would go on if it could."""
+FEWEST = 8
+"""Rows from which a rank correlation says something."""
+
+
+def influences(result: StudyResult) -> list[str]:
+    """What moves each objective, by Spearman's rank correlation over all designs built."""
+    rows = result.built
+    if len(rows) < FEWEST:
+        return []
+    said = []
+    for key in result.study.file.objective:
+        y = np.array([r.outcome.figures[key] for r in rows])
+        found = []
+        for varied in result.study.file.vary:
+            x = np.array([r.values[varied] for r in rows])
+            if np.ptp(x) > 0 and np.ptp(y) > 0:
+                found.append((_spearman(x, y), entry(varied).name))
+        found.sort(key=lambda f: -abs(f[0]))
+        strong = [
+            f"{'rises' if rho > 0 else 'falls'} with {name} (rank correlation {_signed(rho)})"
+            for rho, name in found
+            if abs(rho) >= STRONG
+        ]
+        title = entry(key).name
+        said.append(f"{title} {', '.join(strong) if strong else 'follows no single dimension'}.")
+    return said
+
+
+def limits(result: StudyResult) -> list[str]:
+    """Spans and constraints that the best design leans on."""
+    if not result.pareto:
+        return []
+    best, file = result.pareto[0], result.study.file
+    said = []
+    for key, span in file.vary.items():
+        low, high = span.ends
+        reach = AT_END * (high - low)
+        for end, name in ((low, "lower"), (high, "upper")):
+            if abs(best.values[key] - end) <= reach:
+                q = entry(key)
+                said.append(
+                    f"Design {best.slot} lies at the {name} end of its span in {q.name} "
+                    f"({q.with_unit(end)}): a wider span may hold a better one."
+                )
+    for key, limit in file.constraint.items():
+        value = best.outcome.figures[key]
+        if -limit.excess(value) <= AT_END * limit.size:
+            q = entry(key)
+            said.append(
+                f"Design {best.slot} is held by the constraint on {q.name} ({q.with_unit(value)})."
+            )
+    return said
+
+
+def failures(result: StudyResult) -> list[str]:
+    """How many designs have no figures, and the commonest reasons."""
+    reasons = Counter(_stem(r.outcome.reason) for r in result.rows if r.outcome.reason)
+    return [f"{count} ×: {reason}" for reason, count in reasons.most_common(5)]
+
+
+def _stem(reason: str) -> str:
+    """The key that is at fault and why, without the value that differs from design to design."""
+    key, found, rest = reason.partition(" = ")
+    return f"{key}: {rest.partition(': ')[2]}" if found else reason
+
+
+def _spearman(x: np.ndarray, y: np.ndarray) -> float:
+    from scipy.stats import spearmanr
+
+    return float(spearmanr(x, y).statistic)
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
