@@ -36,6 +36,8 @@ FAR = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
 OFFSET = "torque_offset"
+BESIDE = 25
+"""Letters of the magnitude that fit beside a panel in full size."""
 SHORT = 55
 """Letters of a title that fit above a panel; of a longer one, what stands in brackets is left out."""
 
@@ -97,6 +99,11 @@ def _short(title: str) -> str:
     return capital(title if len(title) <= SHORT else title.partition(" (")[0])
 
 
+def _size(line: str) -> float:
+    """Points in which a bold line fits beside a panel."""
+    return 10.5 * min(1.0, BESIDE / len(line))
+
+
 def write_contributions(path: Path, shown: Seen) -> None:
     """One panel per part: pale, what was measured with all other parts taken off; dark, the model."""
     found = parts(shown)
@@ -113,7 +120,7 @@ def write_contributions(path: Path, shown: Seen) -> None:
             for k, line in enumerate(part.lines):
                 figure.text(
                     0.705, (low + PANEL - 0.2 - 0.27 * k) / height, line, va="center",
-                    fontsize=10.5 if k == 0 else 9.5, weight="bold" if k == 0 else "normal",
+                    fontsize=_size(line) if k == 0 else 9.5, weight="bold" if k == 0 else "normal",
                     color=INK if k < 2 else MUTED,
                 )  # fmt: skip
         figure.text(
