@@ -78,7 +78,7 @@ def figures_of(design: Design, solves: tuple[Solve, ...]) -> dict[str, float]:
     ------
     DesignError, ComputationError, BearingPlayDomainError
     """
-    plain = without_holes(_with_equivalent_ring(design))
+    plain = without_holes(with_equivalent_ring(design))
     f, wall = plain.flexspline, plain.flexspline.wall_thickness_mm
     own, nu = plain.material.flexspline, plain.material.flexspline.poissons_ratio
     E = own.youngs_modulus_GPa
@@ -121,7 +121,7 @@ def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, fl
     }
 
 
-def _with_equivalent_ring(design: Design) -> Design:
+def with_equivalent_ring(design: Design) -> Design:
     """With the plain ring that stands for drawn teeth, as the chain has it."""
     if design.flexspline.teeth == "none":
         return design

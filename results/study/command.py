@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from results.job import Json, Out, answered, folder_of, tell
+from results.job import DesignFile, Json, Out, answered, folder_of, tell
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
 
@@ -16,6 +16,7 @@ StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study
 def register(app: typer.Typer) -> None:
     """Add the commands of this room."""
     app.command()(study)
+    app.command()(sensitivity)
 
 
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
@@ -49,3 +50,18 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         write_study_report(folder / "report.pdf", result, pictures)
         record["files"] += [str(p) for p in (*pictures, folder / "report.pdf")]
         print(as_json(record) if json else words(result, record))
+
+
+def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
+    """How K_b and K_e change with every dimension, found in two ways."""
+    with answered(design):
+        from geometry.load import load_design
+        from pipeline.study.sensitivity import sensitivities
+        from results.records import as_json
+        from results.study.sensitivity import lines, record, write_sensitivity
+
+        gear, folder = load_design(design), folder_of(design, out)
+        slopes = sensitivities(gear, tell)
+        said = record(gear, slopes)
+        write_sensitivity(folder, said)
+        print(as_json(said) if json else "\n".join(lines(slopes)))

@@ -29,6 +29,8 @@ METHODS = {
     "optimize": "Designs chosen by an optimiser that learns from those before.",
     "tolerance": "Scatter of uncertainty and tolerances through the whole chain (Saltelli's scheme).",
 }
+WIDTHS = {"pareto.png": 75, "best.png": 48, "convergence.png": 75, "parallel.png": 88}
+"""Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design built, and the front that none beats.",
     "parallel.png": "Every design as a line over the varied dimensions and the objectives.",
@@ -77,7 +79,9 @@ def payload(result: StudyResult, pictures: Sequence[str]) -> dict[str, Any]:
         "verified": _verified(result),
         "failures": failures(result),
         "scatter": [_scatter(s) for s in result.scatter],
-        "pictures": [[n, CAPTIONS.get(n, CAPTIONS["tolerance.png"])] for n in pictures],
+        "pictures": [
+            [n, CAPTIONS.get(n, CAPTIONS["tolerance.png"]), WIDTHS.get(n, 100)] for n in pictures
+        ],
         "notes": _notes(result),
     }
 

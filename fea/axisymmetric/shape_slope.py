@@ -1,0 +1,113 @@
+"""dK/dp of a body of revolution under torque, from one solution: the adjoint way.
+
+K is the least energy over all fields with the given rotation, so its derivative with respect to the shape
+is that of the energy with the field held (the field is its own adjoint). The mesh follows the outline,
+nodal rotations ψ = u_θ/r stay, and the energy's difference over a small step is dK. Source: Haug, Choi,
+Komkov, Design Sensitivity Analysis of Structural Systems (1986), ch. 3, for compliance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix, diags
+from scipy.sparse.linalg import spsolve
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.harmonics import TANGENTIAL, Fixed, HarmonicModel, Wave
+from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.recovery import recovered
+from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
+from fea.axisymmetric.triangulate import triangulate
+from fea.types import NMM_PER_NM, Elastic
+from geometry.meridian import Meridian
+
+BULK = 0.6
+TWIST = Wave(0, torsion=True)
+
+
+@dataclass(frozen=True)
+class Twist:
+    """A solved torsion problem, ready to be moved.
+
+    `rotation` (count,): ψ [rad] at the P2 nodes, 0 where r = 0; `K_Nm_per_rad` from above.
+    """
+
+    mesh: MeridianMesh
+    material: Elastic
+    rotation: np.ndarray
+    K_Nm_per_rad: float
+
+
+def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -> Twist:
+    """Refined until the recovery estimate of K's relative error is below `tolerance`.
+
+    Raises
+    ------
+    MeshingError, HarmonicError, ToleranceError
+    """
+    mesh = triangulate(outline)
+    while True:
+        model = HarmonicModel(mesh, material)
+        on = model.on(driven)
+        fixed = [Fixed(on, TANGENTIAL, model.space.places[on, 0]), *model.held("mount")]
+        solved = model.solve(TWIST, fixed, np.zeros(3 * model.space.count))
+        found = recovered(model, TWIST, solved.values)
+        error = float(found.error.sum() / found.energy.sum())
+        if error < tolerance:
+            break
+        if len(mesh.triangles) > MOST_TRIANGLES:
+            raise ToleranceError(tolerance, error, len(mesh.triangles))
+        mesh = refined(mesh, bulk(found.error, BULK))
+    r = model.space.places[:, 0]
+    turned = solved.values.reshape(-1, 3)[:, TANGENTIAL]
+    rotation = np.divide(turned, r, out=np.zeros_like(turned), where=r > 0)
+    return Twist(mesh, material, rotation, solved.twice_energy / NMM_PER_NM)
+
+
+def moved_stiffness(found: Twist, outline: Meridian) -> float:
+    """Twice the energy per rad² [N·m/rad] of the held field on another outline, a small step away.
+
+    Raises
+    ------
+    ValueError : the outline has another number of segments.
+    """
+    if len(outline.segments) != len(found.mesh.outline.segments):
+        raise ValueError(f"{len(outline.segments)} segments do not follow the solved outline's")
+    model = HarmonicModel(_moved(found.mesh, outline), found.material)
+    values = np.zeros((model.space.count, 3))
+    values[:, TANGENTIAL] = found.rotation * model.space.places[:, 0]
+    u = values.ravel()
+    return float(u @ (model.stiffness(TWIST) @ u)) / NMM_PER_NM
+
+
+def _moved(mesh: MeridianMesh, outline: Meridian) -> MeridianMesh:
+    """Boundary vertices keep their place along their segment; inner ones follow their neighbours."""
+    shift = np.zeros_like(mesh.points)
+    for index, (old, new) in enumerate(zip(mesh.outline.segments, outline.segments, strict=True)):
+        nodes = np.unique(mesh.edges[mesh.edge_segment == index])
+        at = _along(old.at(np.linspace(0, 1, 2)), old.centre, old.sweep, mesh.points[nodes])
+        shift[nodes] = new.at(at) - old.at(at)
+    rim = np.unique(mesh.edges)
+    inner = np.setdiff1d(np.arange(len(shift)), rim)
+    if len(inner):
+        sides = np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+        both = np.concatenate([sides, sides[:, ::-1]])
+        links = coo_matrix((np.ones(len(both)), both.T), shape=2 * (len(shift),)).tocsr()
+        laplace = (diags(np.asarray(links.sum(axis=1)).ravel()) - links).tocsr()
+        right = -laplace[inner][:, rim] @ shift[rim]
+        shift[inner] = spsolve(laplace[inner][:, inner].tocsc(), right).reshape(-1, 2)
+    return MeridianMesh(outline, mesh.points + shift, mesh.triangles, mesh.edges, mesh.edge_segment)
+
+
+def _along(
+    ends: np.ndarray, centre: tuple[float, float] | None, sweep: float, points: np.ndarray
+) -> np.ndarray:
+    """Parameter in [0, 1] of points on a line or an arc."""
+    if centre is None:
+        d = ends[1] - ends[0]
+        return (points - ends[0]) @ d / (d @ d)
+    begin, off = ends[0] - centre, points - np.array(centre)
+    angle = np.arctan2(off[:, 1], off[:, 0]) - np.arctan2(begin[1], begin[0])
+    return ((angle + np.pi) % (2 * np.pi) - np.pi) / sweep

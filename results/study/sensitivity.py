@@ -1,0 +1,57 @@
+"""`flexspline sensitivity`: the table for people, sensitivity.json for machines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from geometry.design import Design
+from pipeline.study.sensitivity import Slope
+from results.atomic import write_bytes
+from results.records import as_json, heading
+
+K_OF = {"flexspline": "K_b_Nm_per_rad", "shaft": "K_e_Nm_per_rad"}
+
+
+def record(design: Design, slopes: Sequence[Slope]) -> dict[str, Any]:
+    """What sensitivity.json holds; a way that gave nothing is absent."""
+    return {**heading(design), "sensitivity": [_entry(s) for s in slopes]}
+
+
+def _entry(s: Slope) -> dict[str, Any]:
+    found: dict[str, Any] = {"key": s.key, "value_mm": s.value_mm, "figure": K_OF[s.part]}
+    if s.held is not None:
+        found["adjoint_Nm_per_rad_per_mm"] = s.held
+    if s.solved is not None:
+        found["difference_Nm_per_rad_per_mm"] = s.solved
+        found["difference_error_Nm_per_rad_per_mm"] = s.solved_error
+    if s.agree is not None:
+        found["agree"] = s.agree
+    return found | {
+        "pct_per_pct": s.elasticity,
+        "backlash_arcsec_per_mm": s.backlash_arcsec_per_mm,
+    }
+
+
+def write_sensitivity(folder: Path, said: dict[str, Any]) -> None:
+    """`sensitivity.json`, whole or not at all."""
+    write_bytes(folder / "sensitivity.json", (as_json(said) + "\n").encode())
+
+
+def lines(slopes: Sequence[Slope]) -> list[str]:
+    """A table; both ways side by side, and a word where they do not meet."""
+    out = [
+        f"{'dimension':42} {'mm':>8} {'dK/dp, adjoint':>16} {'by differences':>24} {'%/%':>7} "
+        f"{'arcsec/mm':>10}"
+    ]
+    for s in slopes:
+        held = "-" if s.held is None else f"{s.held:.1f}"
+        solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
+        word = {True: "", False: "  DISAGREE", None: "  one way only"}[s.agree]
+        out.append(
+            f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
+            f"{s.backlash_arcsec_per_mm:10.3f}{word}"
+        )
+    out.append("dK/dp in N·m/rad per mm, of K_b or K_e without bolt holes and keyway")
+    return out

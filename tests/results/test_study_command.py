@@ -1,0 +1,122 @@
+"""`flexspline study` and `flexspline sensitivity` as a user calls them."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+from typer.testing import CliRunner
+
+from results.cli import app
+
+DESIGN = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+STUDY = """
+design = "{design}"
+[vary]
+"flexspline.wall_thickness_mm" = {{ min = 0.36, max = 0.70, steps = 3 }}
+"flexspline.diaphragm_thickness_mm" = {{ values = [0.5, 0.7] }}
+[objective]
+"K_b_Nm_per_rad" = "maximize"
+"flexspline_mass_g" = "minimize"
+[constraint]
+"backlash_arcsec.total" = {{ max = 95.0 }}
+[run]
+method = "grid"
+workers = {workers}
+"""
+
+
+def written(folder: Path, workers: int = 1, text: str = STUDY) -> Path:
+    design = folder / '#emph[x] "gear.toml'.replace('"', "")
+    design.write_text(DESIGN.read_text().replace("XB1-40 cup", "#panic(1) $x$ cup"))
+    path = folder / "walls.toml"
+    path.write_text(text.format(design=design.name, workers=workers))
+    return path
+
+
+def rows_of(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "study.csv", newline="") as file:
+        return [{k: v for k, v in r.items() if k != "wall_s"} for r in csv.DictReader(file)]
+
+
+def test_a_grid_on_one_and_on_three_processes(tmp_path: Path) -> None:
+    one = CliRunner().invoke(
+        app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
+    )
+    assert one.exit_code == 0, one.output
+    said = json.loads(one.stdout)
+    assert said["evaluations"] == 6
+    assert said["failed"] == 2  # a wall of 0.7 mm is thicker than the ring
+    rows = rows_of(tmp_path / "1")
+    assert sum("ring_thickness_mm" in r["reason"] for r in rows) == 2
+    for name in said["files"]:
+        assert Path(name).stat().st_size > 0
+    text = "".join(p.extract_text() for p in PdfReader(tmp_path / "1" / "report.pdf").pages)
+    assert "4 of 6 designs were built and solved" in text
+    assert "#panic(1) $x$ cup" in text  # as its letters
+
+    again = CliRunner().invoke(
+        app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]
+    )
+    assert again.exit_code == 0
+    assert "6 designs are finished already" in again.stderr
+    assert rows_of(tmp_path / "1") == rows
+
+    three = CliRunner().invoke(
+        app, ["study", str(written(tmp_path, workers=3)), "--out", str(tmp_path / "3"), "--json"]
+    )
+    assert three.exit_code == 0
+    assert rows_of(tmp_path / "3") == rows
+
+
+def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
+    from pyarrow import parquet
+
+    from pipeline.study.evaluate import Outcome
+    from pipeline.study.load import load_study
+    from pipeline.study.result import StudyResult
+    from pipeline.study.store import Row
+    from results.study.tables import table_of, write_csv, write_parquet
+
+    values = {"flexspline.wall_thickness_mm": 0.4, "flexspline.diaphragm_thickness_mm": 0.5}
+    figures = {"K_b_Nm_per_rad": 3.0, "flexspline_mass_g": 1.0, "backlash_arcsec.total": 90.0}
+    rows = (Row(0, values, Outcome(figures)), Row(1, values, Outcome(reason="too thin, it is")))
+    table = table_of(StudyResult(load_study(written(tmp_path)), rows))
+    write_csv(tmp_path / "study.csv", table)
+    write_parquet(tmp_path / "study.parquet", table)
+    read = parquet.read_table(tmp_path / "study.parquet").to_pydict()
+    assert read == table
+    assert read["K_b_Nm_per_rad"] == [3.0, None]
+    lines = rows_of(tmp_path)
+    assert [r["reason"] for r in lines] == ["", "too thin, it is"]
+    assert [r["K_b_Nm_per_rad"] for r in lines] == ["3.0", ""]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('method = "grid"', 'method = "magic"', "run.method"),
+        ("min = 0.36", "min = 0.9", "below max"),
+        ('"K_b_Nm_per_rad" =', X, "did you mean K_b_Nm_per_rad?"),
+    ],
+)
+def test_a_wrong_study_leaves_nothing(old: str, new: str, said: str, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = CliRunner().invoke(
+        app, ["study", str(written(tmp_path, text=STUDY.replace(old, new))), "--out", str(out)]
+    )
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not out.exists()
+
+
+def test_sensitivity_prints_its_table_as_json(tmp_path: Path) -> None:
+    done = CliRunner().invoke(
+        app, ["sensitivity", str(DESIGN), "--out", str(tmp_path), "--json"]
+    )  # fmt: skip
+    assert done.exit_code == 0
+    said = json.loads(done.stdout)
+    assert said == json.loads((tmp_path / "sensitivity.json").read_text())
+    assert {"key", "value_mm", "figure", "adjoint_Nm_per_rad_per_mm"} <= set(said["sensitivity"][0])
