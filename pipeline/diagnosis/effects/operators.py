@@ -51,13 +51,14 @@ def steadied(history: History, width_Nm: float) -> np.ndarray:
 
 
 def within_cycle(history: History) -> np.ndarray:
-    """(n,) share of its cycle's rows that lie before each row."""
+    """(n,) share of its cycle that lies before each row: of its time, or of its rows without time."""
     out = np.zeros(len(history))
     for rows in history.unit_slices:
-        cycle = history.cycle[rows]
-        for c in np.unique(cycle):
-            own = rows[cycle == c]
-            out[own] = np.arange(len(own)) / len(own)
+        t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+        starts = np.flatnonzero(np.diff(history.cycle[rows], prepend=-1) != 0)
+        ends = np.append(t[starts[1:]], t[-1] + (t[-1] - t[0]) / max(1, len(t) - 1))
+        number = np.searchsorted(starts, np.arange(len(t)), side="right") - 1
+        out[rows] = (t - t[starts[number]]) / np.maximum(ends[number] - t[starts[number]], 1e-12)
     return out
 
 
