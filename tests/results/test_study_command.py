@@ -98,7 +98,7 @@ def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
     [
         ('method = "grid"', 'method = "magic"', "run.method"),
         ("min = 0.36", "min = 0.9", "below max"),
-        ('"K_b_Nm_per_rad" =', X, "did you mean K_b_Nm_per_rad?"),
+        ('"K_b_Nm_per_rad" =', '"K_b_Nm_per_radian" =', "did you mean K_b_Nm_per_rad?"),
     ],
 )
 def test_a_wrong_study_leaves_nothing(old: str, new: str, said: str, tmp_path: Path) -> None:
