@@ -22,6 +22,8 @@ MINOR_SHARE = 0.045
 has but one shape."""
 CANCELLING = 0.75
 """Correlation of two effects, each at least half as large as the other, that nearly cancel."""
+TOGETHER = 3.0
+"""Times that many effects may be larger, each for itself, than what they are together."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
 """The contract's limits for a rival."""
 
@@ -97,6 +99,8 @@ def _cancels(race: Race, c: Candidate) -> bool:
     solution = solved(race, c.terms)
     parts = [solution.added(o)[race.kept] for o in c.owners(race)]
     parts = [p - p.mean() for p in parts]
+    if parts and sum(p @ p for p in parts) > TOGETHER**2 * float(np.sum(np.sum(parts, axis=0) ** 2)):
+        return True
     for i, a in enumerate(parts):
         for b in parts[i + 1 :]:
             alike = float(a @ b) / max(float(np.sqrt((a @ a) * (b @ b))), 1e-12)
@@ -109,7 +113,7 @@ def _without(race: Race, best: Candidate, cause: str) -> Candidate:
     """The best set that does without a cause: competitors and other causes may stand in."""
     start = [i for i in best.terms if race.terms[i].owner != cause]
     search = Search(race, lambda t: t.owner != cause)
-    return search.run([start, ()], most=len(best.terms) + 2)
+    return _plausible(race, search, search.run([start, ()], most=len(best.terms) + 2))
 
 
 def owned_by(owners: Collection[str]) -> Callable[[Term], bool]:
