@@ -61,6 +61,8 @@ def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
 
     settings = {
         "distributed.scheduler.allowed-failures": RETRIES,
+        # a design that waits does so at the scheduler: on a worker it would share the blame for its death
+        "distributed.scheduler.worker-saturation": 1.0,
         "distributed.comm.timeouts.connect": f"{CONNECT_S:g}s",
         "distributed.worker.daemon": True,
         "distributed.admin.tick.limit": "60s",

@@ -26,6 +26,10 @@ class Source(Protocol):
     def size(self) -> int:
         """How many designs the study wants."""
 
+    @property
+    def ahead(self) -> int:
+        """How many designs wait for a free worker, so that none is idle between two designs."""
+
     def claim(self, ledger: Ledger, slot: int) -> Job | None:
         """A design for a slot that nobody had before; None where another process was faster."""
 
@@ -67,7 +71,7 @@ def carry_out(
     _adopt(source, ledger)
     ledger.beat()
     while True:
-        while len(pending) < hands.width():
+        while len(pending) < hands.width() + source.ahead:
             job = _next(source, ledger)
             if job is None:
                 break

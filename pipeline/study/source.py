@@ -65,6 +65,10 @@ class Planned(_Asked):
     def size(self) -> int:
         return self.plan.size
 
+    @property
+    def ahead(self) -> int:
+        return 1
+
     def claim(self, ledger: Ledger, slot: int) -> Job | None:
         return ledger.create(slot, 0, self.plan.point(slot), self.over)
 
@@ -76,6 +80,10 @@ class Sampled(_Asked):
     @property
     def size(self) -> int:
         return self.study.file.run.evaluations
+
+    @property
+    def ahead(self) -> int:
+        return 0  # a design chosen later knows more
 
     def claim(self, ledger: Ledger, slot: int) -> Job | None:
         had = [t.params for t in ledger.all() if CLAIM in t.user_attrs]

@@ -1,0 +1,50 @@
+"""Local Dask processes: a worker that dies is replaced, its design tried again, at most twice."""
+
+import os
+from pathlib import Path
+
+import pytest
+from study_bench import GRID, WALL, quick, study_of
+
+from pipeline.study.cluster import RETRIES, dask_hands
+from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.load import StudyError
+from pipeline.study.run import ledger_of, run_study
+
+MARKS = "FLEXSPLINE_TEST_MARKS"
+
+
+def deadly(task: Task) -> Outcome:
+    """Every design with a wall of 0.4 kills its worker: once for length 30, always for 25."""
+    marks = Path(os.environ[MARKS])
+    if task.values[WALL] == 0.4:
+        length = task.values["flexspline.length_mm"]
+        tried = len(list(marks.glob(f"{length:g}-*")))
+        (marks / f"{length:g}-{tried}").touch()
+        if length == 25 or tried == 0:
+            os._exit(1)
+    return quick(task)
+
+
+def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(MARKS, str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    study = study_of(GRID)
+    rows = run_study(
+        study, ledger_of(study, tmp_path), lambda: dask_hands(1, ""), lambda p: None, deadly
+    ).rows
+    assert len(rows) == 6
+    (lost,) = (r for r in rows if r.outcome.reason)
+    assert lost.values == {WALL: 0.4, "flexspline.length_mm": 25.0}
+    assert "worker died" in lost.outcome.reason
+    assert len(list(tmp_path.glob("25-*"))) == RETRIES + 1
+    assert len(list(tmp_path.glob("30-*"))) == 2
+
+
+def test_a_scheduler_that_does_not_answer_is_wrong_input(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("pipeline.study.cluster.CONNECT_S", 1.0)
+    with pytest.raises(StudyError) as caught, dask_hands(1, "tcp://127.0.0.1:1"):
+        pytest.fail("nobody is there")
+    assert "run.scheduler" in str(caught.value)
