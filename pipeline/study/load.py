@@ -117,6 +117,9 @@ def _check(study: Study) -> None:
     elif file.tolerance:
         key = next(iter(file.tolerance))
         raise StudyError(f'tolerance."{key}"', {}, 'needs method = "tolerance"')
+    if file.run.verify and not file.objective:
+        reason = "must be 0 without an [objective], which says what is best"
+        raise StudyError("run.verify", file.run.verify, reason)
     if method == "optimize" and not file.objective:
         raise StudyError("objective", MISSING, 'method "optimize" needs at least one figure')
 

@@ -48,3 +48,18 @@ def test_a_scheduler_that_does_not_answer_is_wrong_input(
     with pytest.raises(StudyError) as caught, dask_hands(1, "tcp://127.0.0.1:1"):
         pytest.fail("nobody is there")
     assert "run.scheduler" in str(caught.value)
+
+
+def test_a_running_scheduler_takes_the_study(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    from distributed import LocalCluster
+
+    study = study_of(GRID)
+    with LocalCluster(n_workers=1, protocol="tcp", dashboard_address="127.0.0.1:0") as cluster:
+        address = cluster.scheduler_address
+        rows = run_study(
+            study, ledger_of(study, tmp_path), lambda: dask_hands(1, address), lambda p: None, quick
+        ).rows
+    assert [r.outcome for r in rows] == [quick(Task({}, r.values, ())) for r in rows]

@@ -21,6 +21,7 @@ from pipeline.study.load import StudyError
         ("min = 0.3, ", "", "wall_thickness_mm", "min = …, max = …"),
         ("values = [25.0, 30.0]", "values = []", "length_mm", "1 to 10000 numbers"),
         ("values = [25.0, 30.0]", "value = [25.0]", "value", "did you mean values?"),
+        ('[objective]\n"K_b_Nm_per_rad" = "maximize"\n[run]', "[run]\nverify = 1", "run.verify", "0"),
         ("xb1-40.toml", "no.toml", "design", "no such file"),
         ("[vary]", "[varied]", "varied", "did you mean vary?"),
     ],

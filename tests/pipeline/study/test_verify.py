@@ -58,4 +58,4 @@ def test_examples_are_studies() -> None:
     from pipeline.study.load import load_study
 
     methods = {load_study(p).file.run.method for p in sorted((EXAMPLES / "studies").glob("*.toml"))}
-    assert {"grid", "optimize", "tolerance"} <= methods
+    assert methods == {"grid", "sobol", "optimize", "tolerance"}
