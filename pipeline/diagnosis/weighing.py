@@ -99,7 +99,9 @@ def _cancels(race: Race, c: Candidate) -> bool:
     solution = solved(race, c.terms)
     parts = [solution.added(o)[race.kept] for o in c.owners(race)]
     parts = [p - p.mean() for p in parts]
-    if parts and sum(p @ p for p in parts) > TOGETHER**2 * float(np.sum(np.sum(parts, axis=0) ** 2)):
+    if parts and sum(p @ p for p in parts) > TOGETHER**2 * float(
+        np.sum(np.sum(parts, axis=0) ** 2)
+    ):
         return True
     for i, a in enumerate(parts):
         for b in parts[i + 1 :]:
