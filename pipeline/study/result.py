@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from pipeline.study.load import Study
 from pipeline.study.scatter import Scatter
@@ -39,22 +40,37 @@ class StudyResult:
     @property
     def pareto(self) -> tuple[Row, ...]:
         """Feasible rows that no other feasible row beats; the first objective's best first."""
-        candidates = self.feasible
-        kept = [
-            r for r in candidates
-            if not any(_beats(self._costs(o), self._costs(r)) for o in candidates)
-        ]  # fmt: skip
-        return tuple(sorted(kept, key=self._costs))
+        return self._front(self.feasible)
+
+    def best(self, count: int) -> tuple[Row, ...]:
+        """So many designs to look at: spread evenly over the front, or where that is short, it and
+        the fronts behind it."""
+        chosen = self.pareto
+        if len(chosen) > count:
+            at = np.linspace(0, len(chosen) - 1, count).round().astype(int)
+            return tuple(chosen[i] for i in at)
+        left = self.feasible
+        while len(chosen) < count:
+            taken = {r.slot for r in chosen}
+            left = tuple(r for r in left if r.slot not in taken)
+            if not left:
+                break
+            chosen += self._front(left)
+        return chosen[:count]
+
+    def _front(self, rows: tuple[Row, ...]) -> tuple[Row, ...]:
+        """Those of the rows that no other of them beats, by cost."""
+        if not self.study.file.objective:
+            return ()
+        costs = {r.slot: self._costs(r) for r in rows}
+        kept = [r for r in rows if not any(_beats(c, costs[r.slot]) for c in costs.values())]
+        return tuple(sorted(kept, key=lambda r: costs[r.slot]))
 
     def _costs(self, row: Row) -> tuple[float, ...]:
         """Objectives, all to be made small."""
-        return costs(self.study.file.objective, row)
-
-
-def costs(objective: Mapping[str, str], row: Row) -> tuple[float, ...]:
-    """Objectives of a row, all to be made small."""
-    sign = {"minimize": 1.0, "maximize": -1.0}
-    return tuple(sign[d] * row.outcome.figures[k] for k, d in objective.items())
+        sign = {"minimize": 1.0, "maximize": -1.0}
+        objective = self.study.file.objective
+        return tuple(sign[d] * row.outcome.figures[k] for k, d in objective.items())
 
 
 def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:

@@ -61,7 +61,7 @@ def verify(
 ) -> tuple[Verified, ...]:
     """The first `run.verify` of the best designs; what is stored is not solved again."""
     file = result.study.file
-    chosen = result.pareto[: file.run.verify] if file.objective else ()
+    chosen = result.best(file.run.verify)
     rim = bool(RIM & {*file.objective, *file.constraint})
     stored: dict[str, dict] = {
         k: v for k, v in ledger.trials.user_attrs.items() if k.startswith(VERIFIED)

@@ -29,7 +29,7 @@ def design_of(result: StudyResult, row: Row) -> Design:
 
 def write_best(path: Path, result: StudyResult) -> None:
     """Half sections of up to SHOWN designs, one below the other, to one scale."""
-    best = result.pareto[:SHOWN]
+    best = result.best(SHOWN)
     base = _outline(result.study.design)
     outlines = [_outline(design_of(result, r)) for r in best]
     everything = np.concatenate([base, *outlines])

@@ -18,7 +18,7 @@ ALARM = "they disagree beyond their bounds; the fast model leaves out bolt holes
 def summary(result: StudyResult) -> dict[str, Any]:
     """How many designs, how many failed, the best."""
     file = result.study.file
-    best = result.pareto if file.objective else ()
+    best = result.pareto if len(result.pareto) >= SHOWN else result.best(SHOWN)
     return {
         "study": result.study.name,
         "design": result.study.design.name,
@@ -93,7 +93,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
         f"{len(result.feasible)} keep to the constraints"
     ]
-    for row in (result.pareto if file.objective else ())[:SHOWN]:
+    for row in () if result.scatter else result.best(SHOWN):
         values = ", ".join(
             f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items()
         )

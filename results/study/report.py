@@ -96,9 +96,9 @@ def _counts(result: StudyResult) -> str:
 def _best(result: StudyResult) -> list[list[str]]:
     """A header, then a line per varied key and figure: name, then the best designs' values."""
     file = result.study.file
-    if not file.objective or not result.pareto or result.scatter:
+    chosen = () if result.scatter else result.best(COLUMNS)
+    if not chosen:
         return []
-    chosen = result.pareto[:COLUMNS]
     lines = [["", *(f"design {r.slot}" for r in chosen)]]
     for key in file.vary:
         q = entry(key)

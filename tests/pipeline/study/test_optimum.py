@@ -10,6 +10,7 @@ from study_bench import LENGTH, WALL, study_of, threads
 from pipeline.study.evaluate import TORSION_TOLERANCE, Outcome, Task, evaluate
 from pipeline.study.result import StudyResult
 from pipeline.study.run import ledger_of, run_study
+from pipeline.study.store import Row
 
 TWO = f"""
 design = "xb1-40.toml"
@@ -116,3 +117,17 @@ def test_no_design_is_evaluated_twice(tmp_path: Path) -> None:
 
     rows = found(text + 'method = "optimize"\nevaluations = 10\n', tmp_path, evaluation).rows
     assert len({tuple(r.values.values()) for r in rows}) == 10
+
+
+def test_the_best_of_one_objective_are_a_ranking_and_of_two_spread_over_the_front() -> None:
+    text = TWO.replace('"flexspline_mass_g" = { max = 22.0 }', "")
+    one = study_of(text)
+    two = study_of(text.replace("[constraint]", '"flexspline_mass_g" = "minimize"\n[constraint]'))
+    rows = tuple(
+        Row(i, {}, Outcome({"K_b_Nm_per_rad": float(k), "flexspline_mass_g": float(m)}))
+        for i, (k, m) in enumerate([(1, 1), (5, 5), (3, 3), (2, 9), (4, 4)])
+    )
+    assert [r.slot for r in StudyResult(one, rows).best(3)] == [1, 4, 2]
+    assert [r.slot for r in StudyResult(two, rows).pareto] == [1, 4, 2, 0]
+    assert [r.slot for r in StudyResult(two, rows).best(2)] == [1, 0]
+    assert [r.slot for r in StudyResult(two, rows).best(9)] == [1, 4, 2, 0, 3]
