@@ -20,8 +20,6 @@ others' misfit may feed it."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
-CANCELLING = 0.75
-"""Correlation of two effects, each at least half as large as the other, that nearly cancel."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
 RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
@@ -88,7 +86,7 @@ def weigh(race: Race, beside: bool = False) -> Weighed:
 
 
 def _plausible(race: Race, search: Search, best: Candidate) -> Candidate:
-    """The best set in which no two large effects nearly cancel: such a pair is one effect's misfit."""
+    """The best set in which effects do not nearly cancel: such sets fit a misfit, or the noise."""
     for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
         if not _cancels(race, c):
             return c
@@ -96,19 +94,14 @@ def _plausible(race: Race, search: Search, best: Candidate) -> Candidate:
 
 
 def _cancels(race: Race, c: Candidate) -> bool:
+    """Whether a set with a competitor holds large effects that together are small."""
+    owners = c.owners(race)
+    if not any(o.startswith("?") for o in owners):
+        return False
     solution = solved(race, c.terms)
-    parts = [solution.added(o)[race.kept] for o in c.owners(race)]
-    parts = [p - p.mean() for p in parts]
-    if parts and sum(p @ p for p in parts) > TOGETHER**2 * float(
-        np.sum(np.sum(parts, axis=0) ** 2)
-    ):
-        return True
-    for i, a in enumerate(parts):
-        for b in parts[i + 1 :]:
-            alike = float(a @ b) / max(float(np.sqrt((a @ a) * (b @ b))), 1e-12)
-            if alike < -CANCELLING and min(a @ a, b @ b) > 0.25 * max(a @ a, b @ b):
-                return True
-    return False
+    parts = np.array([solution.added(o)[race.kept] for o in owners])
+    parts -= parts.mean(axis=1, keepdims=True)
+    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
 
 
 def _without(race: Race, best: Candidate, cause: str) -> Candidate:
