@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pipeline.diagnosis.effects.operators import rising
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.effects.torque_program import deadband_Nm
 from pipeline.diagnosis.record import History
 
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
@@ -23,7 +23,7 @@ def turning(history: History) -> np.ndarray:
     What a row there shows depends on how reading and turning fall together: friction has not turned
     yet, a rate is half of what it was. A few rows of sparse records would decide between them.
     """
-    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
+    direction = rising(history, deadband_Nm(history) + 1e-9)
     out = np.zeros(len(history), bool)
     for rows in history.unit_slices:
         turned = _turns(direction[rows])
@@ -38,7 +38,7 @@ def settling(history: History) -> np.ndarray:
     What a friction element remembers from before the record is not known; the first far turn wipes it
     out. Only where most of the record remains.
     """
-    direction = rising(history, 2 * torque_noise_Nm(history) + 1e-9)
+    direction = rising(history, deadband_Nm(history) + 1e-9)
     far = SETTLED_AT * np.abs(history.torque_Nm).max()
     out = np.zeros(len(history), bool)
     for rows in history.unit_slices:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from math import log
 
 import numpy as np
 
@@ -217,19 +216,6 @@ class _Group:
             moved = mean[held, None] - np.einsum("smk,mk->sm", p[held], amplitude)
             valid &= (moved >= 0).all(axis=0)
         return gain, valid
-
-
-def probability(search: Search, share: float = 1.0) -> dict[frozenset[str], float]:
-    """Posterior probability of each set of named causes, over all sets weighed."""
-    by: dict[frozenset[str], float] = {}
-    for c in search.best.values():
-        key = c.named(search.race) | frozenset(
-            o for o in c.owners(search.race) if o.startswith("?")
-        )
-        by[key] = np.logaddexp(by.get(key, -np.inf), c.score * share)
-    top = max(by.values())
-    total = log(sum(np.exp(v - top) for v in by.values())) + top
-    return {k: float(np.exp(v - total)) for k, v in by.items()}
 
 
 def _width(term: Term) -> int:

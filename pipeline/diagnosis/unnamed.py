@@ -13,7 +13,7 @@ import numpy as np
 
 from pipeline.diagnosis.effects.cause import Rig
 from pipeline.diagnosis.effects.operators import lags, rising, steadied, stops
-from pipeline.diagnosis.effects.torque_program import ramp_s, torque_noise_Nm
+from pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
 from pipeline.diagnosis.prediction import REFERENCE_C
 
 NEW_SHARE = 0.25
@@ -27,8 +27,6 @@ OPPOSITE = {
 """What a competitor is the reverse of: beside it the two would cancel."""
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 LEADING_LAGS = (0.05, 0.15, 0.4)
-CLEAR = 8.0
-"""Torque noises that a lag's change of torque must exceed."""
 SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 STEPS = 25
 TELLING = 7
@@ -92,7 +90,7 @@ def _lagging(rig: Rig) -> np.ndarray:
 
 def _steady(rig: Rig) -> np.ndarray:
     """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
-    return steadied(rig.history, 2 * torque_noise_Nm(rig.history)) / rig.torque_Nm
+    return steadied(rig.history, deadband_Nm(rig.history)) / rig.torque_Nm
 
 
 def _torque(rig: Rig) -> Made:
@@ -136,15 +134,16 @@ def _leading(rig: Rig) -> Made:
     """Loops run through the wrong way round: friction and lag with their sign reversed."""
     yield "direction", LEADS, rising(rig.history, 0.02 * rig.torque_Nm)[:, None]
     thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
-    torque = steadied(rig.history, 2 * torque_noise_Nm(rig.history))
+    torque = steadied(rig.history, deadband_Nm(rig.history))
     states = stops(rig.history, torque, thresholds, np.zeros(len(thresholds))).T
     for r, state in zip(thresholds, states, strict=True):
         yield "direction", LEADS, (state / r)[:, None]
         yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
     ramp = ramp_s(rig.history)
-    shortest = CLEAR * torque_noise_Nm(rig.history) / rig.torque_Nm
     for share in LEADING_LAGS if ramp > 0 else ():
-        lagging = lags(torque, rig.history, np.array([max(share, shortest) * ramp]))[:, 0]
+        lagging = lags(
+            torque, rig.history, np.array([max(share * ramp, shortest_lag_s(rig.history))])
+        )[:, 0]
         yield "direction", LEADS, (torque - lagging)[:, None]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.effects.operators import dahl, steadied, stops
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.effects.torque_program import deadband_Nm, torque_noise_Nm
 from pipeline.diagnosis.record import History
 
 THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
@@ -54,7 +54,7 @@ class FrictionHysteresis(Cause):
 
     def shapes(self, rig: Rig) -> list[Shape]:
         largest = rig.torque_Nm
-        deadband = max(DEADBAND * largest, 2 * torque_noise_Nm(rig.history))
+        deadband = max(DEADBAND * largest, deadband_Nm(rig.history))
         found: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
         least = NOISE_WIDTHS * torque_noise_Nm(rig.history) / largest

@@ -8,12 +8,11 @@ import numpy as np
 
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.effects.operators import lags, steadied
-from pipeline.diagnosis.effects.torque_program import ramp_s, torque_noise_Nm
+from pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
 from pipeline.diagnosis.record import History
 
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""
-CLEAR = 8.0
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 
 
@@ -37,11 +36,10 @@ class RateDependence(Cause):
         if ramp <= 0:
             return []
         rate = rig.torque_Nm / ramp
-        noise = torque_noise_Nm(rig.history)
-        # over a shorter time the torque's noise is a good part of its change
-        shortest = CLEAR * noise / rate
+        shortest = shortest_lag_s(rig.history)
         common = {
-            "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest, "deadband_Nm": 2 * noise,
+            "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest,
+            "deadband_Nm": deadband_Nm(rig.history),
         }  # fmt: skip
         lags_s = sorted({max(s * ramp, shortest) for s in LAG_SHARES})
         found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]

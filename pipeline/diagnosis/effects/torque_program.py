@@ -103,6 +103,20 @@ def ramp_s(history: History) -> float:
     return float(np.abs(history.torque_Nm).max()) / rate if rate > 0 else 0.0
 
 
+def deadband_Nm(history: History) -> float:
+    """Half the reversal of torque that may be noise: what has a memory is driven without such."""
+    return 2 * torque_noise_Nm(history)
+
+
+def shortest_lag_s(history: History) -> float:
+    """Lag over which a ramp moves clear of the torque's noise; 0 without time or movement.
+
+    Over a shorter time the noise is a good part of the torque's change.
+    """
+    rate = ramp_rate(history)
+    return CLEAR * torque_noise_Nm(history) / rate if rate > 0 else 0.0
+
+
 def torque_noise_Nm(history: History) -> float:
     """White noise of the torque reading [N·m].
 
