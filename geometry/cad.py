@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from geometry.design import Cup, Design
 from geometry.errors import GeometryError
-from geometry.meridian import Meridian, Segment, meridian
+from geometry.meridian import meridian
+from geometry.outline import Meridian, Segment
 
 if TYPE_CHECKING:
     import cadquery as cq

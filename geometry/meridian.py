@@ -1,167 +1,17 @@
-"""Meridian profiles: closed outlines in the (r, z) half plane, with fillets and named patches.
+"""The meridian of each part: its outline in the (r, z) half plane, corners rounded, patches named.
 
-Written once as plain numbers; the CAD solid revolves them, the axisymmetric solver meshes them.
+Written once; the CAD solid revolves it, the axisymmetric solver meshes it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import acos, atan2, hypot, pi, tan
+from math import acos, tan
 
 import numpy as np
 
 from geometry.design import Cup, Design, Hat, Shaft
-
-Point = tuple[float, float]
-SAME = 1e-9
-"""Points closer than this [mm] are one point."""
-
-
-@dataclass(frozen=True)
-class Segment:
-    """A straight line, or a circular arc of less than 180° if `centre` is given.
-
-    `patch` names the surface that the segment sweeps, where the contract names it.
-    """
-
-    start: Point
-    end: Point
-    centre: Point | None = None
-    patch: str | None = None
-
-    @property
-    def radius(self) -> float:
-        """Of the arc [mm]; 0 for a line."""
-        return 0.0 if self.centre is None else _distance(self.start, self.centre)
-
-    @property
-    def sweep(self) -> float:
-        """Signed opening angle of the arc [rad], positive counter-clockwise; 0 for a line."""
-        if self.centre is None:
-            return 0.0
-        a = atan2(self.start[1] - self.centre[1], self.start[0] - self.centre[0])
-        b = atan2(self.end[1] - self.centre[1], self.end[0] - self.centre[0])
-        return (b - a + pi) % (2 * pi) - pi
-
-    @property
-    def length(self) -> float:
-        """Arc length [mm]."""
-        if self.centre is None:
-            return _distance(self.start, self.end)
-        return self.radius * abs(self.sweep)
-
-    @property
-    def on_axis(self) -> bool:
-        return self.start[0] < SAME and self.end[0] < SAME
-
-    def at(self, t: float | np.ndarray) -> np.ndarray:
-        """Point(s) (r, z) at parameter t in [0, 1], by arc length; shape (..., 2)."""
-        s = np.asarray(t, float)[..., None]
-        start, end = np.array(self.start), np.array(self.end)
-        if self.centre is None:
-            return start + s * (end - start)
-        c = np.array(self.centre)
-        a0 = atan2(*(start - c)[::-1])
-        angle = a0 + s[..., 0] * self.sweep
-        return c + self.radius * np.stack([np.cos(angle), np.sin(angle)], -1)
-
-    def tangent(self, t: float) -> np.ndarray:
-        """Unit tangent at t (0 or 1), shape (2,)."""
-        if self.centre is None:
-            d = np.array(self.end) - np.array(self.start)
-            return d / np.linalg.norm(d)
-        d = self.at(t) - np.array(self.centre)
-        turned = np.array([-d[1], d[0]]) * np.sign(self.sweep)
-        return turned / np.linalg.norm(turned)
-
-    def nearest(self, rz: np.ndarray) -> np.ndarray:
-        """Nearest points of the segment (ends included) to points of shape (n, 2)."""
-        start, end = np.array(self.start), np.array(self.end)
-        if self.centre is None:
-            d = end - start
-            t = np.clip((rz - start) @ d / (d @ d), 0.0, 1.0)
-            return start + t[:, None] * d
-        c = np.array(self.centre)
-        a0 = atan2(*(start - c)[::-1])
-        middle = a0 + self.sweep / 2
-        v = rz - c
-        off = (np.arctan2(v[:, 1], v[:, 0]) - middle + pi) % (2 * pi) - pi
-        half = abs(self.sweep) / 2
-        angle = middle + np.clip(off, -half, half)
-        return c + self.radius * np.stack([np.cos(angle), np.sin(angle)], -1)
-
-    @property
-    def swept_area(self) -> float:
-        """Area of the full surface of revolution, 2π ∫ r ds [mm²] (Pappus)."""
-        if self.centre is None:
-            return pi * (self.start[0] + self.end[0]) * self.length
-        # ∫ r ds over an arc: rc·R|φ| + R·|z difference|, with the sign of the turning
-        rise = (self.end[1] - self.start[1]) * np.sign(self.sweep)
-        return 2 * pi * (self.centre[0] * self.length + self.radius * rise)
-
-    @property
-    def swept_volume(self) -> float:
-        """π ∫ r² dz along the segment [mm³]: its signed share of the solid's volume (Pappus)."""
-        (r0, z0), (r1, z1) = self.start, self.end
-        if self.centre is None:
-            return pi * (z1 - z0) * (r0 * r0 + r0 * r1 + r1 * r1) / 3
-        x, w = np.polynomial.legendre.leggauss(24)  # exact to rounding for an arc below 180°
-        angle0 = atan2(z0 - self.centre[1], r0 - self.centre[0])
-        a = angle0 + self.sweep * (x + 1) / 2
-        r = self.centre[0] + self.radius * np.cos(a)
-        return float(pi * np.sum(w * r * r * self.radius * np.cos(a)) * self.sweep / 2)
-
-
-@dataclass(frozen=True)
-class Meridian:
-    """A closed, counter-clockwise outline; `cuts` run across the material at patch edges."""
-
-    segments: tuple[Segment, ...]
-    cuts: tuple[Segment, ...] = ()
-
-    @property
-    def volume(self) -> float:
-        """Of the body of revolution [mm³], by Pappus' theorem."""
-        return sum(s.swept_volume for s in self.segments)
-
-    def patch_area(self, patch: str) -> float:
-        """Of the body of revolution's patch [mm²]; 0 if there is none of that name."""
-        return sum(s.swept_area for s in self.segments if s.patch == patch)
-
-    @property
-    def sharp_corners(self) -> tuple[Point, ...]:
-        """Corners (r, z) off the axis where the outline's tangent turns."""
-        found = []
-        for i, s in enumerate(self.segments):
-            before = self.segments[i - 1]
-            if s.start[0] > SAME and before.tangent(1) @ s.tangent(0) < 1 - 1e-6:
-                found.append(s.start)
-        return tuple(found)
-
-    @property
-    def patch_edges(self) -> tuple[Point, ...]:
-        """Points (r, z) where the patch name changes along the outline."""
-        return tuple(
-            s.start
-            for i, s in enumerate(self.segments)
-            if s.patch != self.segments[i - 1].patch and s.start[0] > SAME
-        )
-
-    def polygon(self, chord_error: float) -> np.ndarray:
-        """Vertices (n, 2) of the outline, arcs as chords no farther off than chord_error [mm]."""
-        points = [s.at(np.arange(n) / n) for s in self.segments for n in [_chords(s, chord_error)]]
-        return np.concatenate(points)
-
-
-def _chords(s: Segment, chord_error: float) -> int:
-    if s.centre is None:
-        return 1
-    largest = 2 * acos(max(0.0, 1 - chord_error / s.radius))
-    return max(2, int(np.ceil(abs(s.sweep) / largest)))
-
-
-def _distance(a: Point, b: Point) -> float:
-    return hypot(a[0] - b[0], a[1] - b[1])
+from geometry.outline import SAME, Meridian, Point, Segment, distance
 
 
 @dataclass(frozen=True)
@@ -173,7 +23,7 @@ class _Corner:
 
 def _close(corners: list[_Corner], cuts: list[Segment]) -> Meridian:
     """Round the corners that ask for it and join them to a closed outline."""
-    kept = [c for i, c in enumerate(corners) if _distance(c.at, corners[i - 1].at) > SAME]
+    kept = [c for i, c in enumerate(corners) if distance(c.at, corners[i - 1].at) > SAME]
     entry: list[Point] = []
     leave: list[Point] = []
     arcs: list[Segment | None] = []
@@ -197,7 +47,7 @@ def _close(corners: list[_Corner], cuts: list[Segment]) -> Meridian:
         arcs.append(Segment(a, b, _pair(centre)))
     segments: list[Segment] = []
     for i, c in enumerate(kept):
-        if _distance(leave[i - 1], entry[i]) > SAME:
+        if distance(leave[i - 1], entry[i]) > SAME:
             segments.append(Segment(leave[i - 1], entry[i], patch=c.patch))
         arc = arcs[i]
         if arc is not None:

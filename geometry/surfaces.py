@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from geometry.design import Design
-from geometry.meridian import Meridian, Segment
+from geometry.outline import Meridian, Segment
 
 SYMMETRY_START = "symmetry_start"
 SYMMETRY_END = "symmetry_end"

@@ -13,7 +13,7 @@ from math import acos, asin, cos, pi, radians, sin, tan
 
 from geometry.design import Design
 from geometry.errors import DesignError
-from geometry.meridian import SAME, Meridian, Point, Segment
+from geometry.outline import SAME, Meridian, Point, Segment
 
 ADDENDUM = 1.0
 """Of the standard basic rack (ISO 53), in modules."""

@@ -21,7 +21,7 @@ from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicError, Harmon
 from fea.axisymmetric.lobes import HALF_WIDTH, TORQUE, lobe_coefficient
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 ANGLES = 32
 """Contact points per half turn. 64 change K by 0.01 %, 48 by 0.006 % (xb1-40)."""

@@ -23,7 +23,7 @@ from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.space import Space, isoparametric, relative_residual, solved, summed
 from fea.types import Elastic
 from geometry.errors import ComputationError
-from geometry.meridian import SAME
+from geometry.outline import SAME
 
 DEGREE = 6
 """Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""

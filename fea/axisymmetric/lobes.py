@@ -21,7 +21,7 @@ from fea.axisymmetric.recovery import recovered
 from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 HALF_WIDTH = pi / 6
 """φ0 of the contract."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.errors import ComputationError
-from geometry.meridian import SAME, Meridian
+from geometry.outline import SAME, Meridian
 
 
 class MeshingError(ComputationError):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 
 class PatchError(ValueError):

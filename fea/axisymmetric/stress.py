@@ -19,7 +19,7 @@ from fea.axisymmetric.recovery import Recovered, mises_parts, recovered
 from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, StressPeak
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 BULK = 0.5
 LOCAL = 0.5

@@ -11,7 +11,7 @@ from fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from geometry.errors import ComputationError
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 BULK = 0.75
 """Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""

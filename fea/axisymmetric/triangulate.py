@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles, signed_areas
-from geometry.meridian import Meridian
+from geometry.outline import Meridian
 
 CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""

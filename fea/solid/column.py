@@ -14,7 +14,7 @@ from math import ceil, cos, pi, sin
 import numpy as np
 
 from geometry.design import Design
-from geometry.meridian import SAME, Meridian, Segment
+from geometry.outline import SAME, Meridian, Segment
 
 INTERFACE = "interface"
 HOLE = "hole"

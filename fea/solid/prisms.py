@@ -12,7 +12,7 @@ import numpy as np
 
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.solid.column import HOLE, INTERFACE, Column
-from geometry.meridian import SAME
+from geometry.outline import SAME
 
 FILLED = (0.6, 0.25)
 """Rings of nodes within a hole's circle, where material closes the hole above."""

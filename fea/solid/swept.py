@@ -25,7 +25,8 @@ from fea.solid.sizing import Grading
 from fea.solid.snap import snap_to_surfaces
 from fea.types import TetMesh
 from geometry.design import Design
-from geometry.meridian import SAME, Meridian, meridian
+from geometry.meridian import meridian
+from geometry.outline import SAME, Meridian
 from geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)

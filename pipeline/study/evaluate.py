@@ -21,7 +21,8 @@ from fea.types import Elastic
 from geometry.design import Cup, Design, Hat, Shaft
 from geometry.errors import ComputationError, DesignError
 from geometry.load import design_from
-from geometry.meridian import Meridian, cup_meridian, hat_meridian, shaft_meridian
+from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
+from geometry.outline import Meridian
 from pipeline.backlash import StiffnessValueError, backlash
 from pipeline.bearing_play import BearingPlayDomainError
 from pipeline.cache import Cache

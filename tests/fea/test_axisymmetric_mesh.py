@@ -11,7 +11,8 @@ from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
 from fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
 from geometry.design import Cup
-from geometry.meridian import Meridian, Segment, cup_meridian
+from geometry.meridian import cup_meridian
+from geometry.outline import Meridian, Segment
 
 CUP = Cup(
     kind="cup",

@@ -17,7 +17,8 @@ from fea.axisymmetric.recovery import recovered
 from fea.axisymmetric.torsion import torsional_stiffness
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import Elastic
-from geometry.meridian import Meridian, cup_meridian
+from geometry.meridian import cup_meridian
+from geometry.outline import Meridian
 
 STEEL = Elastic(200e3, 0.3)
 

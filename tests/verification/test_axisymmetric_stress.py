@@ -12,7 +12,8 @@ from fea.axisymmetric.peak import StressError
 from fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from fea.types import NMM_PER_NM, Elastic
 from geometry.design import Cup
-from geometry.meridian import Meridian, Segment, cup_meridian
+from geometry.meridian import cup_meridian
+from geometry.outline import Meridian, Segment
 
 STEEL = Elastic(206e3, 0.3)
 CUP = Cup(

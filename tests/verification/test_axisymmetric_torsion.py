@@ -17,7 +17,8 @@ from fea.axisymmetric.torsion_fields import bracket
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic
 from geometry.design import Shaft, ShaftSegment
-from geometry.meridian import Meridian, cup_meridian, shaft_meridian
+from geometry.meridian import cup_meridian, shaft_meridian
+from geometry.outline import Meridian
 
 STEEL = Elastic(200e3, 0.3)
 ROUNDING = 1e-9

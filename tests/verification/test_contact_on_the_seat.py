@@ -22,7 +22,8 @@ from fea.axisymmetric.lobes import lobe_stiffness
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import Elastic
 from geometry.load import design_from
-from geometry.meridian import Meridian, meridian
+from geometry.meridian import meridian
+from geometry.outline import Meridian
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
 
