@@ -6,15 +6,17 @@ import json
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from fea.toothed_ring.equivalent import EquivalentRing
-from fea.types import SolidField, Stiffness, StressPeak
-from geometry.design import Design
-from pipeline.backlash import Backlash
-from pipeline.chain import RunResult, Stiffnesses
-from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from results.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from fea.toothed_ring.equivalent import EquivalentRing
+    from fea.types import SolidField, Stiffness, StressPeak
+    from geometry.design import Design
+    from pipeline.backlash import Backlash
+    from pipeline.chain import RunResult, Stiffnesses
+    from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 
 Record = dict[str, Any]
 

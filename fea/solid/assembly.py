@@ -52,32 +52,40 @@ def stiffness_matrix(mesh: TetMesh, material: Elastic, frames: NodeFrames) -> cs
     rows = np.repeat(mesh.cells, 10, axis=1).ravel()
     columns = np.tile(mesh.cells, (1, 10)).ravel()
     pairs, slot = np.unique(rows * n + columns, return_inverse=True)
-    blocks = np.zeros((len(pairs), 9))
+    blocks = np.zeros((3, 3, len(pairs)))
     for start in range(0, len(mesh.cells), CHUNK):
-        part = slice(start, start + CHUNK)
-        local = _element_blocks(mesh, part, material, frames).reshape(-1, 9)
-        where = slot[start * 100 : start * 100 + len(local)]
-        for k in range(9):
-            blocks[:, k] += np.bincount(where, local[:, k], minlength=len(pairs))
+        local = _element_blocks(mesh, slice(start, start + CHUNK), material)
+        where = slot[start * 100 : start * 100 + local[0, 0].size]
+        for a, b in np.ndindex(3, 3):
+            blocks[a, b] += np.bincount(where, local[a, b].ravel(), minlength=len(pairs))
+    _turn(blocks, frames, pairs // n, pairs % n)
     indptr = np.searchsorted(pairs // n, np.arange(n + 1))
-    return bsr_matrix((blocks.reshape(-1, 3, 3), pairs % n, indptr), shape=(3 * n, 3 * n)).tocsr()
+    data = np.ascontiguousarray(blocks.transpose(2, 0, 1))
+    return bsr_matrix((data, pairs % n, indptr), shape=(3 * n, 3 * n)).tocsr()
 
 
-def _element_blocks(
-    mesh: TetMesh, part: slice, material: Elastic, frames: NodeFrames
-) -> np.ndarray:
-    """(m, 10, 10, 3, 3) blocks of a slice of elements, in the nodes' own axes."""
+def _element_blocks(mesh: TetMesh, part: slice, material: Elastic) -> np.ndarray:
+    """(3, 3, m, 10, 10): Cartesian component pair, element, node pair."""
     cells = mesh.cells[part]
     g = mesh_gradients(
         TetMesh(mesh.nodes, cells, mesh.facets, mesh.facet_patch, mesh.patches, mesh.sector_deg)
     )
     m, q = g.weights.shape
-    flat = g.gradients.reshape(m, q, 30)
+    flat = g.gradients.transpose(0, 1, 3, 2).reshape(m, q, 30)
     d = np.matmul((flat * g.weights[..., None]).transpose(0, 2, 1), flat)
-    d = d.reshape(m, 10, 3, 10, 3).transpose(0, 1, 3, 2, 4)
-    trace = np.trace(d, axis1=3, axis2=4)
-    local = material.lam * d + material.mu * d.swapaxes(3, 4)
-    local += material.mu * trace[..., None, None] * np.eye(3)
-    axes = frames.axes[cells]
-    left = np.matmul(axes.swapaxes(2, 3)[:, :, None], local)
-    return np.matmul(left, axes[:, None])
+    # one contiguous (m, 10, 10) for every component pair: all that follows is plain sums
+    d = np.ascontiguousarray(d.reshape(m, 3, 10, 3, 10).transpose(1, 3, 0, 2, 4))
+    local = material.lam * d + material.mu * d.swapaxes(0, 1)
+    trace = material.mu * (d[0, 0] + d[1, 1] + d[2, 2])
+    for a in range(3):
+        local[a, a] += trace
+    return local
+
+
+def _turn(blocks: np.ndarray, frames: NodeFrames, row: np.ndarray, column: np.ndarray) -> None:
+    """Blocks (3, 3, p) of node pairs into the nodes' own axes, in place: AᵢᵀK Aⱼ about z."""
+    c, s = frames.axes[:, 0, 0], frames.axes[:, 1, 0]
+    x, y = blocks[0].copy(), blocks[1].copy()
+    blocks[0], blocks[1] = c[row] * x + s[row] * y, c[row] * y - s[row] * x
+    x, y = blocks[:, 0].copy(), blocks[:, 1].copy()
+    blocks[:, 0], blocks[:, 1] = c[column] * x + s[column] * y, c[column] * y - s[column] * x

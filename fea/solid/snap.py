@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
@@ -42,14 +41,14 @@ def snap_to_surfaces(
 def _nodes_by_surfaces(
     faces: np.ndarray, facet_surface: np.ndarray
 ) -> dict[tuple[int, ...], np.ndarray]:
-    pairs = np.unique(
-        np.column_stack([faces.ravel(), np.repeat(facet_surface, faces.shape[1])]), axis=0
-    )
-    nodes, start = np.unique(pairs[:, 0], return_index=True)
-    groups: dict[tuple[int, ...], list[int]] = defaultdict(list)
-    for node, owners in zip(nodes, np.split(pairs[:, 1], start[1:]), strict=True):
-        groups[tuple(owners.tolist())].append(int(node))
-    return {k: np.array(v) for k, v in groups.items()}
+    """Nodes of `faces` by the surfaces that meet at them."""
+    touches = np.zeros((int(faces.max()) + 1, int(facet_surface.max()) + 1), bool)
+    touches[faces.ravel(), np.repeat(facet_surface, faces.shape[1])] = True
+    nodes = np.flatnonzero(touches.any(axis=1))
+    packed = np.packbits(touches[nodes], axis=1)
+    _, first, group = np.unique(packed, axis=0, return_index=True, return_inverse=True)
+    owners = (tuple(np.flatnonzero(touches[nodes[k]]).tolist()) for k in first)
+    return {those: nodes[group.ravel() == k] for k, those in enumerate(owners)}
 
 
 def _common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
