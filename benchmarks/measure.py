@@ -90,7 +90,6 @@ def repeated(runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return dict(good[len(good) // 2]) | {
         "wall_s": statistics.median(walls),
         "wall_range_s": [walls[0], walls[-1]],
-        "best_s": walls[0],
         "cpu_s": statistics.median(r.get("cpu_s", 0.0) for r in good),
         "runs": len(good),
         "peak_MB": max(r["peak_MB"] for r in good),

@@ -88,7 +88,7 @@ def fastest(r: Row, case: str, accuracy: float, program: str) -> Row | None:
         if (t["case"], t["accuracy_pct"], t["program"]) == (case, accuracy, program)
         and "failed" not in t and t["worst_error_pct"] <= accuracy
     ]  # fmt: skip
-    return min(good, key=lambda t: t["best_s"], default=None)
+    return min(good, key=lambda t: t["wall_s"], default=None)
 
 
 def programs(r: Row, case: str) -> list[str]:
@@ -100,13 +100,13 @@ def times(r: Row, case: str) -> Iterable[str]:
     for accuracy in ACCURACIES_PCT:
         rows = [
             f"### To {accuracy:g} %\n",
-            "| program | best [s] | median (range) [s] | CPU [s] | own bound [%] | true error [%]"
+            "| program | median (range) [s] | CPU [s] | own bound [%] | true error [%]"
             " | unknowns | memory [MB] | setting |",
-            "|---|---|---|---|---|---|---|---|---|",
+            "|---|---|---|---|---|---|---|---|",
         ]
         for program in programs(r, case):
             t = fastest(r, case, accuracy, program)
-            rows.append(f"| {program} | not reached | | | | | | | |" if t is None else line(t))
+            rows.append(f"| {program} | not reached | | | | | | |" if t is None else line(t))
         yield "\n".join(rows)
 
 
@@ -121,7 +121,7 @@ def line(t: Row) -> str:
     cpu = f"{t['cpu_s']:.2f}" if t["cpu_s"] > 0 else "not taken"
     setting = t["setting"] or f"tolerance_pct = {t['accuracy_pct']:g}"
     return (
-        f"| {t['program']} | {t['best_s']:.2f} | {t['wall_s']:.2f} {spread} | {cpu} | {bound}"
+        f"| {t['program']} | {t['wall_s']:.2f} {spread} | {cpu} | {bound}"
         f" | {t['error_pct']:+.3f} | {t['unknowns']} | {t['peak_MB']} | {setting} |"
     )
 
@@ -131,7 +131,7 @@ def demands(r: Row) -> str:
     free, six = (c.name for c in CASES)
     rows = [
         "## What was demanded\n",
-        "By the fastest run of each, for a peer those of the search too.\n",
+        "By the medians above.\n",
         "| demand | found | met |",
         "|---|---|---|",
     ]
@@ -152,12 +152,11 @@ def demands(r: Row) -> str:
 
 
 def ratio(what: str, peer: Row | None, ours: Row | None, wanted: float) -> str:
-    """By each program's fastest run: what other work on the machine did to the rest is left out."""
     if ours is None:
         return f"| {what} | we did not reach it | no |"
     if peer is None:
         return f"| {what} | it did not reach the accuracy | yes |"
-    theirs, own = peer["best_s"], ours["best_s"]
+    theirs, own = peer["wall_s"], ours["wall_s"]
     found = theirs / own
     said = f"{found:.1f} × as fast" if found >= 1 else f"{1 / found:.1f} × its time"
     said += f" ({theirs:.2f} s and {own:.2f} s)"
