@@ -54,14 +54,28 @@ def read_toml(path: Path | str) -> dict[str, Any]:
         if isinstance(fault, DesignFileError):
             raise
         raise DesignFileError(path, f"cannot be read ({fault})") from fault
+    return tables_from(raw, path)
+
+
+def tables_from(raw: bytes, name: object) -> dict[str, Any]:
+    """The tables of a design file's bytes; `name` is what an error calls the file.
+
+    Raises
+    ------
+    DesignFileError : too large, not UTF-8, not TOML.
+    """
+    if len(raw) > LARGEST_BYTES:
+        raise DesignFileError(
+            name, f"{len(raw)} bytes; a design file has at most {LARGEST_BYTES} bytes"
+        )
     try:
         return tomllib.loads(raw.decode("utf-8-sig"))
     except UnicodeDecodeError as fault:
-        raise DesignFileError(path, f"is not UTF-8 text (byte {fault.start})") from fault
+        raise DesignFileError(name, f"is not UTF-8 text (byte {fault.start})") from fault
     except RecursionError as fault:
-        raise DesignFileError(path, "is nested too deeply") from fault
+        raise DesignFileError(name, "is nested too deeply") from fault
     except ValueError as fault:  # also integers of more digits than Python converts
-        raise DesignFileError(path, f"is not valid TOML: {fault}") from fault
+        raise DesignFileError(name, f"is not valid TOML: {fault}") from fault
 
 
 def design_from(data: Mapping[str, Any]) -> Design:

@@ -1,13 +1,15 @@
-"""A commented design to start from; the comments are the schema's own descriptions."""
+"""Designs as TOML with comments, the schema's own descriptions: one to start from, or any other."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any, Literal
 
+from geometry.design import Design
 from geometry.schema import Location, allowed, json_schema, node_at
+from geometry.toml_text import quoted
 
-__all__ = ["json_schema", "template"]
+__all__ = ["design_text", "json_schema", "template"]
 
 Table = dict[str, Any]
 
@@ -91,7 +93,14 @@ _HAT_SHAFT: Table = {
 def template(kind: Literal["cup", "hat"] = "cup") -> str:
     """Text of a design file that loads as it stands, every key with its meaning and unit."""
     title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
-    lines = [title, *_lines((), _values(kind), kind, optional=False)]
+    lines = [title, *_lines((), _values(kind), kind, OPTIONAL, optional=False)]
+    return "\n".join(lines) + "\n"
+
+
+def design_text(design: Design) -> str:
+    """Text of a design file that loads as exactly this design, every key with its meaning."""
+    values = design.model_dump(mode="json", exclude_none=True)
+    lines = _lines((), values, design.flexspline.kind, frozenset(), optional=False)
     return "\n".join(lines) + "\n"
 
 
@@ -124,26 +133,28 @@ def _values(kind: str) -> Table:
     }
 
 
-def _lines(location: Location, table: Table, kind: str, optional: bool) -> Iterator[str]:
-    """The table's own keys, then the tables below it, as TOML wants them."""
+def _lines(
+    location: Location, table: Table, kind: str, hidden: frozenset[Location], optional: bool
+) -> Iterator[str]:
+    """The table's own keys, then the tables below it, as TOML wants them; `hidden` as comments."""
     for key, value in table.items():
         if not isinstance(value, dict | list):
-            off = "# " if optional or (*location, key) in OPTIONAL else ""
+            off = "# " if optional or (*location, key) in hidden else ""
             setting = f"{off}{key} = {_toml(value)}"
             yield f"{setting:<36} # {_meaning((*location, key), kind)}"
     for key, value in table.items():
         below = (*location, key)
-        off = "# " if optional or below in OPTIONAL else ""
+        off = "# " if optional or below in hidden else ""
         name = ".".join(str(part) for part in below)
         if isinstance(value, dict):
             if any(not isinstance(v, dict) for v in value.values()):  # [material] holds tables only
                 yield ""
                 yield f"{off + f'[{name}]':<36} # {_about(below, kind)}"
-            yield from _lines(below, value, kind, bool(off))
+            yield from _lines(below, value, kind, hidden, bool(off))
         elif isinstance(value, list):
             for i, item in enumerate(value):
                 yield f"{off + f'[[{name}]]':<36} # {_about((*below, i), kind)}"
-                yield from _lines((*below, i), item, kind, bool(off))
+                yield from _lines((*below, i), item, kind, hidden, bool(off))
 
 
 def _about(location: Location, kind: str) -> str:
@@ -156,4 +167,5 @@ def _meaning(location: Location, kind: str) -> str:
 
 
 def _toml(value: str | float) -> str:
-    return f'"{value}"' if isinstance(value, str) else str(value)
+    """A number that reads back as the same double, or a basic string."""
+    return quoted(value) if isinstance(value, str) else repr(value)

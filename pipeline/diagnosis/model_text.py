@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 
 from geometry.errors import one_line
+from geometry.toml_text import quoted
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element
 from pipeline.diagnosis.model import ExtendedModel
@@ -123,9 +123,3 @@ def _inline(shape: Mapping[str, float]) -> str:
 def number(value: float) -> str:
     """A number of TOML that reads back as the same double."""
     return str(int(value)) if isinstance(value, int) else repr(float(value))
-
-
-def quoted(text: str) -> str:
-    """A basic string of TOML; JSON's escapes are among TOML's, but for DEL and lone surrogates."""
-    whole = text.encode("utf-8", "replace").decode()
-    return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -12,7 +12,7 @@ from geometry.design import Design
 from geometry.load import design_from
 from geometry.sanity import warnings
 from geometry.schema import json_schema, resolved
-from geometry.template import template
+from geometry.template import design_text, template
 
 KINDS = ("cup", "hat")
 UNIT = re.compile(r"_(mm|um|GPa|MPa|Nm|deg|pct)$")
@@ -68,3 +68,23 @@ def test_schema_is_json_and_forbids_unknown_keys() -> None:
     assert schema["additionalProperties"] is False
     assert all(t["additionalProperties"] is False for t in schema["$defs"].values())
     assert set(schema["properties"]) == set(Design.model_fields)
+
+
+NAMES = ('a "quoted" \\ name', "<script>alert(1)</script>", "é € 𝛼 # [x]")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_design_written_and_read_is_the_same_design(kind: str, name: str) -> None:
+    text = re.sub(r"(?m)^# (?=\[|\w+ = )", "", template(kind))
+    tables = tomllib.loads(text)
+    tables["name"] = name
+    tables["flexspline"]["wall_thickness_mm"] = 0.1 + 0.2  # no short decimal
+    design = design_from(tables)
+    assert design_from(tomllib.loads(design_text(design))) == design
+
+
+def test_what_a_design_leaves_out_stays_out() -> None:
+    design = design_from(tomllib.loads(template("cup")))
+    assert design.shaft.keyway is None
+    assert "keyway" not in design_text(design)

@@ -1,0 +1,11 @@
+"""Text as TOML writes it."""
+
+from __future__ import annotations
+
+import json
+
+
+def quoted(text: str) -> str:
+    """A basic string of TOML; JSON's escapes are among TOML's, but for DEL and lone surrogates."""
+    whole = text.encode("utf-8", "replace").decode()
+    return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,163 @@
+"""A design while its dimensions move: the command line's axisymmetric answers, piece by piece.
+
+Bolt holes and keyway are left out (`left_out` says so); what is left is solved exactly as `flexspline
+stiffness` solves a body of revolution, to the design's own tolerance. Every piece is proportional to
+Young's modulus or to a load, so parts are solved for 1 GPa, 1 mm and 1 N·m and remembered: a change of
+the material, the torque or a clearance costs nothing, and a change of one part leaves the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from fea.axisymmetric.contact import contact_stiffness
+from fea.axisymmetric.lobes import lobe_stiffness
+from fea.axisymmetric.stress import RevolvedField, ellipse_stress, torsion_stress
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.types import Elastic, Stiffness
+from geometry.design import Cup, Design, Hat, Shaft
+from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
+from geometry.outline import Meridian
+from pipeline.diagnosis.specimens.designs import without_holes
+from pipeline.parts import DRIVEN
+from pipeline.rim import STRESS_TOLERANCE, wave_generator_amplitude
+from pipeline.study.evaluate import with_equivalent_ring
+
+View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
+RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]
+KEPT = 256
+"""Solved parts remembered: enough to go back and forth with one slider."""
+
+Part = Cup | Hat | Shaft
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """A stiffness between its bounds [N·m/rad]."""
+
+    K_Nm_per_rad: float
+    lower_Nm_per_rad: float
+    upper_Nm_per_rad: float
+
+
+def left_out(design: Design) -> tuple[str, ...]:
+    """What the fast model does not see, in words; empty for bodies of revolution."""
+    found = []
+    for part, name in ((design.flexspline, "flexspline"), (design.shaft, "shaft")):
+        if part.bolt_count:
+            found.append(f"{part.bolt_count} bolt holes of the {name}")
+    if design.shaft.keyway is not None:
+        found.append("the keyway")
+    return tuple(found)
+
+
+def revolved(design: Design) -> Design:
+    """The bodies of revolution that stand for the design: no holes, teeth as their plain ring."""
+    return without_holes(with_equivalent_ring(design))
+
+
+def torsion(design: Design) -> tuple[Bounded, Bounded]:
+    """K_b (load case "uniform") and K_e of a `revolved` design.
+
+    Raises
+    ------
+    ComputationError : the mesh failed or the tolerance was not met.
+    """
+    tolerance = design.solver.tolerance_pct / 100
+    own, shaft = design.material.flexspline, design.shaft_material
+    K_b = _torsion(design.flexspline, own.poissons_ratio, tolerance)
+    K_e = _torsion(design.shaft, shaft.poissons_ratio, tolerance)
+    return _scaled(K_b, own.youngs_modulus_GPa), _scaled(K_e, shaft.youngs_modulus_GPa)
+
+
+def rim(design: Design, case: RimCase) -> Bounded:
+    """K_b of a lobe case of a `revolved` design; errors as `torsion`."""
+    own, tolerance = design.material.flexspline, design.solver.tolerance_pct / 100
+    solve = _contact if case == "K_b_lobes_contact" else _lobes
+    supported = case != "K_b_lobes_unsupported"
+    found = solve(design.flexspline, own.poissons_ratio, tolerance, supported)
+    return _scaled(found, own.youngs_modulus_GPa)
+
+
+def field(design: Design, view: View) -> RevolvedField:
+    """Displacement and stress of a view of a `revolved` design; errors as `torsion`."""
+    wall = design.flexspline.wall_thickness_mm
+    if view == "wave_generator":
+        own, w0 = design.material.flexspline, wave_generator_amplitude(design)
+        unit = _ellipse(design.flexspline, own.poissons_ratio, wall)
+        return _loaded(unit, own.youngs_modulus_GPa * w0, w0)
+    part: Part = design.shaft if view == "shaft_torque" else design.flexspline
+    own = design.shaft_material if view == "shaft_torque" else design.material.flexspline
+    unit = _twisted(part, own.poissons_ratio, wall)
+    torque = design.load.torque_Nm
+    return _loaded(unit, torque, torque / own.youngs_modulus_GPa)
+
+
+def _loaded(unit: RevolvedField, stress: float, displacement: float) -> RevolvedField:
+    """The unit solution times its load."""
+    return replace(
+        unit,
+        displacement=unit.displacement * displacement,
+        stress=unit.stress * stress,
+        peak=replace(unit.peak, mises_MPa=unit.peak.mises_MPa * stress),
+    )
+
+
+def outline(part: Part) -> Meridian:
+    """A part's meridian."""
+    if isinstance(part, Shaft):
+        return shaft_meridian(part)
+    return cup_meridian(part) if isinstance(part, Cup) else hat_meridian(part)
+
+
+def profile(design: Design, view: View, chord_error: float) -> np.ndarray:
+    """The meridian (n, 2) [mm] of the part in view, arcs as chords: its shape before any solve."""
+    part: Part = design.shaft if view == "shaft_torque" else design.flexspline
+    return outline(part).polygon(chord_error)
+
+
+def _scaled(of_1_GPa: Stiffness, E_GPa: float) -> Bounded:
+    return Bounded(
+        of_1_GPa.K_Nm_per_rad * E_GPa,
+        of_1_GPa.lower_Nm_per_rad * E_GPa,
+        of_1_GPa.upper_Nm_per_rad * E_GPa,
+    )
+
+
+def _unit(nu: float) -> Elastic:
+    return Elastic(1e3, nu)
+
+
+def _driven(part: Part) -> str:
+    return DRIVEN["shaft" if isinstance(part, Shaft) else "flexspline"]
+
+
+@lru_cache(maxsize=KEPT)
+def _torsion(part: Part, nu: float, tolerance: float) -> Stiffness:
+    return torsional_stiffness(outline(part), _unit(nu), _driven(part), tolerance)
+
+
+@lru_cache(maxsize=KEPT)
+def _lobes(part: Part, nu: float, tolerance: float, supported: bool) -> Stiffness:
+    return lobe_stiffness(outline(part), _unit(nu), supported, tolerance)
+
+
+@lru_cache(maxsize=KEPT)
+def _contact(part: Part, nu: float, tolerance: float, supported: bool) -> Stiffness:
+    return contact_stiffness(outline(part), _unit(nu), _lobes(part, nu, tolerance, supported))
+
+
+@lru_cache(maxsize=KEPT // 8)
+def _ellipse(part: Part, nu: float, wall_mm: float) -> RevolvedField:
+    """For w0 = 1 mm; the field is kept, so fewer of them."""
+    return ellipse_stress(outline(part), _unit(nu), 1.0, wall_mm, STRESS_TOLERANCE)
+
+
+@lru_cache(maxsize=KEPT // 8)
+def _twisted(part: Part, nu: float, wall_mm: float) -> RevolvedField:
+    """For 1 N·m; the field is kept, so fewer of them."""
+    return torsion_stress(outline(part), _unit(nu), _driven(part), 1.0, wall_mm, STRESS_TOLERANCE)
