@@ -50,7 +50,7 @@ class StudyResult:
             at = np.linspace(0, len(chosen) - 1, count).round().astype(int)
             return tuple(chosen[i] for i in at)
         left = self.feasible
-        while len(chosen) < count:
+        while chosen and len(chosen) < count:  # without an objective there is no front
             taken = {r.slot for r in chosen}
             left = tuple(r for r in left if r.slot not in taken)
             if not left:

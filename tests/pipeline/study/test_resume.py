@@ -127,3 +127,10 @@ def test_a_bug_is_no_reason(tmp_path: Path) -> None:
     study = study_of(GRID)
     with pytest.raises(ZeroDivisionError):
         run_study(study, ledger_of(study, tmp_path), threads, silent, broken)
+
+
+def test_a_study_without_an_objective_has_no_best_and_ends(tmp_path: Path) -> None:
+    study = study_of(GRID.replace('[objective]\n"K_b_Nm_per_rad" = "maximize"\n', ""))
+    result = run_study(study, ledger_of(study, tmp_path), threads, silent, quick)
+    assert len(result.feasible) == 6
+    assert result.best(5) == ()
