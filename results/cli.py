@@ -24,6 +24,7 @@ from results.job import (
     stiffness_option,
     tell,
 )
+from results.studio.command import register as register_studio
 from results.study.command import register as register_study
 
 app = typer.Typer(
@@ -51,7 +52,7 @@ def run(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """The whole way: CAD, mesh, K_b, K_e, backlash, pictures and report.pdf."""
+    """The whole way: CAD, mesh, K_b, K_e, backlash, pictures, report.pdf and report.html."""
     with answered(design):
         from pipeline.diagnosis.model_file import read_model_file
 
@@ -61,7 +62,7 @@ def run(
         from pipeline.diagnosis.extended_backlash import extended_backlash
         from results.pictures import write_pictures
         from results.records import extended_record, run_record
-        from results.report.build import write_run_report
+        from results.report.build import write_run_page, write_run_report
 
         result = run_chain(job.shop)
         extended = None
@@ -72,6 +73,7 @@ def run(
         with job.shop.progress.stage("report"):
             name = measured.path.name if measured else ""
             write_run_report(job.folder / "report.pdf", result, pictures, name)
+        write_run_page(job.folder / "report.html", job.shop, result, pictures, name)
         record = run_record(result, job.wall_s)
         if extended is not None:
             record |= extended_record(extended, name)
@@ -205,6 +207,7 @@ def schema() -> None:
 
 
 register_study(app)
+register_studio(app)
 
 if __name__ == "__main__":
     main()

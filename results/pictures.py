@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
@@ -20,7 +21,7 @@ from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 3
+DRAWING = 4
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 
 
@@ -35,6 +36,47 @@ def write_pictures(
             write_bytes(path, _drawn(shop.cache, name, inputs, draw))
         paths[name] = path
     return paths
+
+
+def turning_views(shop: Workshop, result: RunResult) -> dict[str, bytes]:
+    """The stress pictures as views that turn in a browser, by the pictures' names."""
+    design, fields = result.design, result.fields
+    torque_Nm, w0 = design.load.torque_Nm, wave_generator_amplitude(design)
+
+    def stress(part: str) -> Callable[[Path], None]:
+        def draw(path: Path) -> None:
+            from results.renders.stress_picture import turning_torque_stress
+
+            name = f"{part}_torque"
+            path.write_bytes(turning_torque_stress(name, fields[name], TITLES[part], torque_Nm))
+
+        return draw
+
+    def ellipse(path: Path) -> None:
+        from results.renders.ellipse_picture import turning_ellipse
+
+        path.write_bytes(turning_ellipse("wave_generator", fields["wave_generator"], w0))
+
+    draws = {f"{p}_torque": stress(p) for p in TITLES} | {"wave_generator": ellipse}
+    found = {}
+    for name, inputs, _ in _pictures(shop, result, None):
+        if name in draws:
+            with shop.progress.stage(f"3-D view {name}"):
+                found[name] = _drawn(shop.cache, f"{name} turning", inputs, draws[name])
+    return found
+
+
+def small(shop: Workshop, png: Path) -> bytes:
+    """A rendered picture as WebP, a fifth of its PNG: for pages, which carry their pictures."""
+
+    def draw(path: Path) -> None:
+        from PIL import Image
+
+        with Image.open(png) as image:
+            image.convert("RGB").save(path, "WEBP", quality=82, method=4)
+
+    digest = hashlib.sha256(png.read_bytes()).hexdigest()
+    return _drawn(shop.cache, "webp", {"sha256": digest}, draw)
 
 
 def _drawn(

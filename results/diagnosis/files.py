@@ -14,16 +14,16 @@ from results.atomic import write_bytes
 from results.diagnosis.record import EXTENDED_MODEL, Record
 from results.figures.diagnosis.draw import draw_figures
 from results.records import as_json, program_version
-from results.report.diagnosis import Stiffnesses, diagnosis_pdf
+from results.report.both import reports_of
+from results.report.diagnosis import Stiffnesses, diagnosis_document
 
 DIAGNOSIS = "diagnosis.json"
-REPORT = "report.pdf"
 
 
 def write_diagnosis(
     folder: Path, diagnosis: Diagnosis, record: Record, used: Stiffnesses
 ) -> list[Path]:
-    """Write diagnosis.json, the extended model, the figures and the report into `folder`.
+    """Write diagnosis.json, the extended model, the figures and the reports into `folder`.
 
     Nothing is written before all of it is computed; a failure leaves what was there.
     """
@@ -33,7 +33,8 @@ def write_diagnosis(
     with tempfile.TemporaryDirectory(prefix="flexspline-diagnosis-") as scratch:
         figures = draw_figures(diagnosis, Path(scratch))
         made |= {f.path.name: f.path.read_bytes() for f in figures}
-        made[REPORT] = diagnosis_pdf(diagnosis, figures, used, Path(scratch))
+        document = diagnosis_document(diagnosis, figures, used)
+        made |= reports_of(document, {f.path.stem: f.path for f in figures})
     for name, data in made.items():
         write_bytes(folder / name, data)
     return [folder / name for name in made]

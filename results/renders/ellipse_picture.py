@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,8 @@ from results.renders.shown import (
     wires,
 )
 from results.renders.surface import crease_edges, lines, skin
-from results.renders.whole import whole_part
+from results.renders.turntable import Drawn, Said, turning
+from results.renders.whole import WholePart, whole_part
 from results.style import ACCENT
 
 _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))
@@ -39,6 +41,44 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
     field : the solution with the seat displaced radially by w0 cos 2φ.
     amplitude_mm : w0.
     """
+    scene = _scene(field, amplitude_mm)
+    before = lines(scene.whole.nodes, scene.before)
+
+    def shot(seen: Seen, frame: tuple[int, int], line: float) -> Shot:
+        layers = stress_layers(seen.points, scene.whole.mises, seen.shown, field.peak, line)
+        return shoot([*layers, wires(before, ACCENT, 1.3 * line)], seen.view, frame)
+
+    said = scene.said
+    write_sheet(
+        path,
+        shot(scene.main, MAIN, 2.4),
+        shot(scene.inset, INSET, 2.0),
+        Sheet(said.title, said.subtitle, "along the axis", said.note, said.bar, said.mark),
+    )
+
+
+def turning_ellipse(name: str, field: SolidField, amplitude_mm: float) -> bytes:
+    """The same as a view that turns in a browser (`results.renders.turntable`)."""
+    scene = _scene(field, amplitude_mm)
+    whole, main = scene.whole, scene.main
+    drawn = Drawn(
+        main.points, whole.mises, main.shown, main.view, field.peak, scene.before, whole.nodes
+    )
+    return turning(name, drawn, scene.said)
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """Both views, the edges (k, 3) that move, and the words."""
+
+    whole: WholePart
+    main: Seen
+    inset: Seen
+    before: np.ndarray
+    said: Said
+
+
+def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
     whole = whole_part(field.mesh, field.displacement, field.mises, "symmetric")
     shown = skin(whole)
     size = float(np.ptp(whole.nodes[:, 0]))
@@ -48,29 +88,16 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
     edges = crease_edges(whole.nodes, shown.facets)
     main, mark = _facing_peak(field, whole.nodes, inset)
     moving = np.linalg.norm(shift, axis=1)[edges].max(axis=1) > _STILL * size
-    before = lines(whole.nodes, edges[moving])
     beyond = goes_beyond(field.peak, shown, whole.mises)
-
-    def shot(seen: Seen, frame: tuple[int, int], line: float) -> Shot:
-        layers = stress_layers(seen.points, whole.mises, shown, field.peak, line)
-        return shoot([*layers, wires(before, ACCENT, 1.3 * line)], seen.view, frame)
-
-    write_sheet(
-        path,
-        shot(main, MAIN, 2.4),
-        shot(inset, INSET, 2.0),
-        Sheet(
-            title="Flexspline on the wave generator: stress",
-            subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
-            inset_title="along the axis",
-            note=(
-                f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
-                + stress_note(beyond)
-            ),
-            bar=stress_bar(field.peak, beyond),
-            mark=mark,
-        ),
+    said = Said(
+        title="Flexspline on the wave generator: stress",
+        subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
+        note=f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
+        + stress_note(beyond),
+        bar=stress_bar(field.peak, beyond),
+        mark=mark,
     )
+    return _Scene(whole, main, inset, edges[moving], said)
 
 
 def _facing_peak(field: SolidField, nodes: np.ndarray, inset: Seen) -> tuple[Seen, Mark]:

@@ -132,7 +132,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
         extend="max" if bar.beyond else "neither",
         extendfrac=0.04,
     )
-    inside, words = _ticks(bar.high)
+    inside, words = ticks(bar.high)
     scale.set_ticks([*inside, bar.high], labels=[*words, bar.high_text])
     scale.outline.set_linewidth(0.8)
     axes.minorticks_off()
@@ -142,7 +142,7 @@ def _bar(figure: Figure, bar: Bar) -> None:
     _say(figure, (1476, 970), bar.label, _TEXT, INK, ha="center")
 
 
-def _ticks(high: float) -> tuple[list[float], list[str]]:
+def ticks(high: float) -> tuple[list[float], list[str]]:
     """Round steps from 0 that leave room for the label at the top."""
     from matplotlib.ticker import MaxNLocator
 

@@ -18,7 +18,8 @@ from results.renders.shown import (
     stress_note,
 )
 from results.renders.surface import opening, skin
-from results.renders.whole import whole_part
+from results.renders.turntable import Drawn, Said, turning
+from results.renders.whole import WholePart, whole_part
 
 
 def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm: float) -> None:
@@ -29,11 +30,8 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
     field : the solution under `torque_Nm`.
     part_name : opens the title ("Flexspline", "Output shaft").
     """
-    whole = whole_part(field.mesh, field.displacement, field.mises, "antisymmetric")
-    cut = opening(field.mesh.sector_deg)
-    main = Seen(whole.nodes, skin(whole, cut), cut_view(cut))
-    inset = Seen(whole.nodes, skin(whole), below_view(cut))
-    beyond = goes_beyond(field.peak, main.shown, whole.mises)
+    whole, main, inset = _seen(field)
+    said = _said(field, whole, main, inset, part_name, torque_Nm)
     write_sheet(
         path,
         shoot(stress_layers(main.points, whole.mises, main.shown, field.peak), main.view, MAIN),
@@ -42,12 +40,35 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
             inset.view,
             INSET,
         ),
-        Sheet(
-            title=f"{part_name}: stress under load torque",
-            subtitle=f"von Mises stress, torque {torque_Nm:.4g} N·m; cut open, not deformed",
-            inset_title="from below",
-            note=stress_note(beyond),
-            bar=stress_bar(field.peak, beyond),
-            mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),
-        ),
+        Sheet(said.title, said.subtitle, "from below", said.note, said.bar, said.mark),
+    )
+
+
+def turning_torque_stress(name: str, field: SolidField, part_name: str, torque_Nm: float) -> bytes:
+    """The same as a view that turns in a browser (`results.renders.turntable`)."""
+    whole, main, inset = _seen(field)
+    drawn = Drawn(whole.nodes, whole.mises, main.shown, main.view, field.peak)
+    return turning(name, drawn, _said(field, whole, main, inset, part_name, torque_Nm))
+
+
+def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
+    whole = whole_part(field.mesh, field.displacement, field.mises, "antisymmetric")
+    cut = opening(field.mesh.sector_deg)
+    return (
+        whole,
+        Seen(whole.nodes, skin(whole, cut), cut_view(cut)),
+        Seen(whole.nodes, skin(whole), below_view(cut)),
+    )
+
+
+def _said(
+    field: SolidField, whole: WholePart, main: Seen, inset: Seen, part_name: str, torque_Nm: float
+) -> Said:
+    beyond = goes_beyond(field.peak, main.shown, whole.mises)
+    return Said(
+        title=f"{part_name}: stress under load torque",
+        subtitle=f"von Mises stress, torque {torque_Nm:.4g} N·m; cut open, not deformed",
+        note=stress_note(beyond),
+        bar=stress_bar(field.peak, beyond),
+        mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),
     )

@@ -69,12 +69,16 @@ def _cell_angle(part: WholePart) -> np.ndarray:
     return np.degrees(np.arctan2(centre[:, 1], centre[:, 0]))
 
 
-def surface(points: np.ndarray, facets: np.ndarray) -> pv.PolyData:
-    """Triangles over the facets' own nodes; point array "node" keeps each point's node index."""
+def surface(points: np.ndarray, facets: np.ndarray, curved: bool = True) -> pv.PolyData:
+    """Triangles over the facets' own nodes; point array "node" keeps each point's node index.
+
+    `curved` takes four triangles for a facet, else one through its corners.
+    """
     import pyvista as pv
 
+    facets = facets if curved else facets[:, :3]
     used, local = np.unique(facets, return_inverse=True)
-    triangles = local.reshape(facets.shape)[:, _FOUR].reshape(-1, 3)
+    triangles = local.reshape(facets.shape)[:, _FOUR if curved else [0, 1, 2]].reshape(-1, 3)
     mesh = pv.PolyData.from_regular_faces(points[used], triangles.astype(int))
     mesh.point_data["node"] = used
     return mesh.compute_normals(

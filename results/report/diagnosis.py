@@ -1,17 +1,14 @@
-"""The report of a diagnosis: its content as finished text, set by a fixed template."""
+"""The report of a diagnosis, section by section."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
-from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pipeline.diagnosis.diagnose import Diagnosis
 from pipeline.diagnosis.record import EndPoints, Specimens, Sweep
-from pipeline.diagnosis.result import Gain, NamedCause, Unexplained
+from pipeline.diagnosis.result import Gain, NamedCause, Outcome, Unexplained
 from results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
@@ -27,9 +24,29 @@ from results.diagnosis.words import (
 from results.figures.diagnosis.draw import Drawn
 from results.quantities import grouped
 from results.records import program_version
-from results.report.write import ReportError
+from results.report.document import (
+    Block,
+    Break,
+    Bullets,
+    Callout,
+    Column,
+    Document,
+    Facts,
+    Heading,
+    Paragraph,
+    Picture,
+    Pictures,
+    Table,
+    Text,
+    bold,
+    code,
+    note,
+    plain,
+    worded,
+)
 
-TEMPLATE = "diagnosis.typ"
+OPEN = ("ambiguous", "unknown", "insufficient")
+"""Verdicts that leave something to do."""
 
 
 @dataclass(frozen=True)
@@ -43,50 +60,154 @@ class Stiffnesses:
     """The solver's relative error of both in series."""
 
 
-def diagnosis_pdf(
-    diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses, folder: Path
-) -> bytes:
-    """The PDF's bytes; `folder` holds the figures and gets the template.
+def diagnosis_document(
+    diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses
+) -> Document:
+    """The report; its figures go by the stems of their files."""
+    blocks = (
+        *_verdict(diagnosis, used),
+        *_causes(diagnosis.outcome),
+        *_unexplained(diagnosis.outcome.unexplained),
+        *_worth(diagnosis.outcome),
+        *_after(diagnosis.outcome),
+        *_figures(figures),
+        *_model(diagnosis),
+        *_notes(diagnosis.outcome),
+    )
+    return Document(
+        title="The simulation against a measurement",
+        running="Measured against simulated",
+        name=diagnosis.design.name,
+        issued=f"flexspline {program_version()}",
+        blocks=blocks,
+    )
 
-    Text from files reaches typst as strings in a JSON value, never as source.
 
-    Raises
-    ------
-    ReportError : typst refused the document.
-    """
-    import typst
-
-    source = folder / TEMPLATE
-    source.write_bytes(files("results.report").joinpath(TEMPLATE).read_bytes())
-    data = json.dumps(payload(diagnosis, figures, used))
-    try:
-        return typst.compile(
-            str(source), root=str(folder), sys_inputs={"report": data}, timestamp=0
-        )
-    except typst.TypstError as error:
-        raise ReportError(f"typst could not set the report: {error}") from error
-
-
-def payload(diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses) -> dict[str, Any]:
-    """The content as JSON values, in the order in which the template sets it."""
+def _verdict(diagnosis: Diagnosis, used: Stiffnesses) -> Iterable[Block]:
     outcome = diagnosis.outcome
+    tone: Literal["amber", "blue"] = "amber" if outcome.verdict in OPEN else "blue"
+    yield Callout(tone, VERDICTS[outcome.verdict], sentence(outcome))
+    yield Heading("What was measured")
+    yield Facts(tuple((name, fact) for name, fact in measured(diagnosis)))
+    yield Paragraph(worded(compared(diagnosis, used)))
+
+
+def _causes(outcome: Outcome) -> Iterable[Block]:
+    if not outcome.causes:
+        return
+    may = outcome.verdict == "ambiguous"
+    yield Heading(f"What {'may be' if may else 'is'} missing from the simulation")
+    yield Table(
+        columns=(
+            Column("Cause", grow=1.35), Column("How large"), Column("How sure"),
+            Column("What else could explain it", grow=1.2),
+        ),
+        rows=tuple(_cause(c) for c in outcome.causes),
+    )  # fmt: skip
+    yield Paragraph(
+        "After ± stands one standard deviation: the true figure lies within twice that in 95 of 100 "
+        "cases. The odds say how much better the record is explained with the cause than by anything "
+        "else without it.",
+        small=True,
+    )
+
+
+def _cause(cause: NamedCause) -> tuple[Text, ...]:
+    units = ", ".join(cause.own_units)
+    odds = "" if cause.alternatives else odds_words(cause.evidence_nats)
+    others = ", ".join(map(title_of, cause.alternatives))
+    return (
+        bold(capital(cause.title)) + (note(f"unit {units}") if units else ()),
+        magnitude_words(cause),
+        plain(sure_words(cause)) + (note(odds) if odds else ()),
+        capital(others) or "Nothing that the program knows",
+    )
+
+
+def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
+    if not left:
+        return
+    yield Heading("What no known cause explains")
+    yield Table(
+        columns=(
+            Column("Lies in"), Column("What it looks like", grow=1), Column("Size, arcsec rms"),
+            Column("By chance"),
+        ),
+        rows=tuple(
+            (
+                capital(channel_words(u.channel)),
+                capital(u.what),
+                figures_text(u.rms, 2),
+                "less than 1 in a million" if u.p_value < 1e-6 else f"1 in {grouped(1 / u.p_value, 0)}",
+            )
+            for u in left
+        ),
+    )  # fmt: skip
+
+
+def _worth(outcome: Outcome) -> Iterable[Block]:
+    gain, found = outcome.gain, bool(outcome.causes)
+    if gain is None:
+        return
+    yield Heading("What it is worth to know")
+    yield Paragraph(f"Error of the prediction on {gain.held_out}, which had no part in the fit:")
+    yield Table(
+        columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
+        rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
+    )
+    above = gain.rmse_before**2 - gain.noise_floor**2
+    share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
+    if found and share > 0:
+        yield Paragraph(
+            f"Of the squared error above the noise, {_percent(share)}\N{NO-BREAK SPACE}% is gone. No "
+            "model can do better than the noise."
+        )
+
+
+def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
+    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
+    yield f"The simulation as it stands{zeroed}", gain.rmse_before
+    yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
+    if found:
+        yield "With the causes found", gain.rmse_after
+    yield "Noise of the reading itself, the floor", gain.noise_floor
+
+
+def _after(outcome: Outcome) -> Iterable[Block]:
     after = outcome.next_measurement
-    return {
-        "name": diagnosis.design.name,
-        "version": program_version(),
-        "verdict": outcome.verdict,
-        "heading": VERDICTS[outcome.verdict],
-        "sentence": sentence(outcome),
-        "measured": measured(diagnosis),
-        "compared": compared(diagnosis, used),
-        "causes": [_cause(c) for c in outcome.causes],
-        "unexplained": [_unexplained(u) for u in outcome.unexplained],
-        "gain": None if outcome.gain is None else _gain(outcome.gain, bool(outcome.causes)),
-        "next": None if after is None else [capital(channel_words(after.vary)), capital(after.why)],
-        "notes": [capital(n) for n in outcome.notes],
-        "figures": [[f.path.name, f.caption] for f in figures],
-        "model": diagnosis.model is not None,
-    }
+    if after is not None:
+        yield Heading("What to measure next")
+        yield Paragraph(
+            bold(f"{capital(channel_words(after.vary))}. ") + plain(f"{capital(after.why)}.")
+        )
+
+
+def _figures(figures: Sequence[Drawn]) -> Iterable[Block]:
+    if figures:
+        yield Break()
+    for f in figures:
+        yield Pictures((Picture(f.path.stem, f.caption, 86),))
+
+
+def _model(diagnosis: Diagnosis) -> Iterable[Block]:
+    if diagnosis.model is None:
+        return
+    added = " with these causes added" if diagnosis.outcome.causes else ""
+    yield Heading("The extended model")
+    yield Paragraph(
+        code("extended_model.toml")
+        + plain(
+            f" beside this report holds the calibrated simulation{added}. This command gives the angle "
+            "for any torque history:"
+        )
+    )
+    yield Paragraph(code("flexspline predict DESIGN.toml --model extended_model.toml TORQUE.csv"))
+
+
+def _notes(outcome: Outcome) -> Iterable[Block]:
+    if outcome.notes:
+        yield Heading("Notes")
+        yield Bullets(tuple(capital(n) for n in outcome.notes), small=True)
 
 
 def measured(diagnosis: Diagnosis) -> list[list[str]]:
@@ -156,47 +277,6 @@ def _compared_specimens(diagnosis: Diagnosis, used: Stiffnesses) -> str:
         f"Compared with the simulated stiffness, {source}. Young's modulus may be off by {doubt:g} % (1σ), "
         "and a dimension by the general tolerance ISO 2768-m, without that being a finding."
     )
-
-
-def _cause(cause: NamedCause) -> dict[str, Any]:
-    others = ", ".join(map(title_of, cause.alternatives))
-    return {
-        "title": capital(cause.title),
-        "magnitude": magnitude_words(cause),
-        "sure": sure_words(cause),
-        "odds": "" if cause.alternatives else odds_words(cause.evidence_nats),
-        "others": capital(others) or "Nothing that the program knows",
-        "units": ", ".join(cause.own_units),
-    }
-
-
-def _unexplained(u: Unexplained) -> dict[str, str]:
-    chance = "less than 1 in a million" if u.p_value < 1e-6 else f"1 in {grouped(1 / u.p_value, 0)}"
-    return {
-        "channel": capital(channel_words(u.channel)),
-        "what": capital(u.what),
-        "rms": figures_text(u.rms, 2),
-        "chance": chance,
-    }
-
-
-def _gain(gain: Gain, found: bool) -> dict[str, Any]:
-    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
-    rows = [
-        (f"The simulation as it stands{zeroed}", gain.rmse_before),
-        (f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated),
-    ]
-    if found:
-        rows.append(("With the causes found", gain.rmse_after))
-    rows.append(("Noise of the reading itself, the floor", gain.noise_floor))
-    above = gain.rmse_before**2 - gain.noise_floor**2
-    share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
-    return {
-        "held_out": gain.held_out,
-        "unit": gain.unit,
-        "rows": [[name, figures_text(value)] for name, value in rows],
-        "share": _percent(share) if found and share > 0 else "",
-    }
 
 
 def _percent(share: float) -> str:

@@ -29,7 +29,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from results.study.figures import write_figures
         from results.study.progress import Watch
         from results.study.record import summary, words
-        from results.study.report import write_study_report
+        from results.study.report import write_study_reports
         from results.study.tables import table_of, write_csv, write_parquet
 
         asked = load_study(file)
@@ -47,8 +47,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         record: dict[str, Any] = summary(result)
         pictures = write_figures(folder, result)
         record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
-        write_study_report(folder / "report.pdf", result, pictures)
-        record["files"] += [str(p) for p in (*pictures, folder / "report.pdf")]
+        reports = write_study_reports(folder, result, pictures)
+        record["files"] += [str(p) for p in (*pictures, *reports)]
         print(as_json(record) if json else words(result, record))
 
 

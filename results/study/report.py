@@ -1,14 +1,10 @@
-"""report.pdf of a study: finished text, set by a fixed template; text from files enters as data."""
+"""The report of a study, section by section."""
 
 from __future__ import annotations
 
-import json
-import shutil
-import tempfile
-from collections.abc import Sequence
-from importlib.resources import files
+from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from pipeline.study.mass import DENSITY_KG_M3
@@ -16,11 +12,23 @@ from pipeline.study.result import StudyResult
 from pipeline.study.scatter import Scatter
 from results.atomic import write_bytes
 from results.records import program_version
-from results.report.write import ReportError
+from results.report.both import reports_of
+from results.report.document import (
+    Block,
+    Bullets,
+    Column,
+    Document,
+    Heading,
+    Paragraph,
+    Picture,
+    Pictures,
+    Table,
+    Text,
+    alarm,
+)
 from results.study.labels import entry
 from results.study.why import failures, influences, limits
 
-TEMPLATE = "study.typ"
 COLUMNS = 5
 """Best designs side by side."""
 METHODS = {
@@ -40,50 +48,59 @@ CAPTIONS = {
 }
 
 
-def write_study_report(path: Path, result: StudyResult, pictures: Sequence[Path]) -> None:
-    """Write the PDF, whole or not at all.
+def write_study_reports(folder: Path, result: StudyResult, pictures: Sequence[Path]) -> list[Path]:
+    """Write report.pdf and report.html, each whole or not at all; their paths.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
-    import typst
-
-    with tempfile.TemporaryDirectory() as scratch:
-        root = Path(scratch)
-        source = root / TEMPLATE
-        source.write_bytes(files("results.study").joinpath(TEMPLATE).read_bytes())
-        for picture in pictures:
-            shutil.copyfile(picture, root / picture.name)
-        data = json.dumps(payload(result, [p.name for p in pictures]))
-        try:
-            pdf = typst.compile(
-                str(source), root=str(root), sys_inputs={"report": data}, timestamp=0
-            )
-        except typst.TypstError as error:
-            raise ReportError(f"typst could not set the report: {error}") from error
-    write_bytes(path, pdf)
+    document = study_document(result, [p.name for p in pictures])
+    made = reports_of(document, {p.stem: p for p in pictures})
+    for name, data in made.items():
+        write_bytes(folder / name, data)
+    return [folder / name for name in made]
 
 
-def payload(result: StudyResult, pictures: Sequence[str]) -> dict[str, Any]:
-    """The content as JSON values, in the order in which the template sets it."""
-    file = result.study.file
-    return {
-        "name": result.study.name,
-        "design": result.study.design.name,
-        "version": program_version(),
-        "method": METHODS[file.run.method],
-        "counts": _counts(result),
-        "best": _best(result),
-        "why": [*influences(result), *limits(result)],
-        "verified": _verified(result),
-        "failures": failures(result),
-        "scatter": [_scatter(s) for s in result.scatter],
-        "pictures": [
-            [n, CAPTIONS.get(n, CAPTIONS["tolerance.png"]), WIDTHS.get(n, 100)] for n in pictures
-        ],
-        "notes": _notes(result),
-    }
+def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
+    """The report; `pictures` are the names of the files drawn."""
+    study = result.study
+    blocks = (
+        Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
+        *_best(result),
+        *_why(result),
+        *_verified(result),
+        *chain.from_iterable(_scatter(s) for s in result.scatter),
+        *(_picture(n) for n in pictures),
+        *_failures(result),
+        Heading("What holds"),
+        Bullets(tuple(_notes(result))),
+    )
+    return Document(
+        title="A study of designs",
+        running="Study",
+        name=study.design.name,
+        heading=f"{study.name} · {study.design.name}",
+        issued=f"flexspline {program_version()}",
+        blocks=blocks,
+    )
+
+
+def _picture(name: str) -> Block:
+    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"])
+    return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100)),))
+
+
+def _why(result: StudyResult) -> Iterable[Block]:
+    if why := (*influences(result), *limits(result)):
+        yield Heading("Why they win")
+        yield Bullets(why)
+
+
+def _failures(result: StudyResult) -> Iterable[Block]:
+    if failed := tuple(failures(result)):
+        yield Heading("Designs without figures")
+        yield Bullets(failed)
 
 
 def _counts(result: StudyResult) -> str:
@@ -93,53 +110,52 @@ def _counts(result: StudyResult) -> str:
     return said + "."
 
 
-def _best(result: StudyResult) -> list[list[str]]:
-    """A header, then a line per varied key and figure: name, then the best designs' values."""
+def _best(result: StudyResult) -> Iterable[Block]:
+    """A line per varied key and figure: name, then the best designs' values."""
     file = result.study.file
     chosen = () if result.scatter else result.best(COLUMNS)
     if not chosen:
-        return []
-    lines = [["", *(f"design {r.slot}" for r in chosen)]]
+        return
+    lines: list[tuple[str, ...]] = []
     for key in file.vary:
         q = entry(key)
-        lines.append([q.axis, *(q.text(r.values[key]) for r in chosen)])
+        lines.append((q.axis, *(q.text(r.values[key]) for r in chosen)))
     for key in dict.fromkeys([*file.objective, *file.constraint, "flexspline_mass_g"]):
         q = entry(key)
         if all(key in r.outcome.figures for r in chosen):
-            lines.append([q.axis, *(q.text(r.outcome.figures[key]) for r in chosen)])
-    return lines
+            lines.append((q.axis, *(q.text(r.outcome.figures[key]) for r in chosen)))
+    yield Heading("The best designs")
+    yield Table(
+        (Column("", grow=1), *(Column(f"design {r.slot}", "right") for r in chosen)), tuple(lines)
+    )
 
 
-def _verified(result: StudyResult) -> list[list[str]]:
-    lines = []
+def _verified(result: StudyResult) -> Iterable[Block]:
+    lines: list[tuple[Text, ...]] = []
     for v in result.verified:
         if v.reason:
-            lines.append([f"design {v.slot}", v.reason, "", "", "failed"])
+            lines.append((f"design {v.slot}", v.reason, "", "", "failed"))
         for c in v.checks:
             q = entry(c.key)
-            lines.append([
+            lines.append((
                 f"design {v.slot}", q.axis,
                 q.range_text(*c.fast_bounds) if c.fast_bounds else q.text(c.fast),
                 q.range_text(*c.solid_bounds) if c.solid_bounds else q.text(c.solid),
-                "agree" if c.agrees else "ALARM",
-            ])  # fmt: skip
-    return lines
+                "agree" if c.agrees else alarm("ALARM"),
+            ))  # fmt: skip
+    if lines:
+        yield Heading("The fast model against the solid one")
+        yield Table(
+            (
+                Column("Design"), Column("Figure", grow=1), Column("Fast", "right"),
+                Column("Solid", "right"), Column("Verdict"),
+            ),
+            tuple(lines),
+        )  # fmt: skip
 
 
-def _scatter(s: Scatter) -> dict[str, Any]:
-    q, lines = entry(s.key), []
-    for i in sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i]):
-        x = s.inputs[i]
-        bought = {t.factor: t.bought for t in s.tightened if t.key == x.key}
-        unit = entry(x.key)
-        spread = x.std if x.normal else x.high - x.nominal
-        kind = "s =" if x.normal else "±"
-        lines.append([
-            unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
-            f"{s.indices.first[i]:.2f} ± {s.indices.first_conf[i]:.2f}",
-            f"{s.indices.total[i]:.2f} ± {s.indices.total_conf[i]:.2f}",
-            *(f"{max(0.0, bought[f]):.1f}" for f in (0.75, 0.5, 0.25, 0.0)),
-        ])  # fmt: skip
+def _scatter(s: Scatter) -> Iterable[Block]:
+    q = entry(s.key)
     sentence = (
         f"{q.name}: mean {q.with_unit(s.mean)}, standard deviation {q.with_unit(s.std)}, 95 % from "
         f"{q.range_text(s.low, s.high)} {q.unit}. The quadratic surface behind the last four columns "
@@ -147,7 +163,33 @@ def _scatter(s: Scatter) -> dict[str, Any]:
     )
     if s.dropped:
         sentence += f" {s.dropped} sample blocks with a design that cannot be built are left out."
-    return {"sentence": sentence, "lines": lines, "unit": q.unit}
+    heads = ("Sobol, first", "Sobol, total", "× 0.75", "× 0.5", "× 0.25", "perfect")
+    yield Heading("What scatters, and what a tighter tolerance buys")
+    yield Paragraph(sentence)
+    yield Table(
+        (Column("Input", grow=1), Column("Value"), *(Column(h, "right") for h in heads)),
+        tuple(_inputs(s)),
+    )
+    yield Paragraph(
+        f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that input "
+        "alone scatters less."
+    )
+
+
+def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
+    """A line for each input, the most important first."""
+    for i in sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i]):
+        x = s.inputs[i]
+        bought = {t.factor: t.bought for t in s.tightened if t.key == x.key}
+        unit = entry(x.key)
+        spread = x.std if x.normal else x.high - x.nominal
+        kind = "s =" if x.normal else "±"
+        yield (
+            unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
+            f"{s.indices.first[i]:.2f} ± {s.indices.first_conf[i]:.2f}",
+            f"{s.indices.total[i]:.2f} ± {s.indices.total_conf[i]:.2f}",
+            *(f"{max(0.0, bought[f]):.1f}" for f in (0.75, 0.5, 0.25, 0.0)),
+        )  # fmt: skip
 
 
 def _notes(result: StudyResult) -> list[str]:

@@ -81,7 +81,7 @@ def test_the_contracts_keys(done: tuple[Path, dict]) -> None:
 def test_files_are_all_there_and_whole(done: tuple[Path, dict]) -> None:
     folder, _ = done
     names = {p.name for p in folder.iterdir()}
-    assert names == PNGS | {"diagnosis.json", "extended_model.toml", "report.pdf"}
+    assert names == PNGS | {"diagnosis.json", "extended_model.toml", "report.pdf", "report.html"}
     for name in PNGS:
         with Image.open(folder / name) as image:
             data = np.asarray(image.convert("RGB"))

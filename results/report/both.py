@@ -1,0 +1,25 @@
+"""A document in both its forms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from results.report.document import Document
+from results.report.page import page_of, png
+from results.report.pdf import pdf_of
+
+PDF, HTML = "report.pdf", "report.html"
+
+
+def reports_of(document: Document, pictures: Mapping[str, Path]) -> dict[str, bytes]:
+    """Bytes of report.pdf and report.html by file name; the pictures, PNG files, as they are.
+
+    Raises
+    ------
+    ReportError : typst refused the document.
+    """
+    return {
+        PDF: pdf_of(document, pictures),
+        HTML: page_of(document, {name: png(path) for name, path in pictures.items()}),
+    }

@@ -1,0 +1,291 @@
+"""A report as data: blocks of finished words, set by one typst and one HTML template alike.
+
+Words of the program and of the user are both plain strings inside spans; no template evaluates
+them. Section, table and figure numbers are counted here, so that both print the same.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from typing import Any, Literal
+
+Style = Literal["", "bold", "symbol", "note", "code", "break", "ref", "alarm"]
+
+
+@dataclass(frozen=True)
+class Span:
+    """A piece of text. `target`: the id of the section or table that a "ref" points at."""
+
+    style: Style
+    text: str
+    target: str = ""
+
+
+Words = tuple[Span, ...]
+Text = str | Words
+"""A bare string is plain letters."""
+
+
+def plain(text: str) -> Words:
+    """Letters as they are."""
+    return (Span("", text),)
+
+
+def bold(text: str) -> Words:
+    """Words that stand out."""
+    return (Span("bold", text),)
+
+
+def symbol(text: str) -> Words:
+    """A quantity's letter with its index after "_", as `results.quantities` has them."""
+    return (Span("symbol", text),)
+
+
+def alarm(text: str) -> Words:
+    """A word that must not be missed."""
+    return (Span("alarm", text),)
+
+
+def code(text: str) -> Words:
+    """What is typed."""
+    return (Span("code", text),)
+
+
+def note(text: Text) -> Words:
+    """Small words on a line of their own, below what stands before."""
+    return (Span("break", ""), *(Span(s.style or "note", s.text, s.target) for s in words(text)))
+
+
+def ref(target: str) -> Words:
+    """The number of a section or table, as a link to it."""
+    return (Span("ref", "", target),)
+
+
+_SYMBOLS = re.compile(r"K_b|K_e|T_L")
+
+
+def worded(text: str) -> Words:
+    """The program's own words, in which K_b, K_e and T_L are symbols."""
+    spans, at = [], 0
+    for found in _SYMBOLS.finditer(text):
+        spans += [Span("", text[at : found.start()]), Span("symbol", found.group())]
+        at = found.end()
+    return tuple(s for s in (*spans, Span("", text[at:])) if s.text)
+
+
+def words(text: Text) -> Words:
+    """A bare string as spans."""
+    return plain(text) if isinstance(text, str) else text
+
+
+Node = Sequence[Any]
+"""Of a formula: ("symbol", letter), ("text", letters), ("over", above, below) of lists of nodes."""
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Opens a section; `target` is what a reference names."""
+
+    text: str
+    target: str = ""
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Running words; `small` for remarks below a table."""
+
+    text: Text
+    small: bool = False
+
+
+@dataclass(frozen=True)
+class Callout:
+    """A box that is read first: a heading, words, a list; amber asks for care."""
+
+    tone: Literal["blue", "amber"]
+    heading: str = ""
+    text: Text = ()
+    items: tuple[Text, ...] = ()
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One figure to be seen from afar."""
+
+    label: str
+    value: str
+    unit: str
+    below: str
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """Tiles side by side."""
+
+    tiles: tuple[Tile, ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Names and values, without a header."""
+
+    rows: tuple[tuple[str, Text], ...]
+
+
+@dataclass(frozen=True)
+class Column:
+    """Of a table; `grow` is its share of what width is left, 0 takes what its words need."""
+
+    head: Text
+    align: Literal["left", "right"] = "left"
+    grow: float = 0.0
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under a header; with a caption it is numbered. `strong`: index of a row in bold."""
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Text, ...], ...]
+    caption: Text = ()
+    target: str = ""
+    strong: int = -1
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A displayed formula."""
+
+    nodes: tuple[Node, ...]
+    spoken: str
+    """The same in words, for those who listen."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A numbered figure; `width_pct` of the page's text in print; `view` turns it in the browser."""
+
+    name: str
+    caption: Text
+    width_pct: float = 100.0
+    view: str = ""
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """Figures side by side."""
+
+    figures: tuple[Picture, ...]
+
+
+@dataclass(frozen=True)
+class Bullets:
+    """A list."""
+
+    items: tuple[Text, ...]
+    small: bool = False
+
+
+@dataclass(frozen=True)
+class Break:
+    """A new page in print."""
+
+
+Block = Heading | Paragraph | Callout | Tiles | Facts | Table | Formula | Pictures | Bullets | Break
+
+
+@dataclass(frozen=True)
+class Document:
+    """A report.
+
+    Attributes
+    ----------
+    title : what kind of report it is; `running` the same, short, for the head of each page.
+    name : of the design, the user's own letters; `heading` where more than it stands below the title.
+    issued : version of the program, and a date where one is wanted.
+    numbered : whether sections carry numbers.
+    """
+
+    title: str
+    running: str
+    name: str
+    issued: str
+    blocks: tuple[Block, ...]
+    heading: str = ""
+    numbered: bool = False
+
+    def payload(self) -> dict[str, Any]:
+        """JSON values, numbers and references filled in; what both templates set.
+
+        Raises
+        ------
+        KeyError : a reference names no section or table.
+        """
+        blocks = [_encoded(b) for b in self.blocks]
+        _give_numbers(blocks, self.numbered)
+        names = {b["target"]: b["number_words"] for b in blocks if b.get("target")}
+        _fill_references(blocks, names)
+        return {
+            "title": self.title,
+            "running": self.running,
+            "name": self.name,
+            "heading": self.heading or self.name,
+            "issued": self.issued,
+            "blocks": blocks,
+        }
+
+
+def _encoded(block: Any) -> dict[str, Any]:
+    """A block's or span's fields; where a `Text` may stand, always a list of spans."""
+    found: dict[str, Any] = {"kind": type(block).__name__.lower()}
+    for f in fields(block):
+        value = getattr(block, f.name)
+        found[f.name] = _texts(value) if "Text" in str(f.type) else _values(value)
+    return found
+
+
+def _texts(value: Any) -> Any:
+    if isinstance(value, str) or not value or isinstance(value[0], Span):
+        return [asdict(s) for s in words(value)]
+    return [_texts(v) for v in value]
+
+
+def _values(value: Any) -> Any:
+    if isinstance(value, tuple | list):
+        return [_values(v) for v in value]
+    return _encoded(value) if is_dataclass(value) else value
+
+
+def _give_numbers(blocks: Iterable[dict[str, Any]], numbered: bool) -> None:
+    section = table = figure = 0
+    for b in blocks:
+        if b["kind"] == "heading":
+            section += 1
+            b["number"] = str(section) if numbered else ""
+            b["number_words"] = f"section {section}" if numbered else f"“{b['text']}”"
+        elif b["kind"] == "table":
+            table += bool(b["caption"])
+            b["number_words"] = f"Table {table}" if b["caption"] else ""
+        elif b["kind"] == "pictures":
+            for picture in b["figures"]:
+                figure += 1
+                picture["number_words"] = f"Figure {figure}"
+                picture["alt"] = _first_sentence(picture["caption"])
+
+
+def _first_sentence(caption: Sequence[dict[str, Any]]) -> str:
+    """What a picture shows, for those who do not see it."""
+    return "".join(s["text"] for s in caption).partition(". ")[0].rstrip(".").replace("_", " ")
+
+
+def _fill_references(value: Any, names: dict[str, str]) -> None:
+    if isinstance(value, dict):
+        if value.get("style") == "ref":
+            value["text"] = names[value["target"]]
+        for v in value.values():
+            _fill_references(v, names)
+    elif isinstance(value, list):
+        for v in value:
+            _fill_references(v, names)

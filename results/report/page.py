@@ -1,0 +1,140 @@
+"""Sets a document as one HTML file: one fixed template, its pictures, views and scripts inside.
+
+The content enters through jinja2's automatic escaping, or as JSON that it escapes. A policy in the
+page allows the scripts written here, by their SHA-256, and nothing else: no other script, no request.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from results.report.document import Document
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+TEMPLATE, STYLE, SCRIPT = "page.html", "page.css", "page.js"
+WORDS = {
+    "turns": "3-D view. Arrow keys turn it, plus and minus zoom, Home resets it.",
+    "reset": "Reset view",
+    "help": "Drag to turn, Shift and drag to move, click and scroll to zoom; or use the arrow keys, "
+    "+ and −.",
+}
+"""What only a page needs to say."""
+
+_ICON = re.compile(r"https?://[\w./-]*favicon-[^`\"']*")
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture's bytes (PNG or WebP) and its size in pixels."""
+
+    data: bytes
+    width: int
+    height: int
+
+    @property
+    def uri(self) -> str:
+        kind = "png" if self.data.startswith(b"\x89PNG") else "webp"
+        return f"data:image/{kind};base64,{base64.b64encode(self.data).decode()}"
+
+
+def png(path: Path) -> Image:
+    """A PNG file as it is."""
+    data = path.read_bytes()
+    return Image(data, *(int.from_bytes(data[i : i + 4], "big") for i in (16, 20)))
+
+
+def page_of(
+    document: Document, pictures: Mapping[str, Image], views: Mapping[str, bytes] | None = None
+) -> bytes:
+    """The HTML file's bytes, the same for the same content.
+
+    Parameters
+    ----------
+    pictures : by the names that the document's figures have.
+    views : by the names that they have there; what `results.renders.turntable` made. A figure whose
+        view is not given shows its picture alone.
+    """
+    from markupsafe import Markup
+
+    viewer = _viewer() if views else ""
+    found: dict[str, dict[str, Any]] = (
+        {n: json.loads(v) for n, v in views.items()} if views and viewer else {}
+    )
+    # a module runs after those before it
+    scripts = (
+        ((False, "window.global = window;"), (True, viewer), (True, _file(SCRIPT))) if found else ()
+    )
+    shown = {
+        "views": {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()},
+        "ramp": _ramp() if found else [],
+    }
+    text = (
+        _environment()
+        .get_template(TEMPLATE)
+        .render(
+            d=document.payload(),
+            pictures=pictures,
+            views=found,
+            shown=shown,
+            scripts=[{"module": m, "text": Markup(s)} for m, s in scripts],
+            css=Markup(_file(STYLE)),
+            policy=_policy([s for _, s in scripts]),
+            ui=WORDS,
+        )
+    )
+    return text.encode()
+
+
+def _policy(scripts: list[str]) -> str:
+    hashes = (base64.b64encode(hashlib.sha256(s.encode()).digest()).decode() for s in scripts)
+    allowed = " ".join(f"'sha256-{h}'" for h in hashes) or "'none'"
+    return (
+        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+@cache
+def _viewer() -> str:
+    """The script of trame-vtk's static viewer (vtk.js, BSD), without the page around it.
+
+    "" where a version ships none (2.11.0 did not): the report then shows its pictures.
+    """
+    page = files("trame_vtk").joinpath("tools/static_viewer.html").read_text(encoding="utf-8")
+    found = re.search(r'<script type="module">(.*?)</script>', page, re.S)
+    if found is None or "OfflineLocalView" not in found.group(1):
+        return ""
+    script = found.group(1).replace("console.log(Object.keys(s)),", "")  # a word for each scene
+    return _ICON.sub("data:,", script)  # the viewer would ask for its own icons on the network
+
+
+def _ramp() -> list[str]:
+    from results.renders.turntable import ramp
+
+    return ramp()
+
+
+def _file(name: str) -> str:
+    return files("results.report").joinpath(name).read_text(encoding="utf-8")
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    made = Environment(
+        autoescape=True, loader=FunctionLoader(_file), trim_blocks=True, undefined=StrictUndefined
+    )
+    made.tests["greek_capital"] = lambda letter: "Α" <= letter <= "Ω"
+    return made

@@ -1,0 +1,47 @@
+"""Sets a document with typst: one fixed template, the content beside it as data."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+
+from geometry.errors import ComputationError
+from results.report.document import Document
+
+TEMPLATE = "document.typ"
+
+
+class ReportError(ComputationError):
+    """The report could not be set; carries typst's message."""
+
+
+def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
+    """The PDF's bytes; `pictures` are PNG files by the names that the document's figures have.
+
+    Words reach typst as strings in a JSON value, never as source: markup or calls in them print as
+    their letters.
+
+    Raises
+    ------
+    ReportError : typst refused the document.
+    """
+    import typst
+
+    with tempfile.TemporaryDirectory(prefix="flexspline-report-") as scratch:
+        root = Path(scratch)
+        (root / TEMPLATE).write_bytes(files("results.report").joinpath(TEMPLATE).read_bytes())
+        for name, source in pictures.items():
+            shutil.copyfile(source, root / f"{name}.png")
+        try:
+            return typst.compile(
+                str(root / TEMPLATE),
+                root=str(root),
+                sys_inputs={"report": json.dumps(document.payload())},
+                timestamp=0,  # else the same content would give another file each time
+            )
+        except typst.TypstError as error:
+            raise ReportError(f"typst could not set the report: {error}") from error

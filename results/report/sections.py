@@ -1,0 +1,323 @@
+"""The report of a run, section by section: every word of it stands here, in limits or in tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import chain
+
+from results.quantities import quantity
+from results.report import limits, tables
+from results.report.content import ReportContent
+from results.report.document import (
+    Block,
+    Break,
+    Callout,
+    Column,
+    Document,
+    Facts,
+    Formula,
+    Heading,
+    Node,
+    Paragraph,
+    Picture,
+    Pictures,
+    Table,
+    Tile,
+    Tiles,
+    Words,
+    bold,
+    note,
+    plain,
+    ref,
+    symbol,
+    worded,
+)
+
+ROOMY = 1200
+"""Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
+they follow each other and the report stays within six pages."""
+NBSP = "\N{NO-BREAK SPACE}"
+
+
+def run_document(content: ReportContent) -> Document:
+    """The whole report."""
+    roomy = _letters(content) <= ROOMY
+    sections = (
+        (_summary(content), _asked(content), _answer(content)),
+        (_budget(content, roomy),),
+        (_stress(content, roomy),),
+        (_solver(content, roomy), _limits(content)),
+    )
+    blocks: list[Block] = []
+    for pages in sections:
+        made = list(chain.from_iterable(pages))
+        if blocks and made and roomy:
+            blocks.append(Break())
+        blocks += made
+    issued = f"flexspline {content.version}"
+    return Document(
+        title="Stiffness and backlash of a strain wave gear",
+        running="Stiffness and backlash report",
+        name=content.design.name,
+        issued=f"{issued} · {content.issued}" if content.issued else issued,
+        blocks=tuple(blocks),
+        numbered=True,
+    )
+
+
+def _letters(content: ReportContent) -> int:
+    design = content.design
+    names = [design.name, design.material.flexspline.name, design.shaft_material.name]
+    return sum(map(len, [*names, *content.warnings, *(content.stage_seconds or {})]))
+
+
+def _summary(content: ReportContent) -> Iterable[Block]:
+    total, series, *rest = tables.answers(content)
+    wave = quantity("wave_generator_peak_mises_MPa").symbol
+    tiles = [
+        Tile("Backlash", total["value"], total["unit"], total["bounds"]),
+        Tile("Series stiffness", series["value"], series["unit"], series["bounds"]),
+    ]
+    for row in rest:
+        if row["symbol"] == wave:
+            tiles.append(
+                Tile("Peak stress, wave generator", row["value"], row["unit"], "von Mises")
+            )
+    yield Tiles(tuple(tiles))
+
+
+def _asked(content: ReportContent) -> Iterable[Block]:
+    yield Heading("What was asked")
+    yield Paragraph(
+        plain(
+            "The torsional stiffness of flexspline and output shaft, their stress, and the backlash at "
+            "the output between "
+        )
+        + symbol("−T_L")
+        + plain(" and ")
+        + symbol("+T_L")
+        + plain(", with ")
+        + symbol("T_L")
+        + plain(f" = {content.design.load.torque_Nm:g}{NBSP}N·m, for this design:")
+    )
+    yield Facts(tuple((name, value) for name, value in tables.design_facts(content.design)))
+
+
+def _answer(content: ReportContent) -> Iterable[Block]:
+    yield Heading("The answer")
+    rows = [
+        (
+            (bold(a["name"]) if i == 0 else worded(a["name"])) + note(worded(a["note"])),
+            symbol(a["symbol"]),
+            bold(a["value"]),
+            a["unit"],
+            a["bounds"] or "–",
+        )
+        for i, a in enumerate(tables.answers(content))
+    ]
+    yield Table(
+        columns=(
+            Column("Quantity", grow=1), Column("Symbol"), Column("Value", "right"), Column("Unit"),
+            Column("Bounds"),
+        ),
+        rows=tuple(rows),
+        caption=plain("Answers. Bounds of a stiffness are bounds of the discretisation error; ")
+        + ref("solver")
+        + plain(" says how they were found and how far they are guaranteed."),
+        target="answers",
+    )  # fmt: skip
+    if fatigue := limits.fatigue(content):
+        yield Paragraph(fatigue)
+    if count := len(content.warnings):
+        said = "warning" if count == 1 else f"{count} warnings"
+        yield Callout(
+            "amber",
+            text=bold(f"Read the {said} in ")
+            + ref("warnings")
+            + bold(" before using these figures."),
+        )
+
+
+_DELTA: Node = ("symbol", "Δ_bl")
+_SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
+_FLEXSPLINE: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
+_PLAY: Node = (
+    "over",
+    [("text", "2"), ("text", "("), ("symbol", "j_bn0"), ("text", "+"), ("symbol", "j′"), ("text", ")")],
+    [("symbol", "m"), ("symbol", "z_1"), ("text", "cos"), ("symbol", "α")],
+)  # fmt: skip
+_CIRCLE = (
+    plain(" / (")
+    + symbol("m")
+    + plain(" ")
+    + symbol("z_1")
+    + plain(" cos ")
+    + symbol("α")
+    + plain(")")
+)
+TERMS: dict[str, Words] = {
+    "shaft": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_e"),
+    "flexspline": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_b"),
+    "flank_clearance": plain("2 ") + symbol("j_bn0") + _CIRCLE,
+    "bearing_play": plain("2 ") + symbol("j′") + _CIRCLE,
+    "total": symbol("Δ_bl"),
+}
+"""Each term's formula, on one line."""
+
+
+def _budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
+    entry = quantity("backlash_arcsec.total")
+    std = entry.text(content.backlash.std_arcsec)
+    yield Heading("The backlash budget")
+    yield Paragraph(
+        plain(
+            "Backlash is the wind-up of shaft and flexspline between the two torques plus the angle "
+            "that flank clearance "
+        )
+        + symbol("j_bn0")
+        + plain(" and bearing play leave free:")
+    )
+    plus: Node = ("text", "+")
+    yield Formula(
+        (_DELTA, ("text", "="), _SHAFT, plus, _FLEXSPLINE, plus, _PLAY),
+        "Δ_bl = 2 T_L / K_e + 2 T_L / K_b + 2 (j_bn0 + j′) / (m z_1 cos α)",
+    )
+    rows = tables.budget(content)
+    yield Table(
+        columns=(
+            Column("Term", grow=1), Column("Formula"), Column("Value", "right"), Column("Unit"),
+            Column("Share", "right"),
+        ),
+        rows=tuple((b["name"], TERMS[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
+        caption=f"The four terms and their sum; one standard deviation of the sum is {std} {entry.unit}.",
+        strong=len(rows) - 1,
+    )  # fmt: skip
+    extended = (
+        plain(" Below the simulated sum: what the extended model in ")
+        + plain(content.extended_model)
+        + plain(" adds between the two torques.")
+        if content.extended_model
+        else ()
+    )
+    terms = plain(
+        "The terms as they add up, the total with one standard deviation, and the sources of that "
+        "deviation."
+    )
+    line = "The torque–angle line of the model. Within the gap the output lies anywhere."
+    yield from _shown(content, roomy, Picture("budget", terms + extended, 88))
+    yield from _shown(content, roomy, Picture("torque_angle", line, 84))
+
+
+def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
+    under = plain(", von Mises stress under ") + symbol("T_L")
+    at = plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m.")
+    ellipse = (
+        "Flexspline on the wave generator: the ellipse, magnified as stated in the picture, with its "
+        "von Mises stress."
+    )
+    found = [
+        *_shown(
+            content,
+            roomy,
+            Picture(
+                "flexspline_stress", plain("Flexspline") + under + at, view="flexspline_torque"
+            ),
+            Picture("shaft_stress", plain("Output shaft") + under + at, view="shaft_torque"),
+        ),
+        *_shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
+    ]
+    if found:
+        yield Heading("Stress and deformation")
+        yield from found
+        yield Paragraph(
+            plain("Stresses are averaged at the nodes. Colours end at the peak that ")
+            + ref("answers")
+            + plain(
+                " reports: the stress at sharp edges rises with every finer mesh, and no value there "
+                "means anything. Those places are left out of the peak and named in "
+            )
+            + ref("limits")
+            + plain(".")
+        )
+
+
+def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
+    yield Heading("Mesh and solver", "solver")
+    yield from _shown(
+        content,
+        roomy,
+        Picture("flexspline_mesh", "Mesh of the flexspline and its named surfaces."),
+        Picture("shaft_mesh", "Mesh of the output shaft and its named surfaces."),
+    )
+    solves = tables.solves(content)
+    heads = ("Meshes", "Elements", "Unknowns", "Bounds", "Residual", "Energy – reaction")
+    keys = ("meshes", "elements", "dofs", "half_width", "residual", "energy")
+    yield Table(
+        columns=(
+            Column(""), Column("Model", grow=1), Column("Part solved", grow=1.2),
+            *(Column(h, "right") for h in heads[:-1]), Column(heads[-1], "right", 0.9),
+        ),
+        rows=tuple(
+            (symbol(s["symbol"]), s["model"], s["symmetry"], *(s[k] for k in keys)) for s in solves
+        ),
+        caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
+        "“energy – reaction” is the relative difference of the stiffness from strain energy and from "
+        "reaction torque.",
+    )  # fmt: skip
+    for method in dict.fromkeys(s["method"] for s in solves):
+        yield Paragraph(_bounds_of(content, method, [s for s in solves if s["method"] == method]))
+    convergence = "Stiffness against the number of unknowns, as difference from the value reported."
+    yield from _shown(content, roomy, Picture("convergence", convergence, 88))
+    stages = content.stage_seconds or {}
+    if stages:
+        each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
+        yield Paragraph(
+            bold("Elapsed time:")
+            + plain(
+                f" {each}; together {sum(stages.values()):.1f} s. Stages that were read from the cache "
+                "are not listed."
+            )
+        )
+
+
+def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> Words:
+    said = (
+        bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
+    )
+    if these[0]["model"] == "axisymmetric":
+        return said + plain("These bounds hold without exception.")
+    wide = [s["symbol"] for s in these if s["wide"]]
+    said += plain(
+        "This is an estimate, not a guarantee. The wanted tolerance of "
+        f"±{content.design.solver.tolerance_pct:g}{NBSP}% was "
+    )
+    return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
+
+
+def _listed(symbols: Iterable[str]) -> Words:
+    return tuple(chain.from_iterable(
+        symbol(s) if i == 0 else plain(", ") + symbol(s) for i, s in enumerate(symbols)
+    ))  # fmt: skip
+
+
+def _limits(content: ReportContent) -> Iterable[Block]:
+    yield Heading("Assumptions and their limits", "limits")
+    for heading, text in limits.assumptions(content):
+        yield Paragraph(bold(f"{heading}. ") + worded(text))
+    if content.warnings:
+        yield Heading("Warnings about the design", "warnings")
+        yield Callout("amber", items=content.warnings)
+    if content.versions:
+        yield Heading("Versions")
+        pairs = {"flexspline": content.version, **content.versions}
+        yield Paragraph(", ".join(f"{name} {v}" for name, v in pairs.items()) + ".")
+
+
+def _shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Block]:
+    """Those of the pictures that there are, side by side; a little smaller where room is short."""
+    there = [p for p in wanted if getattr(content.pictures, p.name) is not None]
+    if there:
+        share = 1.0 if roomy or len(wanted) > 1 else 0.85
+        yield Pictures(
+            tuple(Picture(p.name, p.caption, share * p.width_pct, p.view) for p in there)
+        )
