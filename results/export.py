@@ -11,8 +11,10 @@ from pathlib import Path
 from fea.solid.deck import torsion_deck
 from fea.types import SolidField
 from geometry.cad import build_solid, write_step, write_stl
+from geometry.design import Design
 from pipeline.chain import torque_field
 from pipeline.parts import DRIVEN, Workshop
+from pipeline.progress import Progress
 from pipeline.rim import wave_generator_field
 from results.atomic import write_bytes
 from results.renders.whole import Parity, whole_part
@@ -41,6 +43,16 @@ def write_exports(shop: Workshop, folder: Path) -> list[Path]:
     for name, field, parity in fields:
         with shop.progress.stage(f"VTU {name}"):
             done.append(_whole(folder / f"{name}.vtu", partial(_write_vtu, field, parity)))
+    return done
+
+
+def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:
+    """Both whole parts as STEP [mm]; nothing is solved."""
+    done = []
+    for name in ("flexspline", "shaft"):
+        with progress.stage(f"CAD of the whole {name}"):
+            step = partial(write_step, build_solid(design, name))
+            done.append(_whole(folder / f"{name}.step", step))
     return done
 
 

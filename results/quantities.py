@@ -200,6 +200,14 @@ QUANTITIES: tuple[Quantity, ...] = (
         "σ_T",
         digits=3,
     ),
+    Quantity(
+        "shaft_torque_peak_mises_MPa",
+        "shaft_torque_peak_mises_MPa",
+        "MPa",
+        "Peak von Mises stress of the shaft, load torque",
+        "σ_T,shaft",
+        digits=3,
+    ),
     Quantity("ring_thickness_mm", "ring_thickness_mm", "mm", "Rim under the teeth", "t_rim"),
     *(
         Quantity(

@@ -15,7 +15,7 @@ from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, sty
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_REACH = 1.25
+REACH = 1.25
 """How far beyond ±T_L the line is drawn."""
 
 
@@ -36,7 +36,7 @@ def write_torque_angle(
     with styled():
         figure = new_figure(8.0, 4.6)
         axes = figure.add_axes((0.095, 0.125, 0.875, 0.775))
-        torque = np.linspace(1e-6, _REACH, 60) * torque_Nm
+        torque = np.linspace(1e-6, REACH, 60) * torque_Nm
         for sign in (-1.0, 1.0):
             t = sign * torque
             angle = angle_arcsec(t)
@@ -70,7 +70,7 @@ def _annotate(
     low, high = angle_arcsec(np.array([-load, load]))
     gap = backlash.flank_clearance_arcsec + backlash.bearing_play_arcsec
     arcsec = quantity("backlash_arcsec.total")
-    end = np.array([_REACH * load])
+    end = np.array([REACH * load])
     highest = float(angle_arcsec(end)[0])
     top = max(1.35 * highest, 1.08 * (highest + float(band(end, load, backlash)[0])))
     axes.plot([0, 0], [-gap / 2, gap / 2], color=PALETTE[0], lw=2.4, ls=(0, (1.5, 1.5)))
@@ -108,7 +108,7 @@ def _annotate(
         ha="right",
         va="center",
     )
-    axes.set_xlim(-_REACH * load, _REACH * load)
+    axes.set_xlim(-REACH * load, REACH * load)
     axes.set_ylim(-top, top)
     axes.grid(True)
     axes.set_xlabel("output torque T in N·m")

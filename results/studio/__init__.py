@@ -1,0 +1,1 @@
+"""The live page: sliders in a browser tab, answers from processes on this machine."""

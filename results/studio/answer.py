@@ -1,0 +1,119 @@
+"""What the right side of the page shows: figures with units as the report prints them, and chart data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from geometry.design import Design
+from pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
+from pipeline.rim import wave_generator_amplitude
+from results.figures.budget import SOURCES, TERMS
+from results.figures.torque_angle import REACH, band
+from results.quantities import quantity
+from results.records import backlash_record
+from results.style import PALETTE
+
+STIFFNESSES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e", "K_series")
+PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
+LINE_POINTS = 25
+Found = Mapping[str, Any]
+Message = dict[str, Any]
+
+
+def message(design: Design, found: Found) -> Message:
+    """All that can be said with the figures found so far; `found` by result.json key.
+
+    Raises
+    ------
+    BearingPlayDomainError : bearing play beyond c_max (involute model).
+    """
+    figures = dict(found)
+    shown: Message = {}
+    K_b = found.get(f"{'K_b_lobes' if lobed(design) else 'K_b'}_Nm_per_rad")
+    K_e = found.get("K_e_Nm_per_rad")
+    if K_b is not None and K_e is not None:
+        figures["K_series_Nm_per_rad"] = 1 / (1 / K_b + 1 / K_e)
+        total = backlash(design, K_b, K_e)
+        figures |= backlash_record(total)
+        shown = {"budget": _budget(total), "line": _line(design, total, K_b, K_e)}
+    return {
+        "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
+        "peaks": [_peak(name, figures, design) for name in PEAKS],
+        "w0_mm": wave_generator_amplitude(design),
+        **shown,
+    }
+
+
+def lobed(design: Design) -> bool:
+    """Whether the lobes' K_b enters the sum."""
+    return design.solver.load_case == "lobes"
+
+
+def figure(key: str, value: float) -> Message:
+    """A number and how it is printed; `decimals` serves differences of the same figure."""
+    entry = quantity(key)
+    text = entry.text(value)
+    return {
+        "key": key, "value": value, "text": text, "unit": entry.unit, "symbol": entry.symbol,
+        "name": entry.name, "decimals": len(text.partition(".")[2]),
+    }  # fmt: skip
+
+
+def _stiffness(name: str, figures: Found) -> Message:
+    key, bounds = f"{name}_Nm_per_rad", f"{name}_bounds_Nm_per_rad"
+    if key not in figures:
+        return _waiting(key)
+    row = figure(key, figures[key])
+    if bounds in figures:
+        low, high = figures[bounds]
+        half = 50 * (high - low) / figures[key]
+        row |= {"bounds": quantity(bounds).range_text(low, high), "half_pct": f"± {half:.2g} %"}
+    return row
+
+
+def _peak(name: str, figures: Found, design: Design) -> Message:
+    key = f"{name}_mises_MPa"
+    if key not in figures:
+        return _waiting(key)
+    r, z = float(np.hypot(*figures[f"{name}_at_mm"][:2])), figures[f"{name}_at_mm"][2]
+    row = figure(key, figures[key]) | {"at": f"at r = {r:.2f}, z = {z:.2f} mm"}
+    own = design.shaft_material if name == "shaft_torque_peak" else design.material.flexspline
+    if own.fatigue_limit_MPa is not None:
+        share = figures[key] / own.fatigue_limit_MPa
+        limit = f"fatigue limit {own.fatigue_limit_MPa:g} MPa"
+        row |= {"limit": f"{100 * share:.3g} % of the {limit}", "over": share > 1}
+    return row
+
+
+def _waiting(key: str) -> Message:
+    entry = quantity(key)
+    return {"key": key, "symbol": entry.symbol, "name": entry.name, "unit": entry.unit}
+
+
+def _budget(total: Backlash) -> Message:
+    values = backlash_record(total)["backlash_arcsec"]
+    rows = [figure(f"backlash_arcsec.{term}", values[term]) for term in (*TERMS, "total", "std")]
+    for row, colour in zip(rows, PALETTE, strict=False):
+        row["colour"] = colour
+    sources = [
+        [name, quantity("backlash_arcsec.std").text(total.std_by_source_arcsec[key])]
+        for key, name in SOURCES.items()
+    ]
+    return {"rows": rows, "sources": sources}
+
+
+def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
+    """The positive branch; the negative one mirrors it."""
+    load = design.load.torque_Nm
+    torque = np.linspace(0, REACH, LINE_POINTS) * load
+    angle = angle_rad(design, np.maximum(torque, 1e-9 * load), K_b, K_e) * ARCSEC_PER_RAD
+    return {
+        "load_Nm": load,
+        "torque_Nm": torque.tolist(),
+        "angle_arcsec": angle.tolist(),
+        "spread_arcsec": band(torque, load, total).tolist(),
+        "gap_arcsec": total.flank_clearance_arcsec + total.bearing_play_arcsec,
+    }

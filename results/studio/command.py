@@ -1,0 +1,42 @@
+"""`flexspline studio`: the live page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from results.job import answered, tell
+
+INSTALL = "pip install 'flexspline[studio]'"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the app."""
+    app.command()(studio)
+
+
+def studio(
+    design: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[DESIGN.toml]", help="The design file; without: a cup to start from."
+        ),
+    ] = None,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; others than this machine need a token.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0: any free port.")] = 0,
+    browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
+) -> None:
+    """A page on this machine: every dimension a slider, stiffness, stress and backlash follow."""
+    with answered(design):
+        try:
+            import aiohttp  # noqa: F401
+        except ImportError:
+            tell(f"flexspline: the page needs aiohttp: {INSTALL}")
+            raise typer.Exit(2) from None
+        from results.studio.serve import serve, starting_design
+
+        serve(starting_design(design), host, port, browser)

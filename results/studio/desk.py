@@ -1,0 +1,98 @@
+"""What one tab asks for beyond the fast answers: jobs, their files, and the messages to and fro."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any, get_args
+
+from aiohttp import web
+
+from geometry.errors import DesignError
+from geometry.load import design_from
+from pipeline.live import View
+from results.studio.jobs import KINDS, Job, Kind
+from results.studio.results import told
+from results.studio.tab import Tab, Workers
+
+
+class Desk:
+    """A tab with its jobs: at most one of each kind; a new one replaces the old one and its files."""
+
+    def __init__(self, workers: Workers, socket: web.WebSocketResponse) -> None:
+        self._socket = socket
+        self.tab = Tab(workers, self._send)
+        self.measured = b""
+        self._jobs: dict[Kind, Job] = {}
+        self._running: set[asyncio.Task[None]] = set()
+
+    async def open(self) -> None:
+        self.tab.open()
+        await self._send({"is": "hello", "tab": self.tab.key})
+
+    async def close(self) -> None:
+        """End everything that runs for this tab and remove its files."""
+        await self.tab.close()
+        for job in self._jobs.values():
+            job.stop()
+        await asyncio.gather(*self._running, return_exceptions=True)
+        for job in self._jobs.values():
+            job.close()
+
+    async def take(self, text: str) -> None:
+        """A message of the tab; one that is not understood is answered, never fatal."""
+        try:
+            note: Any = json.loads(text)
+            action = note["do"]
+            if action == "want" and note["view"] in get_args(View):
+                await self.tab.want(int(note["number"]), note["tables"], note["view"])
+            elif action == "job" and note["kind"] in KINDS:
+                self._start(note["kind"], note["tables"])
+            elif action == "stop" and note["kind"] in self._jobs:
+                self._jobs[note["kind"]].stop()
+        except (ValueError, KeyError, TypeError, RecursionError):
+            await self._send({"is": "refused", "text": "a message was not understood"})
+
+    def file(self, kind: str, name: str) -> bytes | None:
+        """Of the newest job of a kind; None if there is no such job or file."""
+        job = next((job for k, job in self._jobs.items() if k == kind), None)
+        return None if job is None else job.read(name)
+
+    def _start(self, kind: Kind, tables: dict[str, Any]) -> None:
+        old = self._jobs.pop(kind, None)
+
+        async def say(line: str) -> None:
+            await self._send({"is": "progress", "kind": kind, "line": line})
+
+        job = Job(kind, say)
+        self._jobs[kind] = job
+        task = asyncio.create_task(self._run(job, old, tables))
+        self._running.add(task)
+        task.add_done_callback(self._running.discard)
+
+    async def _run(self, job: Job, old: Job | None, tables: dict[str, Any]) -> None:
+        if old is not None:
+            old.close()
+        try:
+            design = design_from(tables)
+        except DesignError as fault:
+            await self._send(
+                {"is": "ended", "kind": job.kind, "state": "failed", "text": str(fault)}
+            )
+            return
+        ended = await job.run(design, self.measured if job.kind == "diagnose" else b"")
+        answer = (
+            told(job.kind, design, ended.text) if ended.state == "done" else {"text": ended.text}
+        )
+        await self._send({"is": "ended", "kind": job.kind, "state": ended.state,
+                          "files": ended.files, **answer})  # fmt: skip
+
+    async def _send(self, note: dict[str, Any] | bytes) -> None:
+        """To the tab, unless it is gone."""
+        try:
+            if isinstance(note, bytes):
+                await self._socket.send_bytes(note)
+            else:
+                await self._socket.send_str(json.dumps(note, allow_nan=False))
+        except (ConnectionError, RuntimeError):  # closed meanwhile: nobody is left to tell
+            return

@@ -1,0 +1,137 @@
+"""The design as a form: every key with its label, unit, limits and a slider's range.
+
+All of it comes from the schema; the page has no list of keys of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor, log10
+from typing import Any
+
+from geometry.design import Design
+from geometry.schema import UNITS, Location, Node, dotted, node_at
+
+GROUPS: tuple[tuple[str, Location], ...] = (
+    ("Flexspline", ("flexspline",)),
+    ("Shaft", ("shaft",)),
+    ("Material of the flexspline", ("material", "flexspline")),
+    ("Material of the shaft", ("material", "shaft")),
+    ("Gear", ("gear",)),
+    ("Bearing", ("bearing",)),
+    ("Load", ("load",)),
+    ("Uncertainty, one standard deviation", ("uncertainty",)),
+    ("Solver", ("solver",)),
+)
+SPAN = 0.5
+"""A slider reaches from the nominal value less half of it to half of it more."""
+STEPS = 200
+"""A slider has at least so many places."""
+Tables = dict[str, Any]
+
+
+def form(design: Design) -> list[Tables]:
+    """The groups of the form, each a title and its entries, for the design's own kind and segments."""
+    tables = design.model_dump(mode="json", exclude_none=True)
+    kind = design.flexspline.kind
+    groups: list[Tables] = []
+    for title, location in GROUPS:
+        groups += _group(title, location, _at(tables, location), kind)
+        if location == ("shaft",):
+            for i, segment in enumerate(tables["shaft"]["segment"]):
+                name = "flange" if i == 0 else f"segment {i + 1}"
+                groups += _group(f"Shaft, {name}", ("shaft", "segment", i), segment, kind)
+            groups += _group("Keyway", ("shaft", "keyway"), tables["shaft"].get("keyway"), kind)
+    return groups
+
+
+def _at(tables: Tables, location: Location) -> Tables | None:
+    here: Any = tables
+    for part in location:
+        here = here.get(part) if isinstance(here, dict) else None
+    return here
+
+
+def _group(title: str, location: Location, table: Tables | None, kind: str) -> Iterator[Tables]:
+    """Nothing for a table that the design leaves out."""
+    if table is None:
+        return
+    scale = max((float(v) for v in table.values() if _is_number(v)), default=1.0)
+    entries = [
+        _entry((*location, key), node_at((*location, key), kind), table.get(key), scale)
+        for key in node_at(location, kind).get("properties", {})
+    ]
+    yield {"title": title, "at": list(location), "entries": [e for e in entries if e]}
+
+
+def _entry(location: Location, node: Node, value: Any, scale: float) -> Tables | None:
+    """One key: a number with its slider, or a choice; None for tables and for what has no choice."""
+    about = {
+        "key": dotted(location),
+        "at": list(location),
+        "label": _label(location),
+        "unit": _unit(location),
+        "hint": node.get("description", ""),
+    }
+    if "enum" in node:
+        return {**about, "kind": "choice", "options": node["enum"]}
+    if node.get("type") == "string" and "const" not in node:
+        return {**about, "kind": "text"}
+    if node.get("type") not in ("number", "integer"):
+        return None
+    whole = node["type"] == "integer"
+    low, high, step = slider(node, value, scale, whole, str(location[-1]))
+    optional = value is None
+    return {
+        **about, "kind": "whole" if whole else "number",
+        "low": low, "high": high, "step": step, "optional": optional,
+    }  # fmt: skip
+
+
+def slider(
+    node: Node, value: float | None, scale: float, whole: bool, key: str
+) -> tuple[float, float, float]:
+    """Range and step about a nominal value, within the schema's limits.
+
+    Where the value is 0 or absent the slider goes up to a tenth of the table's largest figure.
+    """
+    least = float(node["minimum"] if "minimum" in node else node["exclusiveMinimum"])
+    most = float(node["maximum"])
+    low, high = (value * (1 - SPAN), value * (1 + SPAN)) if value else (0.0, scale / 10)
+    step = _round_step((high - low) / STEPS)
+    if whole:
+        # teeth differ by an even number between the gears: steps of two keep it so
+        step = 2.0 if key.startswith("teeth") else max(1.0, float(round(step)))
+        low, high = (floor(low / step) * step, high) if value else (0.0, max(high, 12.0))
+        low += (value or 0) % step
+    low = max(low, least) if least > 0 else max(low, 0.0)
+    return _tidy(low, step), _tidy(min(high, most), step), step
+
+
+def _round_step(step: float) -> float:
+    """1, 2 or 5 times a power of ten, not above `step`."""
+    decade = 10.0 ** floor(log10(step))
+    return float(f"{max(s * decade for s in (1.0, 2.0, 5.0) if s * decade <= 1.0001 * step):.1g}")
+
+
+def _tidy(value: float, step: float) -> float:
+    """The multiple of the step nearest to a value, without binary dust; limits stay as they are."""
+    near = float(f"{round(value / step) * step:.12g}")
+    return near if near > 0 or value <= 0 else value
+
+
+def _label(location: Location) -> str:
+    """``inner_diameter_mm`` → Inner diameter."""
+    key = str(location[-1])
+    for suffix in UNITS:
+        key = key.removesuffix(suffix)
+    words = key.replace("_", " ").replace("youngs", "Young's").replace("poissons", "Poisson's")
+    return words[:1].upper() + words[1:]
+
+
+def _unit(location: Location) -> str:
+    return next((u for s, u in UNITS.items() if str(location[-1]).endswith(s)), "")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,127 @@
+// The right side: stiffnesses, peaks and the backlash sum; what a pinned design and the solid model say.
+
+import { chartBudget, chartLine } from "./charts.js";
+import { el, grouped, symbol } from "./dom.js";
+
+const SHORT = {
+  K_b_Nm_per_rad: "flexspline, even torque",
+  K_b_lobes_Nm_per_rad: "torque at the two lobes",
+  K_b_lobes_contact_Nm_per_rad: "lobes, rim may lift off",
+  K_b_lobes_unsupported_Nm_per_rad: "lobes, rim unsupported",
+  K_e_Nm_per_rad: "output shaft",
+  K_series_Nm_per_rad: "both in series",
+  wave_generator_peak_mises_MPa: "wave generator",
+  torque_peak_mises_MPa: "flexspline, load torque",
+  shaft_torque_peak_mises_MPa: "shaft, load torque",
+};
+
+export class Figures {
+  constructor(root, looks) {
+    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set() });
+    this.stiffness = el("section", {});
+    this.peaks = el("section", {});
+    this.backlash = el("section", {});
+    root.append(this.stiffness, this.peaks, this.backlash);
+  }
+
+  // A newer answer keeps the older figures, marked, until their own turn comes.
+  show(answer, complete) {
+    const merged = { ...this.now, ...answer };
+    this.fresh = new Set();
+    for (const part of ["stiffness", "peaks"]) {
+      merged[part] = answer[part].map((row, i) => {
+        if (row.text !== undefined) {
+          this.fresh.add(row.key);
+          return row;
+        }
+        return this.now?.[part][i] ?? row;
+      });
+    }
+    if (answer.budget) this.fresh.add("backlash");
+    this.now = merged;
+    this.complete = complete;
+    this.draw();
+  }
+
+  stale() {
+    this.fresh = new Set();
+    this.draw();
+  }
+
+  draw() {
+    if (!this.now) return;
+    this.root.classList.toggle("compared", Boolean(this.pinned));
+    this.root.classList.toggle("solved", Boolean(this.solid));
+    const unit = (rows) => rows.find((row) => row.unit)?.unit ?? "";
+    this.stiffness.replaceChildren(
+      this.heading("Stiffness", unit(this.now.stiffness)),
+      el("table", {}, this.head("bounds"), el("tbody", {}, ...this.now.stiffness.map((row) => this.row(row, "stiffness")))),
+    );
+    this.peaks.replaceChildren(
+      this.heading("Peak von Mises stress", unit(this.now.peaks)),
+      el("table", {}, this.head("place"), el("tbody", {}, ...this.now.peaks.map((row) => this.row(row, "peaks")))),
+    );
+    const busy = this.fresh.has("backlash") ? "" : "stale";
+    this.backlash.className = busy;
+    const now = this.now.budget;
+    this.backlash.replaceChildren(this.heading("Backlash between −T and +T", "arcsec"));
+    if (now) {
+      this.backlash.append(
+        chartBudget(now, this.looks, this.pinned?.budget, this.solidFresh() ? this.solid.budget : null),
+        this.heading("Angle at the output, wave generator locked", "arcsec over N·m"),
+        chartLine(this.now.line, now, this.looks, this.pinned?.line),
+      );
+    }
+  }
+
+  heading(text, unit) {
+    return el("h2", {}, text, el("span", { class: "unit" }, unit));
+  }
+
+  head(third) {
+    const cells = [el("th", { colspan: 2 }, ""), el("th", {}, "fast model"), el("th", {}, third)];
+    if (this.solid) cells.push(el("th", {}, this.solid.old ? "solid, earlier design" : "solid"));
+    if (this.pinned) cells.push(el("th", {}, "to pinned"));
+    return el("thead", {}, el("tr", {}, ...cells));
+  }
+
+  row(row, part) {
+    const busy = row.text !== undefined && this.fresh.has(row.key) ? "" : "stale";
+    const side = part === "peaks" ? row.at?.replace("at ", "") : row.bounds;
+    const cells = [
+      el("td", { class: "sym" }, symbol(row.symbol)),
+      el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name),
+      el("td", { class: "value" }, row.text ?? "…"),
+      el("td", { class: "side", title: row.half_pct }, side ?? ""),
+    ];
+    cells[2].dataset.value = row.value ?? "";
+    if (this.solid) cells.push(this.solidCell(row, part));
+    if (this.pinned) cells.push(this.pinnedCell(row, part));
+    const line = el("tr", { class: busy, "data-key": row.key }, ...cells);
+    if (!row.limit) return line;
+    line.classList.toggle("over", row.over);
+    cells[3].append(el("br"), el("span", { class: "limit" }, row.limit));
+    return line;
+  }
+
+  solidFresh() {
+    return this.solid && !this.solid.old;
+  }
+
+  solidCell(row, part) {
+    const found = this.solid[part].find((other) => other.key === row.key);
+    const cell = el("td", { class: `value solid ${this.solid.old ? "stale" : ""}`, title: found?.bounds }, found?.text ?? "");
+    if (found?.bounds) cell.append(el("br"), el("span", { class: "limit" }, found.bounds));
+    return cell;
+  }
+
+  pinnedCell(row, part) {
+    const other = this.pinned[part].find((entry) => entry.key === row.key);
+    if (other?.value === undefined || row.value === undefined) return el("td", {});
+    const change = row.value - other.value;
+    const percent = grouped((100 * change) / other.value, 1);
+    const plus = change > 0 ? "+" : "";
+    return el("td", { class: "delta" }, `${plus}${grouped(change, row.decimals)}`, el("br"),
+      el("span", { class: "limit" }, `${plus}${percent} %`));
+  }
+}

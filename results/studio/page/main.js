@@ -1,0 +1,194 @@
+// Wiring: a moved slider goes out with a number, answers come back with it, older ones are left aside.
+
+import { download, el, pick } from "./dom.js";
+import { Figures } from "./figures.js";
+import { Form } from "./form.js";
+import { ask, Link } from "./link.js";
+import { Measured } from "./measured.js";
+import { Pins } from "./pins.js";
+import { Stage } from "./stage.js";
+import { differences, keep, kept, setAt, state } from "./state.js";
+import { follow } from "./theme.js";
+import { Work } from "./work.js";
+
+const JSON_TYPE = "application/json";
+const notice = document.getElementById("notice");
+const title = document.getElementById("name");
+follow(document.getElementById("theme"));
+
+const started = await ask("start");
+const before = kept();
+let opened = started;
+if (before?.good) {
+  try {
+    opened = await ask("open", JSON.stringify(before.good), JSON_TYPE);
+    Object.assign(state, { view: before.view, pinned: before.pinned });
+  } catch {
+    say("The design of this tab is no longer accepted; the server's own is shown.");
+  }
+}
+
+const figures = new Figures(document.getElementById("answers"), started.looks);
+const stage = new Stage(started.looks, { view: state.view, chosen: (view) => { state.view = view; send(); } });
+const form = new Form(document.getElementById("form"), { changed: send, restructured: reopen });
+const works = {};
+for (const [kind, words, tip] of [
+  ["solid", "Solve with holes (solid model)", "Tetrahedra, refined until the tolerance is met"],
+  ["step", "STEP", "Both parts as CAD files"],
+  ["report", "Report", "The whole run with the solid model: report.pdf, and report.html to turn"],
+]) works[kind] = new Work({ kind, words, title: tip, start: startWork, stop: stopWork, done: (note, line) => finished(kind, note, line) });
+const measured = new Measured(document.getElementById("measured"), {
+  upload: (file) => ask(`measured/${link.tab}`, file, "text/csv"), start: startWork, stop: stopWork, address });
+works.diagnose = measured.work;
+const pins = new Pins({ figures, changed: () => { keep(); figures.draw(); } });
+figures.root.append(el("section", { id: "solid" }, works.solid.button, works.solid.line), pins.list);
+
+document.getElementById("tools").append(
+  el("button", { id: "new-cup", onclick: () => open("open?kind=cup", "") }, "New cup"),
+  el("button", { id: "new-hat", onclick: () => open("open?kind=hat", "") }, "New hat"),
+  el("button", { id: "load", onclick: () => pick(".toml", load) }, "Open"),
+  el("button", { id: "save", onclick: save }, "Save"),
+  works.step.button, works.step.line,
+  el("button", { id: "png", onclick: async () => download(await stage.png(state.good.name), `${stem()}.png`, "image/png") }, "PNG"),
+  works.report.button, works.report.line, pins.button);
+for (const id of ["design", "measured"]) {
+  document.getElementById(`tab-${id}`).addEventListener("click", () => {
+    for (const other of ["design", "measured"]) {
+      document.getElementById(other).hidden = other !== id;
+      document.getElementById(`tab-${other}`).setAttribute("aria-selected", String(other === id));
+    }
+  });
+}
+title.addEventListener("input", () => { setAt(state.tables, ["name"], title.value); send(); });
+for (const name of ["dragover", "drop"]) {
+  document.getElementById("form").addEventListener(name, (event) => {
+    event.preventDefault();
+    if (name === "drop" && event.dataTransfer.files[0]) load(event.dataTransfer.files[0]);
+  });
+}
+
+let coming = null;
+let lostOnce = false;
+adopt(opened);
+const link = new Link({
+  opened: () => { if (lostOnce) say("Connected again.", 3000); send(); },
+  lost: () => {
+    lostOnce = true;
+    say("Connection lost. Trying again; the design in this tab is kept.");
+    figures.stale();
+    for (const work of Object.values(works)) work.lost();
+  },
+  note: heard,
+  bytes: (buffer) => stage.take(buffer, coming, state.number),
+});
+
+function adopt({ tables, form: groups }) {
+  state.tables = tables;
+  state.good = structuredClone(tables);
+  title.value = tables.name;
+  form.build(groups);
+  keep();
+}
+
+function send() {
+  state.number += 1;
+  solidIsOld();
+  link.say({ do: "want", number: state.number, tables: state.tables, view: state.view });
+}
+
+function heard(note) {
+  if (note.is === "picture") coming = note.number;
+  if (note.is === "progress") works[note.kind].progress(note.line);
+  if (note.is === "ended") works[note.kind].ended(note);
+  if (note.is === "refused") say(note.text);
+  if (note.number !== state.number) return;
+  if (note.is === "fault" || note.is === "failed") {
+    form.fault(note.key, note.text);
+    if (note.is === "fault") figures.stale();
+    stage.working(false);
+  }
+  if (note.is === "taken") {
+    form.clear();
+    notice.hidden = notice.hidden || notice.dataset.passing !== "yes";
+    state.good = structuredClone(state.tables);
+    keep();
+    document.title = `${state.good.name} · flexspline studio`;
+    stage.say(note.left_out, note.warnings, note.w0_mm);
+    works.solid.words = note.left_out.length ? "Solve with holes (solid model)" : "Solve with the solid model";
+    if (!works.solid.running) works.solid.button.textContent = works.solid.words;
+    stage.working(true);
+  }
+  if (note.is === "taken" || note.is === "answer") {
+    figures.show(note);
+    pins.compare();
+  }
+}
+
+function say(text, passing) {
+  notice.textContent = text;
+  notice.hidden = false;
+  notice.dataset.passing = passing ? "yes" : "no";
+  if (passing) setTimeout(() => { if (notice.textContent === text) notice.hidden = true; }, passing);
+}
+
+async function open(path, body, type) {
+  try {
+    adopt(await ask(path, body, type));
+    notice.hidden = true;
+    send();
+  } catch (error) {
+    say(error.message);
+  }
+}
+
+function reopen(tables) {
+  open("open", JSON.stringify(tables), JSON_TYPE);
+}
+
+function load(file) {
+  if (file.size > 1e6) return say(`${file.name}: ${file.size} bytes; a design file has at most 1 MB`);
+  open("open", file, "application/toml");
+}
+
+async function save() {
+  try {
+    download(await ask("text", JSON.stringify(state.tables), JSON_TYPE), `${stem()}.toml`, "application/toml");
+  } catch (error) {
+    form.fault(error.key, error.message);
+  }
+}
+
+function stem() {
+  return state.good.name.replace(/[^\p{L}\p{N}_-]+/gu, "-").replace(/^-+|-+$/g, "").slice(0, 60) || "design";
+}
+
+function startWork(kind) {
+  const sent = link.say({ do: "job", kind, tables: state.tables });
+  if (sent) works[kind].design = structuredClone(state.tables);
+  return sent;
+}
+
+function stopWork(kind) {
+  link.say({ do: "stop", kind });
+}
+
+function address(kind, name) {
+  return `made/${link.tab}/${kind}/${name}`;
+}
+
+function finished(kind, note, line) {
+  if (kind === "solid") {
+    figures.solid = note.answer;
+    line.textContent = `${note.solved.join("; ")}; ${note.wall_s.toFixed(1)} s`;
+    solidIsOld();
+    figures.draw();
+    return;
+  }
+  const shown = note.files.filter((name) => /\.(pdf|html|step)$/.test(name));
+  line.replaceChildren(...shown.map((name) => el("a", { href: address(kind, name), download: `${stem()}-${name}` }, name)));
+}
+
+function solidIsOld() {
+  if (!figures.solid) return;
+  figures.solid.old = differences(works.solid.design, state.tables).length > 0;
+}

@@ -1,0 +1,75 @@
+// The tab for measured data: drop a CSV in, read what the simulation gets wrong.
+
+import { el, pick } from "./dom.js";
+import { Work } from "./work.js";
+
+const LARGEST_MB = 20;
+
+export class Measured {
+  // upload(file): sends the bytes; start, stop as for any work; address(name): of a file that was made.
+  constructor(root, { upload, start, stop, address }) {
+    Object.assign(this, { root, upload, address });
+    this.work = new Work({ kind: "diagnose", words: "Diagnose again", title: "With the design as it stands now",
+      start, stop, done: (note) => this.show(note) });
+    this.work.button.hidden = true;
+    this.name = el("span", { class: "limit" });
+    const zone = el("div", { id: "drop", tabindex: 0 },
+      el("p", {}, "Drop a CSV of measured data here, or ", el("button", { class: "small", onclick: () => pick(".csv,text/csv", (f) => this.take(f)) }, "choose a file")),
+      el("p", { class: "limit" }, `Torque sweep, end points or specimens; at most ${LARGEST_MB} MB. Compared with the design on the left.`),
+      el("p", {}, this.name, " ", this.work.button, " ", this.work.line));
+    this.fault = el("p", { class: "fault", role: "alert", hidden: true, id: "measured-fault" });
+    this.findings = el("div", { id: "findings" });
+    root.append(zone, this.fault, this.findings);
+    for (const name of ["dragover", "dragleave", "drop"]) {
+      zone.addEventListener(name, (event) => {
+        event.preventDefault();
+        zone.classList.toggle("over", name === "dragover");
+        if (name === "drop" && event.dataTransfer.files[0]) this.take(event.dataTransfer.files[0]);
+      });
+    }
+  }
+
+  async take(file) {
+    this.refuse("");
+    if (file.size > LARGEST_MB * 1e6) return this.refuse(`${file.name}: larger than ${LARGEST_MB} MB`);
+    try {
+      await this.upload(file);
+    } catch (error) {
+      return this.refuse(`${file.name}: ${error.message}`);
+    }
+    this.name.textContent = file.name;
+    this.file = file;
+    this.work.button.hidden = false;
+    this.work.begin();
+  }
+
+  refuse(text) {
+    this.fault.textContent = text;
+    this.fault.hidden = !text;
+  }
+
+  old() {
+    this.findings.classList.add("stale");
+  }
+
+  show({ diagnosis: d, files }) {
+    this.findings.classList.remove("stale");
+    const list = (title, entries) => (entries.length ? [el("h3", {}, title), el("ul", {}, ...entries.map((line) => el("li", {}, line)))] : []);
+    const causes = d.causes.map((c) => el("tr", {}, el("td", {}, c.title), el("td", { class: "value" }, c.magnitude),
+      el("td", {}, c.sure), el("td", {}, c.others || "")));
+    const keep = files.filter((name) => !name.endsWith(".png"));
+    this.findings.replaceChildren(
+      el("h2", { id: "verdict" }, d.verdict),
+      el("p", {}, d.summary),
+      d.causes.length ? el("table", { class: "causes" },
+        el("thead", {}, el("tr", {}, ...["Cause", "Magnitude", "How sure", "Cannot be told from"].map((h) => el("th", {}, h)))),
+        el("tbody", {}, ...causes)) : "",
+      ...list("Unexplained", d.unexplained),
+      d.gain ? el("p", {}, d.gain) : "",
+      ...(d.next ? [el("h3", {}, "Measure next"), el("p", { id: "next" }, `${d.next[0]}: ${d.next[1]}`)] : []),
+      ...list("Notes", d.notes),
+      el("p", { class: "files" }, "Keep: ", ...keep.map((name) => el("a", { href: this.address("diagnose", name), download: name }, name))),
+      el("div", { class: "figures" }, ...files.filter((name) => name.endsWith(".png")).map((name) =>
+        el("img", { src: `${this.address("diagnose", name)}?${Date.now()}`, alt: name.replace(".png", "").replaceAll("_", " ") }))));
+  }
+}

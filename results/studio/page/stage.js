@@ -1,0 +1,130 @@
+// What stands around the 3-D part: which case, the colour scale, what was left out, and its PNG.
+
+import { el, grouped } from "./dom.js";
+import { unpacked } from "./shape.js";
+import { View } from "./view.js";
+
+const CASES = {
+  wave_generator: "On the wave generator",
+  flexspline_torque: "Flexspline under torque",
+  shaft_torque: "Shaft under torque",
+};
+const TICKS = 4;
+
+export class Stage {
+  constructor(looks, { view, chosen }) {
+    this.looks = looks;
+    this.view = view;
+    this.canvas = new View(document.getElementById("canvas"), looks);
+    this.scale = document.getElementById("scale");
+    this.caption = document.getElementById("caption");
+    const choice = el("select", { id: "case", "aria-label": "Load case shown" },
+      ...Object.entries(CASES).map(([key, words]) => el("option", { value: key }, words)));
+    choice.value = view;
+    choice.addEventListener("change", () => {
+      this.view = choice.value;
+      chosen(choice.value);
+    });
+    const toggle = (id, words, option, on) => {
+      const box = el("input", { type: "checkbox", id });
+      box.checked = on;
+      box.addEventListener("change", () => this.canvas.set({ [option]: box.checked }));
+      return el("label", { class: "check" }, box, words);
+    };
+    document.getElementById("stagebar").append(choice, toggle("open", "Cut open", "open", false),
+      toggle("deformed", "Deformed", "deformed", true),
+      el("button", { id: "reset", class: "small", onclick: () => this.canvas.reset() }, "Reset view"),
+      this.busy = el("span", { class: "busy", id: "busy" }));
+  }
+
+  // Bytes that belong to design `number`; those of another view or an older design are not shown.
+  take(buffer, number, newest) {
+    const shape = unpacked(buffer);
+    if (shape.view !== this.view || number !== newest) return;
+    if (shape.is === "profile" && this.shown?.view === shape.view && this.shown.is === "field" && this.same(shape)) return;
+    this.shown = shape;
+    this.canvas.show(shape);
+    this.working(shape.is === "profile");
+    this.drawScale();
+    this.root().dataset.shown = `${shape.is} ${shape.view} ${number}`;
+  }
+
+  // Whether a bare outline has the extent of what is shown: then its colours are not thrown away for it.
+  same(profile) {
+    const size = (shape) => this.extent(shape).map((x) => x.toPrecision(5)).join();
+    return size(profile) === size(this.shown) && this.outline === (this.outline = profile.places.join());
+  }
+
+  extent({ places }) {
+    const r = places.filter((_, i) => i % 2 === 0);
+    return [Math.max(...r), Math.min(...r)];
+  }
+
+  root() {
+    return document.getElementById("stage");
+  }
+
+  working(on) {
+    this.busy.textContent = on ? "computing the stress…" : "";
+  }
+
+  drawScale() {
+    const shape = this.shown;
+    this.scale.hidden = shape.is !== "field";
+    if (this.scale.hidden) return;
+    const peak = shape.peak_MPa;
+    const places = Math.max(0, 2 - Math.floor(Math.log10(peak)));
+    const marks = Array.from({ length: TICKS + 1 }, (_, i) => grouped((peak * i) / TICKS, places)).reverse();
+    const bar = el("canvas", { width: 1, height: 256, class: "bar" });
+    const pen = bar.getContext("2d");
+    for (let i = 0; i < 256; i++) {
+      pen.fillStyle = `rgb(${this.looks.scale.slice(3 * i, 3 * i + 3).join()})`;
+      pen.fillRect(0, 255 - i, 1, 1);
+    }
+    this.scale.replaceChildren(el("p", { class: "unit" }, "von Mises, MPa"),
+      el("div", { class: "bars" }, bar, el("ol", {}, ...marks.map((mark) => el("li", {}, mark)))),
+      el("p", { class: "peak", title: shape.excluded }, "● peak"));
+    this.magnified = shape.view === "wave_generator"
+      ? `Displacements drawn ${grouped(shape.magnification, 0)} times as large. ` : "";
+    this.write();
+  }
+
+  say(leftOut, warnings, w0) {
+    this.left = leftOut.length ? `Left out of the fast model: ${leftOut.join(", ")}. ` : "";
+    this.warnings = warnings;
+    this.w0 = w0;
+    this.write();
+  }
+
+  write() {
+    const seat = this.view === "wave_generator" ? `Seat moved radially by w₀ cos 2φ, w₀ = ${grouped(this.w0 ?? 0, 3)} mm. ` : "";
+    this.caption.replaceChildren(
+      el("p", {}, seat, this.magnified ?? ""),
+      this.left ? el("p", { id: "left-out", class: "note" }, this.left, "“Solve with holes” answers with them.") : "",
+      ...(this.warnings ?? []).map((line) => el("p", { class: "warning" }, `Unusual: ${line}`)));
+  }
+
+  // The part with its title and scale, on the page's own ground.
+  png(title) {
+    const part = this.canvas.picture();
+    const k = part.width / part.clientWidth;
+    const sheet = el("canvas", { width: part.width, height: part.height });
+    const pen = sheet.getContext("2d");
+    const style = getComputedStyle(document.body);
+    pen.fillStyle = style.backgroundColor;
+    pen.fillRect(0, 0, sheet.width, sheet.height);
+    pen.drawImage(part, 0, 0);
+    pen.fillStyle = style.color;
+    pen.font = `600 ${15 * k}px ${style.fontFamily}`;
+    pen.fillText(title, 16 * k, 28 * k);
+    pen.font = `${12 * k}px ${style.fontFamily}`;
+    pen.fillText(`${CASES[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
+    const bar = this.scale.querySelector("canvas");
+    if (bar && !this.scale.hidden) {
+      const [x, y, h] = [sheet.width - 92 * k, 70 * k, Math.min(220 * k, sheet.height - 110 * k)];
+      pen.drawImage(bar, x, y, 14 * k, h);
+      this.scale.querySelectorAll("li").forEach((mark, i) => pen.fillText(mark.textContent, x + 20 * k, y + 4 * k + (h * i) / TICKS));
+    }
+    return new Promise((done) => sheet.toBlob(done, "image/png"));
+  }
+}

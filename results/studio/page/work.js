@@ -1,0 +1,43 @@
+// Long work: a button starts it, its lines are shown while it runs, and it can be stopped.
+
+import { el } from "./dom.js";
+
+export class Work {
+  // done(note): it ended well. ready(): the design may be sent. start, stop: to the server.
+  constructor({ kind, words, title, start, stop, done }) {
+    Object.assign(this, { kind, words, start, stop, done, running: false });
+    this.button = el("button", { id: `work-${kind}`, title, onclick: () => (this.running ? this.halt() : this.begin()) }, words);
+    this.line = el("span", { class: "progress", role: "status", id: `progress-${kind}` });
+  }
+
+  begin() {
+    if (!this.start(this.kind)) return;
+    this.running = true;
+    this.button.textContent = "Stop";
+    this.button.classList.add("running");
+    this.line.className = "progress";
+    this.line.textContent = "starting…";
+  }
+
+  halt() {
+    this.line.textContent = "stopping…";
+    this.stop(this.kind);
+  }
+
+  progress(text) {
+    if (this.running) this.line.textContent = text;
+  }
+
+  ended(note) {
+    this.running = false;
+    this.button.textContent = this.words;
+    this.button.classList.remove("running");
+    this.line.className = note.state === "failed" ? "progress fault" : "progress";
+    this.line.textContent = note.state === "done" ? "" : note.text;
+    if (note.state === "done") this.done(note, this.line);
+  }
+
+  lost() {
+    if (this.running) this.ended({ state: "failed", text: "the connection was lost; start it again" });
+  }
+}

@@ -1,0 +1,82 @@
+"""What a worker can be asked about a design, by name; runs in the worker's process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, get_args
+
+from geometry.design import Design
+from geometry.errors import ComputationError, DesignError
+from geometry.load import design_from
+from pipeline.live import Bounded, RimCase, View, field, profile, revolved, rim, torsion
+from results.studio.shape import field_message, profile_message
+from results.studio.worker import Fault
+
+VIEWS: tuple[View, ...] = get_args(View)
+RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
+PEAK_KEYS: dict[View, str] = {
+    "flexspline_torque": "torque_peak",
+    "wave_generator": "wave_generator_peak",
+    "shaft_torque": "shaft_torque_peak",
+}
+"""result.json's name of the peak that a view shows."""
+CHORDS_PER_WALL = 40
+"""Arcs of a shape without stress are drawn with chords no farther off than wall/40."""
+
+Found = dict[str, Any]
+"""Figures by result.json key; "picture" holds bytes for the tab."""
+
+
+def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
+    """The figures, or why there are none; only our own errors become a Fault."""
+    try:
+        return _QUESTIONS[question](revolved(design_from(tables)))
+    except DesignError as fault:
+        return Fault(fault.key, str(fault))
+    except ComputationError as fault:
+        return Fault("", str(fault))
+
+
+def _torsion(design: Design) -> Found:
+    K_b, K_e = torsion(design)
+    return {**_stiffness("K_b", K_b), **_stiffness("K_e", K_e)}
+
+
+def _rim(case: RimCase) -> Callable[[Design], Found]:
+    return lambda design: _stiffness(case, rim(design, case))
+
+
+def _stiffness(name: str, found: Bounded) -> Found:
+    return {
+        f"{name}_Nm_per_rad": found.K_Nm_per_rad,
+        f"{name}_bounds_Nm_per_rad": [found.lower_Nm_per_rad, found.upper_Nm_per_rad],
+    }
+
+
+def _field(view: View) -> Callable[[Design], Found]:
+    def ask(design: Design) -> Found:
+        solved = field(design, view)
+        name = PEAK_KEYS[view]
+        return {
+            f"{name}_mises_MPa": solved.peak.mises_MPa,
+            f"{name}_at_mm": list(solved.peak.at_mm),
+            "picture": field_message(view, solved),
+        }
+
+    return ask
+
+
+def _profile(view: View) -> Callable[[Design], Found]:
+    def ask(design: Design) -> Found:
+        chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
+        return {"picture": profile_message(view, profile(design, view, chord))}
+
+    return ask
+
+
+_QUESTIONS: dict[str, Callable[[Design], Found]] = {
+    "torsion": _torsion,
+    **{case: _rim(case) for case in RIM_CASES},
+    **{f"field {view}": _field(view) for view in VIEWS},
+    **{f"profile {view}": _profile(view) for view in VIEWS},
+}

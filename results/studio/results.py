@@ -1,0 +1,88 @@
+"""What a finished job says to the page, in the words and figures of the reports."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from geometry.design import Design
+from pipeline.diagnosis.result import NamedCause
+from results.diagnosis.words import (
+    VERDICTS,
+    capital,
+    channel_words,
+    figures_text,
+    magnitude_words,
+    sure_words,
+    title_of,
+)
+from results.studio.answer import message
+from results.studio.jobs import Kind
+
+Told = dict[str, Any]
+
+
+def told(kind: Kind, design: Design, printed: str) -> Told:
+    """From what the command printed with --json."""
+    if kind == "step":
+        return {}
+    record = json.loads(printed)
+    if kind == "diagnose":
+        return {"diagnosis": _diagnosis(record)}
+    solver = record["solver"]["parts"]
+    return {
+        "answer": message(design, record),
+        "solved": [
+            f"{part}: {s['elements']} elements, {s['symmetry']}" for part, s in solver.items()
+        ],
+        "wall_s": record["solver"]["wall_s"],
+    }
+
+
+def _diagnosis(record: Told) -> Told:
+    after, gain = record.get("next_measurement"), record.get("gain")
+    return {
+        "verdict": VERDICTS[record["verdict"]],
+        "summary": capital(record["summary"]),
+        "causes": [_cause(c) for c in record["causes"]],
+        "unexplained": [
+            f"{capital(channel_words(u['channel']))}: {u['what']}, {figures_text(u['rms'], 2)} rms"
+            for u in record["unexplained"]
+        ],
+        "gain": None if gain is None else _gain(gain),
+        "next": None if after is None else [capital(channel_words(after["vary"])), after["why"]],
+        "notes": [capital(n) for n in record["notes"]],
+    }
+
+
+def _cause(entry: Told) -> Told:
+    keys = (
+        "id",
+        "probability",
+        "magnitude",
+        "magnitude_std",
+        "unit",
+        "evidence_nats",
+        "rms_arcsec",
+    )
+    cause = NamedCause(
+        title=title_of(entry["id"]),
+        alternatives=tuple(entry["alternatives"]),
+        own_units=tuple(entry.get("units", ())),
+        **{key: entry[key] for key in keys},
+    )
+    return {
+        "title": capital(cause.title),
+        "magnitude": magnitude_words(cause),
+        "sure": sure_words(cause),
+        "others": ", ".join(map(title_of, cause.alternatives)),
+    }
+
+
+def _gain(gain: Told) -> str:
+    before, after = figures_text(gain["rmse_before"]), figures_text(gain["rmse_after"])
+    floor = figures_text(gain["noise_floor"])
+    return (
+        f"On {gain['held_out']}, not used for fitting: {before} {gain['unit']} rms before, "
+        f"{after} with what was found; the reading's own noise is {floor}."
+    )

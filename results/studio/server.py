@@ -1,0 +1,179 @@
+"""The page's server: its files, one connection for each tab, uploads and downloads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, field
+from importlib.resources import files
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.load import LARGEST_BYTES, design_from, tables_from
+from geometry.template import design_text, template
+from results.studio.desk import Desk
+from results.studio.fields import form
+from results.studio.guard import HEADERS, Guard
+from results.studio.jobs import SERVED
+from results.studio.looks import looks
+from results.studio.tab import Workers
+
+LARGEST_MESSAGE = 2 * LARGEST_BYTES
+"""A design as JSON is at most a little larger than as TOML."""
+LARGEST_MEASURED = 20_000_000
+_TYPES = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg": "image/svg+xml"}
+
+
+@dataclass
+class Studio:
+    """What the server holds: the design it was started with, the workers, the open tabs."""
+
+    guard: Guard
+    design: Design
+    workers: Workers = field(default_factory=Workers.of_this_machine)
+    desks: dict[str, Desk] = field(default_factory=dict)
+    page: dict[str, tuple[bytes, str]] = field(default_factory=lambda: _page())
+
+
+STUDIO: web.AppKey[Studio] = web.AppKey("studio", Studio)
+
+
+def application(studio: Studio) -> web.Application:
+    """Routes and rules; the workers live as long as it runs."""
+    app = web.Application(middlewares=[studio.guard.middleware], client_max_size=LARGEST_MEASURED)
+    app[STUDIO] = studio
+    app.router.add_get("/", _file)
+    app.router.add_get("/page/{name}", _file)
+    app.router.add_get("/start", _start)
+    app.router.add_get("/live", _live)
+    app.router.add_post("/open", _open)
+    app.router.add_post("/text", _text)
+    app.router.add_post("/measured/{tab}", _measured)
+    app.router.add_get("/made/{tab}/{kind}/{name}", _made)
+    app.cleanup_ctx.append(_workers)
+    return app
+
+
+async def _workers(app: web.Application) -> AsyncIterator[None]:
+    app[STUDIO].workers.start()
+    yield
+    for desk in list(app[STUDIO].desks.values()):
+        await desk.close()
+    app[STUDIO].workers.stop()
+
+
+def _page() -> dict[str, tuple[bytes, str]]:
+    """Every file of the page by name, read once: a request picks from these and reads no disk."""
+    found = {}
+    for folder in (files("results.studio") / "page", files("results.studio") / "page" / "vendor"):
+        for entry in folder.iterdir():
+            kind = _TYPES.get(entry.name.rpartition(".")[2])
+            if kind and entry.is_file():
+                found[entry.name] = (entry.read_bytes(), kind)
+    return found
+
+
+async def _file(request: web.Request) -> web.Response:
+    found = request.app[STUDIO].page.get(request.match_info.get("name", "index.html"))
+    if found is None:
+        raise web.HTTPNotFound
+    body, kind = found
+    return web.Response(body=body, content_type=kind, charset="utf-8", headers=HEADERS)
+
+
+def _json(value: Any, status: int = 200) -> web.Response:
+    return web.Response(
+        text=json.dumps(value, allow_nan=False),
+        content_type="application/json",
+        status=status,
+        headers=HEADERS,
+    )
+
+
+def _opened(design: Design) -> dict[str, Any]:
+    tables = design.model_dump(mode="json", exclude_none=True)
+    return {"tables": tables, "form": form(design)}
+
+
+async def _start(request: web.Request) -> web.Response:
+    """The design that the command named, and how charts look."""
+    return _json({**_opened(request.app[STUDIO].design), "looks": looks()})
+
+
+async def _open(request: web.Request) -> web.Response:
+    """A design as TOML, as JSON tables, or a template's name, checked: its tables and its form."""
+    try:
+        kind = request.query.get("kind")
+        if kind in ("cup", "hat"):
+            tables = tables_from(template("hat" if kind == "hat" else "cup").encode(), kind)
+        elif request.content_type == "application/json":
+            tables = json.loads(await _body(request, LARGEST_MESSAGE))
+        else:
+            tables = tables_from(await _body(request, LARGEST_BYTES), "the file")
+        return _json(_opened(design_from(tables)))
+    except DesignError as fault:
+        return _json({"key": fault.key, "text": str(fault)}, status=422)
+
+
+async def _text(request: web.Request) -> web.Response:
+    """JSON tables as the text of a design file."""
+    try:
+        design = design_from(json.loads(await _body(request, LARGEST_MESSAGE)))
+    except DesignError as fault:
+        return _json({"key": fault.key, "text": str(fault)}, status=422)
+    return web.Response(text=design_text(design), headers=HEADERS)
+
+
+async def _measured(request: web.Request) -> web.Response:
+    """A CSV for the tab's next diagnosis."""
+    desk = request.app[STUDIO].desks.get(request.match_info["tab"])
+    if desk is None:
+        raise web.HTTPNotFound
+    desk.measured = await _body(request, LARGEST_MEASURED)
+    return _json({"bytes": len(desk.measured)})
+
+
+async def _body(request: web.Request, most: int) -> bytes:
+    """At most so many bytes, whatever the request says of its length."""
+    held = bytearray()
+    async for chunk in request.content.iter_chunked(1 << 16):
+        held += chunk
+        if len(held) > most:
+            raise web.HTTPRequestEntityTooLarge(
+                most, len(held), text=f"larger than {most // 1_000_000} MB"
+            )
+    return bytes(held)
+
+
+async def _made(request: web.Request) -> web.Response:
+    """A file that a job of this tab made."""
+    desk = request.app[STUDIO].desks.get(request.match_info["tab"])
+    name = request.match_info["name"]
+    data = None if desk is None else desk.file(request.match_info["kind"], name)
+    if data is None:
+        raise web.HTTPNotFound
+    kind = SERVED["." + name.rpartition(".")[2]]
+    # a report is a document of its own: it is handed over to keep, never shown as part of this site
+    shown = {} if kind == "image/png" else {"Content-Disposition": f'attachment; filename="{name}"'}
+    return web.Response(body=data, content_type=kind, headers={**HEADERS, **shown})
+
+
+async def _live(request: web.Request) -> web.WebSocketResponse:
+    """A tab's connection, as long as it lasts."""
+    studio = request.app[STUDIO]
+    socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=20)
+    await socket.prepare(request)
+    desk = Desk(studio.workers, socket)
+    studio.desks[desk.tab.key] = desk
+    try:
+        await desk.open()
+        async for note in socket:
+            if note.type == WSMsgType.TEXT:
+                await desk.take(note.data)
+    finally:
+        del studio.desks[desk.tab.key]
+        await desk.close()
+    return socket

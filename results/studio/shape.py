@@ -1,0 +1,91 @@
+"""A meridian field as bytes for the page, which turns it about the axis itself.
+
+A message is the length of a JSON head (uint32, little endian), the head padded to four bytes, then the
+arrays that it lists, each float32 or uint32, little endian.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from fea.axisymmetric.stress import RevolvedField
+from results.renders.shown import magnification
+
+_PIECES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""A triangle with edge middles (corners 0 to 2, middles of 01, 12, 02) as four straight ones."""
+_ON_AXIS_MM = 1e-9
+
+
+def field_message(view: str, field: RevolvedField) -> bytes:
+    """Places, displacement, stress and triangles of a solved meridian.
+
+    `direct` and `shear` are the squared von Mises stresses [MPa²] that go with cos² nφ and sin² nφ
+    (n = 0: all in `direct`).
+    """
+    around = [field.mises(0.0) ** 2]
+    around.append(field.mises(np.pi / (2 * field.n)) ** 2 if field.n else 0 * around[0])
+    largest = float(np.abs(field.displacement).max())
+    size = 2 * float(field.places[:, 0].max())
+    cells = field.triangles[:, _PIECES].reshape(-1, 3)
+    head = {
+        "is": "field",
+        "view": view,
+        "n": field.n,
+        "peak_MPa": field.peak.mises_MPa,
+        "peak_at_mm": list(field.peak.at_mm),
+        "excluded": field.peak.excluded,
+        "magnification": magnification(largest, size),
+    }
+    arrays = {
+        "places": field.places,
+        "displacement": field.displacement,
+        "direct": around[0],
+        "shear": around[1],
+        "triangles": _one_way(field.places, cells),
+        "rim": _rim(field.places, cells),
+    }
+    return _packed(head, arrays)
+
+
+def profile_message(view: str, polygon: np.ndarray) -> bytes:
+    """An outline (n, 2) without a solution, the same way round as the rim of a field."""
+    count = len(polygon)
+    rim = np.column_stack([np.arange(count), (np.arange(count) + 1) % count])
+    head = {"is": "profile", "view": view}
+    return _packed(head, {"places": polygon, "rim": _off_axis(polygon, rim)})
+
+
+def _one_way(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """All triangles counter-clockwise in (r, z)."""
+    a, b, c = (places[cells[:, i]] for i in range(3))
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return np.where((area > 0)[:, None], cells, cells[:, [0, 2, 1]])
+
+
+def _rim(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Edges (k, 2) of one triangle only, the material on their left, none on the axis."""
+    turned = _one_way(places, cells)
+    edges = turned[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    low, high = edges.min(axis=1).astype(np.int64), edges.max(axis=1)
+    _, index, count = np.unique(
+        low * (len(places) + 1) + high, return_index=True, return_counts=True
+    )
+    return _off_axis(places, edges[index[count == 1]])
+
+
+def _off_axis(places: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    return edges[(places[edges][:, :, 0] > _ON_AXIS_MM).any(axis=1)]
+
+
+def _packed(head: dict[str, Any], arrays: dict[str, np.ndarray]) -> bytes:
+    kinds = {n: "uint32" if a.dtype.kind in "iu" else "float32" for n, a in arrays.items()}
+    listed = [[name, kinds[name], list(a.shape)] for name, a in arrays.items()]
+    text = json.dumps({**head, "arrays": listed}, allow_nan=False).encode()
+    text += b" " * (-len(text) % 4)
+    body = b"".join(
+        np.ascontiguousarray(a, f"<{kinds[n][0]}4").tobytes() for n, a in arrays.items()
+    )
+    return len(text).to_bytes(4, "little") + text + body

@@ -1,0 +1,22 @@
+"""`python -m results.studio.step DESIGN.toml DIR`: both parts as STEP, without solving anything."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from geometry.load import load_design
+from pipeline.progress import Progress
+from results.export import write_step_files
+from results.job import answered, tell
+
+
+def main() -> None:
+    """Two arguments: the design file and the folder."""
+    path, folder = map(Path, sys.argv[1:])
+    with answered(path):
+        write_step_files(load_design(path), folder, Progress(tell))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""One browser tab: its newest design, what is known of it, and who is asked next.
+
+Three lanes run side by side, each with a worker of its own: the stiffnesses that follow the hand, the
+picture, and what takes longer. A lane drops what a newer design has made stale, so the newest wins.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.load import design_from
+from geometry.sanity import warnings
+from pipeline.bearing_play import BearingPlayDomainError
+from pipeline.live import left_out
+from results.studio.answer import message
+from results.studio.questions import RIM_CASES, VIEWS
+from results.studio.worker import Fault, Worker
+
+Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
+STILL_S = 0.25
+"""The slow questions wait until the hand has rested so long: they would only delay each other."""
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Quick: K_b and K_e. Picture: shape and stress. Slow: lobes and the other peaks."""
+
+    quick: Worker
+    picture: Worker
+    slow: Worker
+
+    @classmethod
+    def of_this_machine(cls) -> Workers:
+        return cls(Worker("quick"), Worker("picture", 5), Worker("slow", 10))
+
+    def start(self) -> None:
+        for worker in (self.quick, self.picture, self.slow):
+            worker.start()
+
+    def stop(self) -> None:
+        for worker in (self.quick, self.picture, self.slow):
+            worker.stop()
+
+
+@dataclass
+class Wanted:
+    """A design as the tab sent it; `number` grows with each."""
+
+    number: int
+    design: Design
+    tables: Mapping[str, Any]
+    view: str
+    found: dict[str, Any] = field(default_factory=dict)
+
+
+class Tab:
+    """A connected tab; `key` is its secret, by which its uploads and files are found."""
+
+    def __init__(self, workers: Workers, send: Send) -> None:
+        self.key = secrets.token_urlsafe(24)
+        self._workers, self._send = workers, send
+        self._wanted: Wanted | None = None
+        self._lanes: list[asyncio.Task[None]] = []
+        self._news = [asyncio.Event() for _ in range(3)]
+
+    def open(self) -> None:
+        """Start the lanes."""
+        w = self._workers
+        for event, worker, still, plan in (
+            (self._news[0], w.quick, 0.0, lambda view: ["torsion"]),
+            (self._news[1], w.picture, 0.0, lambda view: [f"profile {view}", f"field {view}"]),
+            (self._news[2], w.slow, STILL_S, _slow),
+        ):
+            lane = self._lane(event, worker, still, plan)
+            self._lanes.append(asyncio.create_task(lane))
+
+    async def close(self) -> None:
+        """Stop the lanes; a question already asked is answered to nobody."""
+        for lane in self._lanes:
+            lane.cancel()
+        await asyncio.gather(*self._lanes, return_exceptions=True)
+
+    async def want(self, number: int, tables: Mapping[str, Any], view: str) -> None:
+        """Take a design: refuse it with its key and reason, or set the lanes on it."""
+        try:
+            design = design_from(tables)
+            first = message(design, {})
+        except (DesignError, BearingPlayDomainError) as fault:
+            self._wanted = None
+            key = fault.key if isinstance(fault, DesignError) else "bearing.radial_clearance_um"
+            await self._send({"is": "fault", "number": number, "key": key, "text": str(fault)})
+            return
+        self._wanted = Wanted(number, design, tables, view)
+        for event in self._news:
+            event.set()
+        await self._send({"is": "taken", "number": number, "left_out": left_out(design),
+                          "warnings": list(warnings(design)), **first})  # fmt: skip
+
+    async def _lane(
+        self,
+        news: asyncio.Event,
+        worker: Worker,
+        still: float,
+        plan: Callable[[str], Sequence[str]],
+    ) -> None:
+        while True:
+            await news.wait()
+            news.clear()
+            wanted = self._wanted
+            if wanted is None:
+                continue
+            if still:
+                try:
+                    await asyncio.wait_for(news.wait(), still)
+                    continue  # a newer design came while waiting
+                except TimeoutError:
+                    pass
+            for question in plan(wanted.view):
+                found = await worker.ask(question, wanted.tables)
+                if self._wanted is not wanted:
+                    break
+                await self._tell(wanted, question, found)
+
+    async def _tell(self, wanted: Wanted, question: str, found: Any) -> None:
+        if isinstance(found, Fault):
+            await self._send({"is": "failed", "number": wanted.number, "question": question,
+                              "key": found.key, "text": found.message})  # fmt: skip
+            return
+        picture = found.pop("picture", None)
+        if picture is not None:
+            await self._send({"is": "picture", "number": wanted.number})  # whose the bytes are
+            await self._send(picture)
+        if not found:
+            return
+        wanted.found |= found
+        try:
+            shown = message(wanted.design, wanted.found)
+        except BearingPlayDomainError as fault:
+            await self._send({"is": "fault", "number": wanted.number,
+                              "key": "bearing.radial_clearance_um", "text": str(fault)})  # fmt: skip
+            return
+        await self._send({"is": "answer", "number": wanted.number, "done": question, **shown})
+
+
+def _slow(view: str) -> list[str]:
+    """Lobes before peaks; the peak of the view itself comes with its picture."""
+    others = [f"field {v}" for v in VIEWS if v != view]
+    first = ["field wave_generator"] if view != "wave_generator" else []
+    cases = list(RIM_CASES)
+    return [cases[0], *first, *cases[1:], *(q for q in others if q not in first)]
