@@ -25,6 +25,7 @@ from results.job import (
     tell,
 )
 from results.studio.command import register as register_studio
+from results.studio.command import register as register_studio
 from results.study.command import register as register_study
 
 app = typer.Typer(
@@ -207,6 +208,7 @@ def schema() -> None:
 
 
 register_study(app)
+register_studio(app)
 register_studio(app)
 
 if __name__ == "__main__":
