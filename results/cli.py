@@ -25,7 +25,6 @@ from results.job import (
     tell,
 )
 from results.studio.command import register as register_studio
-from results.studio.command import register as register_studio
 from results.study.command import register as register_study
 
 app = typer.Typer(
@@ -208,7 +207,6 @@ def schema() -> None:
 
 
 register_study(app)
-register_studio(app)
 register_studio(app)
 
 if __name__ == "__main__":
