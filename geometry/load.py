@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from geometry.checks import check
 from geometry.design import Design
 from geometry.errors import DesignFileError
 from geometry.plain_words import translate
+from geometry.toml_read import TomlError, toml_tables
 
 LARGEST_BYTES = 1_000_000
 """A design takes 2 kB; a file beyond this is some other file."""
@@ -69,13 +69,9 @@ def tables_from(raw: bytes, name: object) -> dict[str, Any]:
             name, f"{len(raw)} bytes; a design file has at most {LARGEST_BYTES} bytes"
         )
     try:
-        return tomllib.loads(raw.decode("utf-8-sig"))
-    except UnicodeDecodeError as fault:
-        raise DesignFileError(name, f"is not UTF-8 text (byte {fault.start})") from fault
-    except RecursionError as fault:
-        raise DesignFileError(name, "is nested too deeply") from fault
-    except ValueError as fault:  # also integers of more digits than Python converts
-        raise DesignFileError(name, f"is not valid TOML: {fault}") from fault
+        return toml_tables(raw)
+    except TomlError as fault:
+        raise DesignFileError(name, str(fault)) from fault
 
 
 def design_from(data: Mapping[str, Any]) -> Design:

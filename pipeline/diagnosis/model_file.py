@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from geometry.toml_read import TomlError, toml_tables
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element, Shape
 from pipeline.diagnosis.errors import ModelFileError
 from pipeline.diagnosis.model import ExtendedModel
 from pipeline.diagnosis.shape_check import fault_of
+from pipeline.diagnosis.table import LARGEST_NUMBER
 
 FORMAT = 1
 LARGEST_BYTES = 1_000_000
@@ -137,17 +135,13 @@ def _toml(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > LARGEST_BYTES:
             raise ModelFileError(path, f"at most {LARGEST_BYTES // 1000} kB are read")
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        raw = path.read_bytes()
     except OSError as error:
         raise ModelFileError(path, error.strerror or "cannot be read") from None
-    except UnicodeDecodeError:
-        raise ModelFileError(path, "is not UTF-8 text") from None
-    except RecursionError:
-        raise ModelFileError(path, "is nested too deeply") from None
-    except ModelFileError:
-        raise
-    except ValueError as error:
-        raise ModelFileError(path, f"is not valid TOML: {error}") from None
+    try:
+        return toml_tables(raw)
+    except TomlError as error:
+        raise ModelFileError(path, str(error)) from None
 
 
 def _tables(values: list, name: str, refuse: Refuse) -> list[dict[str, Any]]:
@@ -172,8 +166,8 @@ def _check(
         if not right:
             words = "a number" if wanted == NUMBER else NAMES[wanted[0]]
             raise refuse(f"{key} in {where} must be {words}")
-        if isinstance(value, float | int) and not isfinite(value):
-            raise refuse(f"{key} in {where} must be finite")
+        if isinstance(value, float | int) and not _is_number(value) and bool not in wanted:
+            raise refuse(f"{key} in {where} must be a number within ±{LARGEST_NUMBER:g}")
 
 
 def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
@@ -186,13 +180,15 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
         _check(element, ELEMENT, {}, f"element of {name}", refuse)
         amplitudes = element["amplitudes"]
         if not amplitudes or not all(_is_number(a) for a in amplitudes):
-            raise refuse(f"amplitudes of {name} must be finite numbers")
+            raise refuse(f"amplitudes of {name} must be numbers within ±{LARGEST_NUMBER:g}")
         if cause.positive and min(amplitudes) < 0:
             raise refuse(f"an amplitude of {name} is negative, which physics forbids")
         shape: Shape = element["shape"]
         for key, value in shape.items():
             if not _is_number(value):
-                raise refuse(f"{key} in a shape of {name} must be a finite number")
+                raise refuse(
+                    f"{key} in a shape of {name} must be a number within ±{LARGEST_NUMBER:g}"
+                )
         fault = fault_of(cause, shape, len(amplitudes))
         if fault:
             raise refuse(f"a shape of {name} {fault}")
@@ -203,6 +199,7 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
 
 
 def _is_number(value: object) -> bool:
-    return (
-        isinstance(value, int | float) and not isinstance(value, bool) and bool(np.isfinite(value))
-    )
+    """Also: one that no reading exceeds; whole numbers of TOML may have any length."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= LARGEST_NUMBER  # false for NaN

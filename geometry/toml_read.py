@@ -1,0 +1,43 @@
+"""TOML from bytes that nothing is known of; every fault is one clause."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+DEEPEST_KEY = 50
+"""Parts of a dotted key; the files of this program have four. `tomllib` takes time with the square of it."""
+_NO_KEY = re.compile(r"[^\w\-\"' \t.]")
+
+
+class TomlError(ValueError):
+    """Bytes that are no TOML; the message says why."""
+
+
+def toml_tables(raw: bytes) -> dict[str, Any]:
+    """The tables of a TOML file; a mark at its start is allowed.
+
+    Raises
+    ------
+    TomlError : not UTF-8, not TOML, or nested too deeply.
+    """
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise TomlError(f"is not UTF-8 text (byte {fault.start})") from fault
+    if _deepest_key(text) > DEEPEST_KEY:
+        raise TomlError("is nested too deeply")
+    try:
+        return tomllib.loads(text)
+    except RecursionError as fault:
+        raise TomlError("is nested too deeply") from fault
+    except ValueError as fault:  # also integers of more digits than Python converts
+        raise TomlError(f"is not valid TOML: {fault}") from fault
+
+
+def _deepest_key(text: str) -> int:
+    """Parts of the longest dotted key, at least."""
+    lines = (s for s in text.split("\n") if not s.lstrip().startswith("#"))
+    pieces = (piece for line in lines for piece in _NO_KEY.split(line))
+    return max((sum(map(bool, map(str.strip, p.split(".")))) for p in pieces), default=0)
