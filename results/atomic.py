@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
+
+from pipeline.leftovers import unfinished
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write `data` beside `path` and move it into place, so that a stop leaves no half file."""
+    """Write `data` beside `path` and move it into place, so that a stop leaves no half file.
+
+    Raises
+    ------
+    OSError : with the path's name; what was there before still is.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    made = unfinished(path.parent, data)
     try:
-        with os.fdopen(handle, "wb") as out:
-            out.write(data)
-        os.chmod(name, 0o644)  # mkstemp's 0600 would hide the file from the user's colleagues
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        os.chmod(made, 0o644)  # mkstemp's 0600 would hide the file from the user's colleagues
+        os.replace(made, path)
+    finally:
+        made.unlink(missing_ok=True)

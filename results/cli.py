@@ -24,6 +24,7 @@ from results.job import (
     stiffness_option,
     tell,
 )
+from results.scratch import own_scratch
 from results.studio.command import register as register_studio
 from results.study.command import register as register_study
 
@@ -39,7 +40,8 @@ app = typer.Typer(
 
 def main() -> None:
     """Entry point of the console script."""
-    app()
+    with own_scratch():
+        app()
 
 
 @app.command()

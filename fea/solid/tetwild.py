@@ -1,17 +1,22 @@
 """fTetWild in a child process: it is C++ that can hang or crash, so it gets a time limit.
 
-Run as ``python -m fea.solid.tetwild IN.npz OUT.npz`` it is the child.
+Run as ``python -m fea.solid.tetwild IN.npz OUT.npz PARENT`` it is the child; PARENT is its parent's process
+number, without which it does not go on.
 """
 
 from __future__ import annotations
 
+import ctypes
+import faulthandler
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -66,7 +71,8 @@ def tetrahedralize(
         if background is not None:
             values |= {f"bg_{k}": v for k, v in vars(background).items()}
         np.savez(given, vertices=vertices, triangles=triangles, **values)
-        command = [sys.executable, "-m", "fea.solid.tetwild", str(given), str(made)]
+        child = [sys.executable, "-m", "fea.solid.tetwild"]
+        command = [*child, str(given), str(made), str(os.getpid())]
         try:
             done = subprocess.run(
                 command,
@@ -89,13 +95,21 @@ def tetrahedralize(
                 f"the mesher ended with status {done.returncode} ({last[0][:200]})",
                 "try a slightly different solver.edge_length_mm",
             )
-        with np.load(made) as out:
-            points, tets = out["points"], out["tets"].astype(np.int64)
+        points, tets = _read(made)
     if len(tets) == 0:
         raise MesherError("the mesher returned no elements", "check the part's proportions")
     flipped = signed_volumes(points, tets) < 0
     tets[flipped] = tets[flipped][:, [0, 2, 1, 3]]
     return points, tets
+
+
+def _read(made: Path) -> tuple[np.ndarray, np.ndarray]:
+    try:
+        with np.load(made) as out:
+            return out["points"], out["tets"].astype(np.int64)
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as fault:
+        reason = f"the mesher's result cannot be read ({type(fault).__name__})"
+        raise MesherError(reason, "see whether the disk is full") from fault
 
 
 def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
@@ -104,10 +118,28 @@ def signed_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
     return np.einsum("ij,ij->i", np.cross(a, b), c) / 6
 
 
-def _child(given: str, made: str) -> None:
+PR_SET_PDEATHSIG = 1
+"""Of Linux's prctl(2)."""
+GRACE_S = 30.0
+"""How long beyond the time limit a child goes on whose parent did not end it."""
+
+
+def _not_without(parent: int) -> None:
+    """End this process when its parent is killed: at once on Linux, elsewhere by the time limit."""
+    if sys.platform != "linux":
+        return
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it was gone before the line above
+        sys.exit("the program that asked for this mesh is gone")
+
+
+def _child(given: str, made: str, parent: int) -> None:
+    _not_without(parent)
     import pytetwild
 
     with np.load(given) as g:
+        # a thread of C's, which fTetWild does not keep from running
+        faulthandler.dump_traceback_later(float(g["time_limit_s"]) + GRACE_S, exit=True)
         vertices, triangles = g["vertices"], g["triangles"].astype(np.int32)
         sized = "bg_points" in g
         diagonal = float(np.linalg.norm(np.ptp(vertices, axis=0)))
@@ -126,4 +158,4 @@ def _child(given: str, made: str) -> None:
 
 
 if __name__ == "__main__":
-    _child(sys.argv[1], sys.argv[2])
+    _child(sys.argv[1], sys.argv[2], int(sys.argv[3]))

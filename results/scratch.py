@@ -1,0 +1,34 @@
+"""One scratch folder for a process: what a killed command left in the temporary folder, the next clears."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def own_scratch() -> Iterator[None]:
+    """Put this process's temporary files into a folder of its own for as long as the context lasts.
+
+    The libraries' too. Where no temporary folder can be written to, nothing is changed: who needs one
+    will say so.
+    """
+    from pipeline.leftovers import clear, mark
+
+    before = tempfile.tempdir
+    try:
+        parent = Path(tempfile.gettempdir())
+        clear(parent)
+        folder = tempfile.mkdtemp(prefix=mark(), dir=parent)
+    except OSError:
+        yield
+        return
+    tempfile.tempdir = folder
+    try:
+        yield
+    finally:
+        tempfile.tempdir = before
+        shutil.rmtree(folder, ignore_errors=True)

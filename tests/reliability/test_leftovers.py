@@ -1,0 +1,76 @@
+"""What a killed process left is cleared by the next; what a living one is writing is not."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from pipeline.leftovers import clear, mark, unfinished
+from results.atomic import write_bytes
+from results.scratch import own_scratch
+
+GONE = "import os, sys; sys.path.insert(0, sys.argv[1]); from pipeline.leftovers import mark; print(mark())"
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def of_the_dead() -> str:
+    """How a process that is no more named its files."""
+    done = subprocess.run(
+        [sys.executable, "-c", GONE, str(ROOT)], capture_output=True, text=True, check=True
+    )
+    return done.stdout.strip()
+
+
+def test_the_next_write_clears_what_a_dead_process_left(of_the_dead: str, tmp_path: Path) -> None:
+    (tmp_path / f"{of_the_dead}half.part").write_bytes(b"half")
+    (tmp_path / f"{of_the_dead}folder").mkdir()
+    (tmp_path / f"{of_the_dead}folder" / "in.npz").write_bytes(b"half")
+    write_bytes(tmp_path / "result.json", b"{}")
+    assert [p.name for p in tmp_path.iterdir()] == ["result.json"]
+
+
+def test_living_processes_and_other_machines_keep_theirs(tmp_path: Path) -> None:
+    kept = [
+        tmp_path / f"{mark()}mine.part",
+        tmp_path / f"{mark().replace(str(os.getpid()), str(os.getppid()))}parents.part",
+        tmp_path / ".flexspline-00000000-999999999-elsewhere.part",
+        tmp_path / ".flexspline-note.txt",
+        tmp_path / "result.json",
+    ]
+    for path in kept:
+        path.write_bytes(b"")
+    assert clear(tmp_path) == []
+    assert sorted(tmp_path.iterdir()) == sorted(kept)
+
+
+def test_a_write_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space"):
+        unfinished(tmp_path, b"data")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_scratch_files_lie_together_and_go_together(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with own_scratch():
+        made = Path(tempfile.mkdtemp())
+        assert made.parent.parent == tmp_path
+        assert made.parent.name.startswith(mark())
+        (made / "file").write_bytes(b"")
+    assert list(tmp_path.iterdir()) == []
+    assert tempfile.gettempdir() == str(tmp_path)
+
+
+def test_no_temporary_folder_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", "/dev/null/nowhere")
+    with own_scratch():
+        assert tempfile.gettempdir() == "/dev/null/nowhere"
