@@ -8,10 +8,10 @@ An entry is one .npz: arrays, and a JSON text for the rest. Damaged entries are 
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
-import tempfile
-import zipfile
+import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
@@ -19,8 +19,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from pipeline.leftovers import unfinished
+
 T = TypeVar("T")
-FORMAT = 5
+FORMAT = 6
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
@@ -34,41 +36,56 @@ class Cache:
 
     def get(self, stage: str, inputs: Mapping[str, Any], make: Callable[[], T]) -> tuple[T, bool]:
         """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored."""
-        path = (
-            self.folder / stage / f"{content_key({'format': FORMAT, 'stage': stage, **inputs})}.npz"
-        )
-        found = self._read(path)
+        key = content_key({"format": FORMAT, "stage": stage, **inputs})
+        path = self.folder / stage / f"{key}.npz"
+        found = self._read(path, key)
         if found is not _MISSING:
             return found, True
         value = make()
-        self._write(path, value)
+        self._write(path, key, value)
         return value, False
 
-    def _read(self, path: Path) -> Any:
+    def _read(self, path: Path, key: str) -> Any:
         try:
-            with np.load(path, allow_pickle=False) as entry:
-                arrays = {name: entry[name] for name in entry.files}  # zip checks its CRCs here
-            text = json.loads(arrays.pop("json").tobytes().decode())
-            return self._decode(text, arrays)
-        except FileNotFoundError:
+            data = path.read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
             return _MISSING
-        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-            self.notice(f"discarded a damaged cache entry {path.name} ({type(error).__name__})")
-            path.unlink(missing_ok=True)
+        except OSError as error:
+            self._discard(path, error)
+            return _MISSING
+        try:
+            with np.load(io.BytesIO(data), allow_pickle=False) as entry:
+                arrays = {name: entry[name] for name in entry.files}  # zip checks its CRCs here
+            stored = json.loads(arrays.pop("json").tobytes().decode())
+            if stored["key"] != key:
+                raise ValueError("the answer to another question")
+            return self._decode(stored["value"], arrays)
+        except Exception as error:  # bytes that anything may have happened to: any reader may choke
+            self._discard(path, error)
             return _MISSING
 
-    def _write(self, path: Path, value: Any) -> None:
+    def _discard(self, path: Path, error: Exception) -> None:
+        self.notice(f"discarded a damaged cache entry {path.name} ({type(error).__name__})")
+        try:
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)
+        except OSError as fault:
+            self.notice(f"could not remove it: {fault.strerror}")
+
+    def _write(self, path: Path, key: str, value: Any) -> None:
         arrays: dict[str, np.ndarray] = {}
-        text = json.dumps(_encode(value, arrays)).encode()
+        text = json.dumps({"key": key, "value": _encode(value, arrays)}).encode()
+        data = io.BytesIO()
+        np.savez(data, **arrays, json=np.frombuffer(text, np.uint8))  # type: ignore[arg-type]
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+            made = unfinished(path.parent, data.getvalue())
             try:
-                with os.fdopen(handle, "wb") as out:
-                    np.savez(out, **arrays, json=np.frombuffer(text, np.uint8))  # type: ignore[arg-type]
-                os.replace(name, path)
+                os.replace(made, path)
             finally:
-                Path(name).unlink(missing_ok=True)
+                made.unlink(missing_ok=True)
         except OSError as error:
             self.notice(f"could not store a result in {path.parent}: {error.strerror}")
 
