@@ -39,23 +39,27 @@ Ke = Annotated[
     float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
+LONGEST_LINE = 2000
+"""Letters of a message: a path may take most of them."""
 
 
 def tell(line: str) -> None:
-    """One line of progress or warning."""
-    print(line, file=sys.stderr, flush=True)
+    """One line of progress or warning, its control characters escaped."""
+    from geometry.errors import one_line
+
+    print(one_line(line, LONGEST_LINE), file=sys.stderr, flush=True)
 
 
 @contextmanager
 def answered(path: Path | None = None) -> Iterator[None]:
     """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
-    from geometry.errors import ComputationError, DesignError
+    from geometry.errors import ComputationError, DesignError, DesignFileError
     from pipeline.diagnosis.errors import MeasurementError, ModelFileError
 
     where = f"{path}: " if path else ""
     try:
         yield
-    except (MeasurementError, ModelFileError) as error:  # they name their own file
+    except (MeasurementError, ModelFileError, DesignFileError) as error:  # they name their own file
         tell(f"flexspline: {error}")
         raise typer.Exit(2) from None
     except DesignError as error:
@@ -70,7 +74,11 @@ def answered(path: Path | None = None) -> Iterator[None]:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(1) from None
     except OSError as error:
-        tell(f"flexspline: {error.filename or where}: {error.strerror or error}")
+        named = f"{error.filename}: " if error.filename else where
+        tell(f"flexspline: {named}{error.strerror or error}")
+        raise typer.Exit(1) from None
+    except MemoryError as error:
+        tell(f"flexspline: {where}not enough memory: {error}")
         raise typer.Exit(1) from None
 
 
