@@ -21,8 +21,10 @@ from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 4
+DRAWING = 3
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
+TURNING = 1
+"""The same of the 3-D views."""
 
 
 def write_pictures(
@@ -62,7 +64,7 @@ def turning_views(shop: Workshop, result: RunResult) -> dict[str, bytes]:
     for name, inputs, _ in _pictures(shop, result, None):
         if name in draws:
             with shop.progress.stage(f"3-D view {name}"):
-                found[name] = _drawn(shop.cache, f"{name} turning", inputs, draws[name])
+                found[name] = _drawn(shop.cache, name, {"turning": TURNING, **inputs}, draws[name])
     return found
 
 

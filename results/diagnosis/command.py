@@ -13,7 +13,7 @@ from results.diagnosis.console import diagnosis_table
 from results.diagnosis.files import write_diagnosis
 from results.diagnosis.record import diagnosis_record
 from results.records import as_json
-from results.report.diagnosis import Stiffnesses
+from results.report.compared import Stiffnesses
 
 
 def diagnose_and_write(

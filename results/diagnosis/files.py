@@ -15,7 +15,8 @@ from results.diagnosis.record import EXTENDED_MODEL, Record
 from results.figures.diagnosis.draw import draw_figures
 from results.records import as_json, program_version
 from results.report.both import reports_of
-from results.report.diagnosis import Stiffnesses, diagnosis_document
+from results.report.compared import Stiffnesses
+from results.report.diagnosis import diagnosis_document
 
 DIAGNOSIS = "diagnosis.json"
 

@@ -6,79 +6,11 @@ them. Section, table and figure numbers are counted here, so that both print the
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from typing import Any, Literal
 
-Style = Literal["", "bold", "symbol", "note", "code", "break", "ref", "alarm"]
-
-
-@dataclass(frozen=True)
-class Span:
-    """A piece of text. `target`: the id of the section or table that a "ref" points at."""
-
-    style: Style
-    text: str
-    target: str = ""
-
-
-Words = tuple[Span, ...]
-Text = str | Words
-"""A bare string is plain letters."""
-
-
-def plain(text: str) -> Words:
-    """Letters as they are."""
-    return (Span("", text),)
-
-
-def bold(text: str) -> Words:
-    """Words that stand out."""
-    return (Span("bold", text),)
-
-
-def symbol(text: str) -> Words:
-    """A quantity's letter with its index after "_", as `results.quantities` has them."""
-    return (Span("symbol", text),)
-
-
-def alarm(text: str) -> Words:
-    """A word that must not be missed."""
-    return (Span("alarm", text),)
-
-
-def code(text: str) -> Words:
-    """What is typed."""
-    return (Span("code", text),)
-
-
-def note(text: Text) -> Words:
-    """Small words on a line of their own, below what stands before."""
-    return (Span("break", ""), *(Span(s.style or "note", s.text, s.target) for s in words(text)))
-
-
-def ref(target: str) -> Words:
-    """The number of a section or table, as a link to it."""
-    return (Span("ref", "", target),)
-
-
-_SYMBOLS = re.compile(r"K_b|K_e|T_L")
-
-
-def worded(text: str) -> Words:
-    """The program's own words, in which K_b, K_e and T_L are symbols."""
-    spans, at = [], 0
-    for found in _SYMBOLS.finditer(text):
-        spans += [Span("", text[at : found.start()]), Span("symbol", found.group())]
-        at = found.end()
-    return tuple(s for s in (*spans, Span("", text[at:])) if s.text)
-
-
-def words(text: Text) -> Words:
-    """A bare string as spans."""
-    return plain(text) if isinstance(text, str) else text
-
+from results.report.spans import Span, Text, words
 
 Node = Sequence[Any]
 """Of a formula: ("symbol", letter), ("text", letters), ("over", above, below) of lists of nodes."""

@@ -43,10 +43,13 @@ class Turntable {
     const base64Str = document.getElementById(`scene-${this.name}`).textContent;
     window.OfflineLocalView.load(this.canvasBox, { base64Str });
     this.window = window.renderWindow;
-    await until(() => this.window.getRenderers().length > 0);
+    const own = this.window.getRenderers()[0]; // the viewer's, empty; the scene brings another
+    const drawn = (a) => a.getMapper()?.getInputData()?.getPoints()?.getNumberOfPoints() > 0;
+    await until(() => this.window.getRenderers().some(
+      (r) => r !== own && r.getActors().length > 0 && r.getActors().every(drawn)));
+    this.window.removeRenderer(own);
     this.renderer = this.window.getRenderers()[0];
     this.camera = this.renderer.getActiveCamera();
-    await until(() => this.renderer.getActors().every((a) => a.getMapper()?.getInputData()?.getPoints()?.getNumberOfPoints() > 0));
     this.listen();
     this.paintGround();
     this.reset();
@@ -75,7 +78,6 @@ class Turntable {
     const inner = this.canvasBox.querySelector("[tabindex]");
     if (inner) inner.tabIndex = -1;
     dark.addEventListener("change", () => this.paintGround());
-    window.addEventListener("beforeprint", () => this.window.render());
   }
 
   key(event) {

@@ -7,6 +7,7 @@ from itertools import chain
 
 from results.quantities import quantity
 from results.report import limits, tables
+from results.report.budget import budget
 from results.report.content import ReportContent
 from results.report.document import (
     Block,
@@ -15,23 +16,15 @@ from results.report.document import (
     Column,
     Document,
     Facts,
-    Formula,
     Heading,
-    Node,
     Paragraph,
     Picture,
-    Pictures,
     Table,
     Tile,
     Tiles,
-    Words,
-    bold,
-    note,
-    plain,
-    ref,
-    symbol,
-    worded,
 )
+from results.report.shown import shown
+from results.report.spans import Words, bold, note, plain, ref, symbol, worded
 
 ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
@@ -44,7 +37,7 @@ def run_document(content: ReportContent) -> Document:
     roomy = _letters(content) <= ROOMY
     sections = (
         (_summary(content), _asked(content), _answer(content)),
-        (_budget(content, roomy),),
+        (budget(content, roomy),),
         (_stress(content, roomy),),
         (_solver(content, roomy), _limits(content)),
     )
@@ -98,7 +91,7 @@ def _asked(content: ReportContent) -> Iterable[Block]:
         + symbol("+T_L")
         + plain(", with ")
         + symbol("T_L")
-        + plain(f" = {content.design.load.torque_Nm:g}{NBSP}N·m, for this design:")
+        + plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m, for this design:")
     )
     yield Facts(tuple((name, value) for name, value in tables.design_facts(content.design)))
 
@@ -138,76 +131,6 @@ def _answer(content: ReportContent) -> Iterable[Block]:
         )
 
 
-_DELTA: Node = ("symbol", "Δ_bl")
-_SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
-_FLEXSPLINE: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
-_PLAY: Node = (
-    "over",
-    [("text", "2"), ("text", "("), ("symbol", "j_bn0"), ("text", "+"), ("symbol", "j′"), ("text", ")")],
-    [("symbol", "m"), ("symbol", "z_1"), ("text", "cos"), ("symbol", "α")],
-)  # fmt: skip
-_CIRCLE = (
-    plain(" / (")
-    + symbol("m")
-    + plain(" ")
-    + symbol("z_1")
-    + plain(" cos ")
-    + symbol("α")
-    + plain(")")
-)
-TERMS: dict[str, Words] = {
-    "shaft": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_e"),
-    "flexspline": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_b"),
-    "flank_clearance": plain("2 ") + symbol("j_bn0") + _CIRCLE,
-    "bearing_play": plain("2 ") + symbol("j′") + _CIRCLE,
-    "total": symbol("Δ_bl"),
-}
-"""Each term's formula, on one line."""
-
-
-def _budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
-    entry = quantity("backlash_arcsec.total")
-    std = entry.text(content.backlash.std_arcsec)
-    yield Heading("The backlash budget")
-    yield Paragraph(
-        plain(
-            "Backlash is the wind-up of shaft and flexspline between the two torques plus the angle "
-            "that flank clearance "
-        )
-        + symbol("j_bn0")
-        + plain(" and bearing play leave free:")
-    )
-    plus: Node = ("text", "+")
-    yield Formula(
-        (_DELTA, ("text", "="), _SHAFT, plus, _FLEXSPLINE, plus, _PLAY),
-        "Δ_bl = 2 T_L / K_e + 2 T_L / K_b + 2 (j_bn0 + j′) / (m z_1 cos α)",
-    )
-    rows = tables.budget(content)
-    yield Table(
-        columns=(
-            Column("Term", grow=1), Column("Formula"), Column("Value", "right"), Column("Unit"),
-            Column("Share", "right"),
-        ),
-        rows=tuple((b["name"], TERMS[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
-        caption=f"The four terms and their sum; one standard deviation of the sum is {std} {entry.unit}.",
-        strong=len(rows) - 1,
-    )  # fmt: skip
-    extended = (
-        plain(" Below the simulated sum: what the extended model in ")
-        + plain(content.extended_model)
-        + plain(" adds between the two torques.")
-        if content.extended_model
-        else ()
-    )
-    terms = plain(
-        "The terms as they add up, the total with one standard deviation, and the sources of that "
-        "deviation."
-    )
-    line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from _shown(content, roomy, Picture("budget", terms + extended, 88))
-    yield from _shown(content, roomy, Picture("torque_angle", line, 84))
-
-
 def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
     under = plain(", von Mises stress under ") + symbol("T_L")
     at = plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m.")
@@ -216,7 +139,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
         "von Mises stress."
     )
     found = [
-        *_shown(
+        *shown(
             content,
             roomy,
             Picture(
@@ -224,7 +147,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
             ),
             Picture("shaft_stress", plain("Output shaft") + under + at, view="shaft_torque"),
         ),
-        *_shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
+        *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
     ]
     if found:
         yield Heading("Stress and deformation")
@@ -243,7 +166,7 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
 
 def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield Heading("Mesh and solver", "solver")
-    yield from _shown(
+    yield from shown(
         content,
         roomy,
         Picture("flexspline_mesh", "Mesh of the flexspline and its named surfaces."),
@@ -267,7 +190,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
     for method in dict.fromkeys(s["method"] for s in solves):
         yield Paragraph(_bounds_of(content, method, [s for s in solves if s["method"] == method]))
     convergence = "Stiffness against the number of unknowns, as difference from the value reported."
-    yield from _shown(content, roomy, Picture("convergence", convergence, 88))
+    yield from shown(content, roomy, Picture("convergence", convergence, 88))
     stages = content.stage_seconds or {}
     if stages:
         each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
@@ -311,13 +234,3 @@ def _limits(content: ReportContent) -> Iterable[Block]:
         yield Heading("Versions")
         pairs = {"flexspline": content.version, **content.versions}
         yield Paragraph(", ".join(f"{name} {v}" for name, v in pairs.items()) + ".")
-
-
-def _shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Block]:
-    """Those of the pictures that there are, side by side; a little smaller where room is short."""
-    there = [p for p in wanted if getattr(content.pictures, p.name) is not None]
-    if there:
-        share = 1.0 if roomy or len(wanted) > 1 else 0.85
-        yield Pictures(
-            tuple(Picture(p.name, p.caption, share * p.width_pct, p.view) for p in there)
-        )

@@ -23,9 +23,8 @@ from results.report.document import (
     Picture,
     Pictures,
     Table,
-    Text,
-    alarm,
 )
+from results.report.spans import Text, alarm
 from results.study.labels import entry
 from results.study.why import failures, influences, limits
 

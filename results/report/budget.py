@@ -1,0 +1,82 @@
+"""The report's section on the backlash budget: the formula, its terms, and their charts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from results.quantities import quantity
+from results.report import tables
+from results.report.content import ReportContent
+from results.report.document import Block, Column, Formula, Heading, Node, Paragraph, Picture, Table
+from results.report.shown import shown
+from results.report.spans import Words, plain, symbol
+
+_DELTA: Node = ("symbol", "Δ_bl")
+_SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
+_FLEXSPLINE: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
+_PLAY: Node = (
+    "over",
+    [("text", "2"), ("text", "("), ("symbol", "j_bn0"), ("text", "+"), ("symbol", "j′"), ("text", ")")],
+    [("symbol", "m"), ("symbol", "z_1"), ("text", "cos"), ("symbol", "α")],
+)  # fmt: skip
+_CIRCLE = (
+    plain(" / (")
+    + symbol("m")
+    + plain(" ")
+    + symbol("z_1")
+    + plain(" cos ")
+    + symbol("α")
+    + plain(")")
+)
+TERMS: dict[str, Words] = {
+    "shaft": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_e"),
+    "flexspline": plain("2 ") + symbol("T_L") + plain(" / ") + symbol("K_b"),
+    "flank_clearance": plain("2 ") + symbol("j_bn0") + _CIRCLE,
+    "bearing_play": plain("2 ") + symbol("j′") + _CIRCLE,
+    "total": symbol("Δ_bl"),
+}
+"""Each term's formula, on one line."""
+
+
+def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
+    """Formula, table, waterfall and torque–angle line."""
+    entry = quantity("backlash_arcsec.total")
+    std = entry.text(content.backlash.std_arcsec)
+    yield Heading("The backlash budget")
+    yield Paragraph(
+        plain(
+            "Backlash is the wind-up of shaft and flexspline between the two torques plus the angle "
+            "that flank clearance "
+        )
+        + symbol("j_bn0")
+        + plain(" and bearing play leave free:")
+    )
+    plus: Node = ("text", "+")
+    yield Formula(
+        (_DELTA, ("text", "="), _SHAFT, plus, _FLEXSPLINE, plus, _PLAY),
+        "Δ_bl = 2 T_L / K_e + 2 T_L / K_b + 2 (j_bn0 + j′) / (m z_1 cos α)",
+    )
+    rows = tables.budget(content)
+    yield Table(
+        columns=(
+            Column("Term", grow=1), Column("Formula"), Column("Value", "right"), Column("Unit"),
+            Column("Share", "right"),
+        ),
+        rows=tuple((b["name"], TERMS[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
+        caption=f"The four terms and their sum; one standard deviation of the sum is {std} {entry.unit}.",
+        strong=len(rows) - 1,
+    )  # fmt: skip
+    extended = (
+        plain(" Below the simulated sum: what the extended model in ")
+        + plain(content.extended_model)
+        + plain(" adds between the two torques.")
+        if content.extended_model
+        else ()
+    )
+    terms = plain(
+        "The terms as they add up, the total with one standard deviation, and the sources of that "
+        "deviation."
+    )
+    line = "The torque–angle line of the model. Within the gap the output lies anywhere."
+    yield from shown(content, roomy, Picture("budget", terms + extended, 88))
+    yield from shown(content, roomy, Picture("torque_angle", line, 84))

@@ -1,0 +1,91 @@
+"""What was measured, and with which simulation it was compared, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.record import EndPoints, Specimens, Sweep
+from results.diagnosis.words import channel_words, figures_text
+from results.quantities import grouped
+
+
+@dataclass(frozen=True)
+class Stiffnesses:
+    """K_b and K_e of the simulation that was compared; `given` says they came from the command."""
+
+    K_b_Nm_per_rad: float
+    K_e_Nm_per_rad: float
+    given: bool
+    error: float = 0.0
+    """The solver's relative error of both in series."""
+
+
+def measured(diagnosis: Diagnosis) -> list[list[str]]:
+    """What was measured: name and text of each fact."""
+    m = diagnosis.measurement
+    if isinstance(m, Sweep):
+        return [["Kind", "torque sweep, wave generator locked"], *_sweep(m)]
+    if isinstance(m, EndPoints):
+        kind, count = "angles at both ends of the torque", f"{len(m.unit)}"
+        return [["Kind", kind], ["File", m.path.name], ["Units", count]]
+    if isinstance(m, Specimens):
+        kind, count = "stiffness of several parts", f"{len(m.specimen)}"
+        facts = [["Kind", kind], ["File", m.path.name], ["Specimens", count]]
+        return (
+            [*facts, ["Varied", ", ".join(map(channel_words, m.overrides))]]
+            if m.overrides
+            else facts
+        )
+    return [["File", str(getattr(m, "path", ""))]]
+
+
+def _sweep(sweep: Sweep) -> list[list[str]]:
+    h = sweep.history
+    cycles = int(h.cycle.max()) + 1
+    facts = [
+        ["File", sweep.path.name],
+        ["Extent", f"{grouped(len(sweep), 0)} rows, {cycles} cycle{'s' * (cycles > 1)}"
+         + (f", {len(sweep.units)} units" if len(sweep.units) > 1 else "")],
+        ["Torque", f"{_range(h.torque_Nm)} N·m"],
+    ]  # fmt: skip
+    if h.time_s is not None:
+        seconds = max(float(h.time_s[rows].max() - h.time_s[rows].min()) for rows in h.unit_slices)
+        shown = f"{seconds / 3600:.3g} h" if seconds > 7200 else f"{seconds:.4g} s"
+        facts.append(["Time", shown])
+    if h.temperature_C is not None:
+        facts.append(["Temperature", f"{_range(h.temperature_C)} °C"])
+    if h.input_angle_deg is not None:
+        count = len(set(h.input_angle_deg.tolist()))
+        shown = f"{_range(h.input_angle_deg)}°, {count} positions"
+        facts.append(["Wave generator", shown if count > 1 else f"at {h.input_angle_deg[0]:g}°"])
+    return facts
+
+
+def _range(values: Any) -> str:
+    return f"{figures_text(float(values.min()))} to {figures_text(float(values.max()))}"
+
+
+def compared(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+    """With what the measurement was compared, in one sentence."""
+    p = diagnosis.prediction
+    if isinstance(diagnosis.measurement, Specimens):
+        return _compared_specimens(diagnosis, used)
+    source = "as given" if used.given else f"computed, ±{100 * used.error:.2g} %"
+    return (
+        f"Compared with the simulation: K_b = {grouped(used.K_b_Nm_per_rad, 0)} and "
+        f"K_e = {grouped(used.K_e_Nm_per_rad, 0)} N·m/rad ({source}), a gap of "
+        f"{grouped(p.gap_arcsec, 1)} ± {grouped(p.gap_std_arcsec, 1)} arcsec, and an elastic twist of "
+        f"{figures_text(p.compliance, 4)} ± {figures_text(p.compliance_std, 2)} arcsec for each N·m. A "
+        "stiffness or gap that differs within these limits is no finding."
+    )
+
+
+def _compared_specimens(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+    doubt = diagnosis.design.uncertainty.youngs_modulus_pct
+    source = "scaled from K_b and K_e as given" if used.given else "solved for each specimen"
+    return (
+        f"Compared with the simulated stiffness, {source}. Young's modulus may be off by {doubt:g} % (1σ), "
+        "and a dimension by the general tolerance ISO 2768-m, without that being a finding."
+    )
