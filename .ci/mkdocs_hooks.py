@@ -4,4 +4,5 @@ import re
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
+    """The page without links that leave docs/."""
     return re.sub(r"\[([^\]]+)\]\(\.\./[^)]+\)", r"\1", markdown)
