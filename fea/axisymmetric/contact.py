@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from scipy.sparse.linalg import splu
 
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicError, HarmonicModel, Wave
 from fea.axisymmetric.lobes import HALF_WIDTH, TORQUE, lobe_coefficient
+from fea.axisymmetric.space import factorised
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from geometry.outline import Meridian
@@ -105,13 +105,17 @@ def seat_compliance(model: HarmonicModel, angles: int) -> SeatCompliance:
     work = 0.0
     for n in range(0, angles + 1, 2):
         # a force of 1 N/rad times cos nφ has the nodal amplitude ∫cos² nφ dφ
-        radial = Wave(n).around * _responses(model, Wave(n), push)[3 * seat + RADIAL]
+        wave = Wave(n, torsion=n == 0)
+        twist = (peak * lobe_coefficient(n) * model.pressed("mesh", TANGENTIAL, wave))[:, None]
+        if n:
+            both = _responses(model, wave, np.column_stack([push, twist]))
+            pushed, u = both[:, :-1], both[:, -1]
+        else:
+            pushed, u = _responses(model, Wave(0), push), _responses(model, wave, twist)[:, 0]
+        radial = Wave(n).around * pushed[3 * seat + RADIAL]
         share = (1 if n in (0, angles) else 2) / angles  # of a unit force at one angle
         blocks += share * np.cos(n * phi)[:, None, None] * radial
-        wave = Wave(n, torsion=n == 0)
-        twist = peak * lobe_coefficient(n) * model.pressed("mesh", TANGENTIAL, wave)
-        u = _responses(model, wave, twist[:, None])[:, 0]
-        work += float(u @ twist)
+        work += float(u @ twist[:, 0])
         # the load varies as cos nφ, so u_r as −sin nφ (the twin symmetry of `harmonics`)
         free -= np.sin(n * phi)[:, None] * u[3 * seat + RADIAL]
     i, j = np.meshgrid(np.arange(angles), np.arange(angles), indexing="ij")
@@ -121,11 +125,9 @@ def seat_compliance(model: HarmonicModel, angles: int) -> SeatCompliance:
 
 def _responses(model: HarmonicModel, wave: Wave, loads: np.ndarray) -> np.ndarray:
     """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held."""
-    fixed, u = model.prescribed(wave, model.held("mount"))
-    free = np.setdiff1d(np.arange(len(u)), fixed, assume_unique=True)
-    inside = model.stiffness(wave)[free][:, free].tocsc()
+    free, _ = model.prescribed(wave, model.held("mount"))
     out = np.zeros_like(loads)
-    out[free] = splu(inside).solve(np.ascontiguousarray(loads[free]))
+    out[free] = factorised(model.supported(wave, free)).solve(loads[free])
     return out
 
 

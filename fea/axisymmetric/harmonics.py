@@ -19,20 +19,18 @@ from math import pi
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL, Couplings, Layout, layout_of
 from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.space import Space, isoparametric, relative_residual, solved, summed
+from fea.axisymmetric.space import Space, isoparametric, relative_residual, solved
 from fea.types import Elastic
 from geometry.errors import ComputationError
 from geometry.outline import SAME
 
 DEGREE = 6
 """Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""
-RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
 LOST_ENERGY_LIMIT = 1e-6
 """Largest |u·(Ku - f)| over u·Ku. A floppy body's ‖Ku - f‖/‖f‖ is large by rounding alone (1e-7 for an
 unsupported thin cup), so the residual is judged by the energy it carries: there 1e-11."""
-COSINE, SINE = slice(0, 4), slice(4, 6)
-"""Which of the six strains (rr, θθ, zz, rz, rθ, θz) vary as cos nφ, which as sin nφ."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +51,11 @@ class Wave:
         if self.n > 0:
             return ()
         return (RADIAL, AXIAL) if self.torsion else (TANGENTIAL,)
+
+    @property
+    def components(self) -> tuple[int, ...]:
+        """Components that it has."""
+        return tuple(c for c in (RADIAL, TANGENTIAL, AXIAL) if c not in self.idle)
 
     @property
     def zero_on_axis(self) -> tuple[int, ...]:
@@ -108,39 +111,38 @@ class HarmonicModel:
     def space(self) -> Space:
         return isoparametric(self.mesh, DEGREE)
 
-    def strain(
-        self, n: int, values: np.ndarray, gradients: np.ndarray, r: np.ndarray
-    ) -> np.ndarray:
-        """Strains (m, q, 6, 18) of unit displacements; values (6, q), gradients (m, 6, q, 2)."""
-        still, turning = _strain_parts(values, gradients, r)
-        return still + n * turning
+    @cached_property
+    def couplings(self) -> Couplings:
+        """What all harmonics of this mesh are made of."""
+        return Couplings(self.space, self.material)
 
     @cached_property
-    def _parts(self) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
-        """Stiffness per ∫cos², as the coefficients of 1, n, n²."""
-        s = self.space
-        m = len(s.dofs)
-        weight = (s.weights * s.r)[..., None, None]
-        still, turning = _strain_parts(s.values, s.gradients, s.r)
-        stress = elasticity(self.material)
-        both = (still, turning)
-        left = [(weight * (stress @ b)).reshape(m, -1, 18).transpose(0, 2, 1) for b in both]
-        right = [b.reshape(m, -1, 18) for b in both]
-        mixed = left[0] @ right[1]
-        local = (left[0] @ right[0], mixed + mixed.transpose(0, 2, 1), left[1] @ right[1])
-        numbers = self.numbers
-        first, second, third = (summed(k, numbers, 3 * s.count) for k in local)
-        return first, second, third
+    def _layouts(self) -> dict[tuple[int, ...] | tuple[tuple[int, ...], bytes], Layout]:
+        """Of the harmonics' components, and of what is free among them."""
+        return {}
+
+    def _layout(self, wave: Wave) -> Layout:
+        key = wave.components
+        if key not in self._layouts:
+            self._layouts[key] = layout_of(self.couplings.pattern, key, self.space.count)
+        return self._layouts[key]
+
+    def _blocks(self, wave: Wave) -> np.ndarray:
+        return wave.around * self.couplings.blocks(wave.n, wave.components)
 
     def stiffness(self, wave: Wave) -> csc_matrix:
-        """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support."""
-        first, second, third = self._parts
-        return wave.around * (first + wave.n * second + wave.n**2 * third)
+        """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.
 
-    @property
-    def numbers(self) -> np.ndarray:
-        """Unknowns (m, 18) of each triangle: three components of its six P2 numbers."""
-        return (3 * self.space.dofs[:, :, None] + np.arange(3)).reshape(-1, 18)
+        Components that the harmonic does not have are left empty.
+        """
+        return self._layout(wave).matrix(self._blocks(wave))
+
+    def supported(self, wave: Wave, free: np.ndarray) -> csc_matrix:
+        """Rows and columns of the stiffness matrix that belong to free unknowns (mask)."""
+        key = wave.components, free.tobytes()
+        if key not in self._layouts:
+            self._layouts[key] = self._layout(wave).among(free)
+        return self._layouts[key].matrix(self._blocks(wave))
 
     def on(self, patch: str) -> np.ndarray:
         """P2 numbers on a patch."""
@@ -158,27 +160,27 @@ class HarmonicModel:
         HarmonicError
             If the solve loses energy: the body is not held.
         """
-        matrix = self.stiffness(wave)
-        at, u = self.prescribed(wave, fixed)
-        free = np.setdiff1d(np.arange(len(u)), at, assume_unique=True)
-        right = (load - matrix @ u)[free]
-        inside = matrix[free][:, free]
+        free, u = self.prescribed(wave, fixed)
+        inside = self.supported(wave, free)
+        matrix = self.stiffness(wave) if u.any() else None  # of use where something is moved
+        right = (load if matrix is None else load - matrix @ u)[free]
         try:
             u[free] = solved(inside, right)
         except RuntimeError as fault:  # SuperLU's word for an exactly singular matrix
             raise HarmonicError(f"harmonic {wave.n}: {fault}; is the body held?") from fault
-        twice_energy = float(u @ (matrix @ u))
-        lost = abs(float(u[free] @ (inside @ u[free] - right)))
+        inner = inside @ u[free]
+        twice_energy = float(u[free] @ inner if matrix is None else u @ (matrix @ u))
+        lost = abs(float(u[free] @ (inner - right)))
         if not lost < LOST_ENERGY_LIMIT * twice_energy:
             raise HarmonicError(
                 f"harmonic {wave.n}: {lost / max(twice_energy, 1e-300):.1e} of the energy is lost in "
                 f"the solve, allowed {LOST_ENERGY_LIMIT:.0e}; is the body held?"
             )
         residual = relative_residual(inside, u[free], right)
-        return Amplitudes(u, twice_energy, float(u @ load), residual, len(free))
+        return Amplitudes(u, twice_energy, float(u @ load), residual, len(right))
 
     def prescribed(self, wave: Wave, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
-        """Indices of prescribed unknowns, and all unknowns with their values there, else 0."""
+        """Mask of the free unknowns, and all unknowns with the values prescribed, else 0."""
         count = self.space.count
         axis = np.flatnonzero(self.space.places[:, 0] < SAME)
         if wave.n == 1 and len(axis):
@@ -188,7 +190,7 @@ class HarmonicModel:
         for f in [*fixed, *idle, *(Fixed(axis, c) for c in wave.zero_on_axis)]:
             mask[f.numbers, f.component] = True
             value[f.numbers, f.component] = f.value
-        return np.flatnonzero(mask), value.ravel()
+        return ~mask.ravel(), value.ravel()
 
     def pressed(self, patch: str, component: int, wave: Wave) -> np.ndarray:
         """Nodal forces (3·count,) [N] of a traction of amplitude 1 MPa on a straight patch."""
@@ -205,32 +207,3 @@ class HarmonicModel:
         forces = wave.around * np.einsum("q,iq,kq,k->ki", w / 2, shape, r, length)
         np.add.at(load, 3 * rim + component, forces)
         return load
-
-
-def elasticity(material: Elastic) -> np.ndarray:
-    """Hooke's law (6, 6) [MPa] for (rr, θθ, zz, γ_rz, γ_rθ, γ_θz)."""
-    c = np.diag([2 * material.mu] * 3 + [material.mu] * 3)
-    c[:3, :3] += material.lam
-    return c
-
-
-def _strain_parts(
-    values: np.ndarray, gradients: np.ndarray, r: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Strains of unit displacements (m, q, 6, 18), and how they grow with n."""
-    by_r, by_z = gradients[..., 0].transpose(0, 2, 1), gradients[..., 1].transpose(0, 2, 1)
-    over_r = values.T / r[..., None]
-    still = np.zeros((*r.shape, 6, 6, 3))
-    turning = np.zeros_like(still)
-    still[:, :, 0, :, RADIAL] = by_r
-    still[:, :, 1, :, RADIAL] = over_r
-    still[:, :, 2, :, AXIAL] = by_z
-    still[:, :, 3, :, RADIAL] = by_z
-    still[:, :, 3, :, AXIAL] = by_r
-    still[:, :, 4, :, TANGENTIAL] = by_r - over_r
-    still[:, :, 5, :, TANGENTIAL] = by_z
-    turning[:, :, 1, :, TANGENTIAL] = over_r
-    turning[:, :, 4, :, RADIAL] = -over_r
-    turning[:, :, 5, :, AXIAL] = -over_r
-    shape = (*r.shape, 6, 18)
-    return still.reshape(shape), turning.reshape(shape)

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from fea.axisymmetric.harmonics import HarmonicModel
 from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.points import VALUE, reference
 from fea.axisymmetric.recovery import mises_parts
-from fea.axisymmetric.space import reference_shape
 from geometry.errors import ComputationError
 
 STEPS = 8
 """Stress is looked at on a lattice of so many steps along each side of a triangle."""
+
+
+BULGE = 1.25
+"""No point of a curved triangle is farther from a corner than this times its farthest node: the chords of
+a fillet open by 15° at most."""
 
 
 class StressError(ComputationError):
@@ -53,19 +59,18 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, clearance_mm: float) ->
         If no point is that far away.
     """
     s, singular = model.space, _singular(model.mesh)
-    values, _ = reference_shape(_lattice())
-    places = np.einsum("mid,iq->mqd", s.places[s.dofs], values)
-    stress = np.einsum("mic,iq->mqc", nodal[s.dofs], values)
-    # a point at the clearance but for rounding is at the clearance
-    counts = _distance(places, singular) >= clearance_mm * (1 - 1e-9)
+    values = _lattice_values()
+    counts = _counting(s.places[s.dofs], values, singular, clearance_mm)
     if not counts.any():
         raise StressError(f"no point of the part is {clearance_mm:g} mm away from its sharp edges")
-    direct, shear = mises_parts(stress)
+    acting = np.flatnonzero(nodal.any(axis=0))
+    direct, shear = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
     square = np.where(counts, np.maximum(direct, shear), 0.0)
     at = np.unravel_index(square.argmax(), square.shape)
-    best, place, at_sine = square[at], places[at], bool(shear[at] > direct[at])
+    best, at_sine = square[at], bool(shear[at] > direct[at])
+    place = values[:, at[1]] @ s.places[s.dofs[at[0]]]
     for rim_place, rim_stress in _at_clearance(model, nodal, singular, clearance_mm):
-        direct, shear = mises_parts(rim_stress)
+        direct, shear = mises_parts(dict(enumerate(rim_stress)))
         if max(direct, shear) > best:
             best, place, at_sine = max(direct, shear), rim_place, bool(shear > direct)
     return Peak(
@@ -93,11 +98,30 @@ def _singular(mesh: MeridianMesh) -> np.ndarray:
     return np.array([*mesh.outline.sharp_corners, *mesh.outline.patch_edges])
 
 
-def _lattice() -> np.ndarray:
-    """Points (2, q) of the reference triangle."""
+@cache
+def _lattice_values() -> np.ndarray:
+    """Shape functions (6, q) on the lattice."""
     i, j = np.meshgrid(np.arange(STEPS + 1), np.arange(STEPS + 1), indexing="ij")
     inside = i + j <= STEPS
-    return np.stack([i[inside], j[inside]]) / STEPS
+    return reference(np.stack([i[inside], j[inside]]) / STEPS).functions[VALUE]
+
+
+def _counting(
+    nodes: np.ndarray, values: np.ndarray, singular: np.ndarray, clearance_mm: float
+) -> np.ndarray:
+    """Mask (m, q) of lattice points at the clearance or farther; nodes (m, 6, 2).
+
+    Most triangles lie wholly on one side of it; only the others' points are looked at.
+    """
+    # a point at the clearance but for rounding is at the clearance
+    limit = clearance_mm * (1 - 1e-9)
+    corner = _distance(nodes[:, 0], singular)
+    reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
+    counts = np.repeat((corner > limit)[:, None], values.shape[1], axis=1)
+    split = np.abs(corner - limit) <= reach
+    places = np.matmul(values.T, nodes[split])
+    counts[split] = _distance(places, singular) >= limit
+    return counts
 
 
 def _distance(places: np.ndarray, singular: np.ndarray) -> np.ndarray:

@@ -5,14 +5,21 @@ The estimate is Zienkiewicz and Zhu's (Int. J. Numer. Meth. Eng. 24, 1987, 337-3
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from fea.axisymmetric.harmonics import COSINE, HarmonicModel, Wave, elasticity
-from fea.axisymmetric.space import mapped, reference_shape
+from fea.axisymmetric.couplings import TANGENTIAL
+from fea.axisymmetric.harmonics import HarmonicModel, Wave
+from fea.axisymmetric.points import Points, Reference, mapped, reference
 from fea.types import Elastic
 
+RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
+DIRECT = (RR, THETA_THETA, ZZ)
+Parts = Mapping[int, np.ndarray]
+"""Stresses by their number, those that are not 0: the first four vary as cos nφ, the others as sin nφ."""
 CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
 """Nodes of the reference triangle in P2 order (2, 6)."""
 INWARD = 1e-6
@@ -39,46 +46,68 @@ class Recovered:
 
 def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Recovered:
     """Smooth the stresses of solved amplitudes (3·count,)."""
-    s = model.space
-    local = displacement[model.numbers][:, None, :, None]
-    hooke = elasticity(model.material)
-
-    def stress(values: np.ndarray, gradients: np.ndarray, r: np.ndarray) -> np.ndarray:
-        strain = model.strain(wave.n, values, gradients, r) @ local
-        return strain[..., 0] @ hooke
-
-    raw = stress(s.values, s.gradients, s.r)
-    inside = 1 / 3 + (1 - INWARD) * (CORNERS_AND_MIDDLES - 1 / 3)
-    values, slopes = reference_shape(inside)
-    gradients, _, rz = mapped(s.places[s.dofs], values, slopes)
-    at_nodes = stress(values, gradients, rz[..., 0])
+    s, material = model.space, model.material
+    local = displacement.reshape(-1, 3).T[:, s.dofs]
+    raw = stress(wave, material, s.points, local)
+    at_nodes = stress(wave, material, mapped(s.places.T[:, s.dofs], _at_nodes()), local)
     weight = (s.weights * s.r).sum(axis=1)
     nodes, share = s.dofs.ravel(), np.repeat(weight, 6)
-    sums = [np.bincount(nodes, share * at_nodes[..., k].ravel(), s.count) for k in range(6)]
-    nodal = (np.stack(sums) / np.bincount(nodes, share, s.count)).T
-    misfit = np.einsum("mic,iq->mqc", nodal[s.dofs], s.values) - raw
+    sums = {k: np.bincount(nodes, share * part.ravel(), s.count) for k, part in at_nodes.items()}
+    shares = np.bincount(nodes, share, s.count)
+    nodal = np.zeros((s.count, 6))
+    for k, total in sums.items():
+        nodal[:, k] = total / shares
+    misfit = {k: s.points.at(nodal[s.dofs, k]) - part for k, part in raw.items()}
     volume = wave.around * s.weights * s.r
     return Recovered(
         nodal,
-        (volume * _twice_density(raw, model.material)).sum(axis=1),
-        (volume * _twice_density(misfit, model.material)).sum(axis=1),
+        (volume * _twice_density(raw, material)).sum(axis=1),
+        (volume * _twice_density(misfit, material)).sum(axis=1),
         np.sqrt(_mises_squared(misfit).max(axis=1)),
     )
 
 
-def _twice_density(stress: np.ndarray, material: Elastic) -> np.ndarray:
+@cache
+def _at_nodes() -> Reference:
+    return reference(1 / 3 + (1 - INWARD) * (CORNERS_AND_MIDDLES - 1 / 3))
+
+
+def stress(wave: Wave, material: Elastic, points: Points, local: np.ndarray) -> Parts:
+    """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3, m, 6) [mm]."""
+    lam, mu, n, r = material.lam, material.mu, wave.n, points.rz[0]
+    if wave.torsion:
+        v, (v_r, v_z) = points.at(local[TANGENTIAL]), points.gradient(local[TANGENTIAL])
+        return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
+    u, v, w = points.at(local)
+    (u_r, v_r, w_r), (u_z, v_z, w_z) = points.gradient(local)
+    around = (u + n * v) / r
+    mean = lam * (u_r + around + w_z)
+    found = {
+        RR: mean + 2 * mu * u_r,
+        THETA_THETA: mean + 2 * mu * around,
+        ZZ: mean + 2 * mu * w_z,
+        RZ: mu * (u_z + w_r),
+    }
+    if n:
+        found |= {R_THETA: mu * (v_r - (v + n * u) / r), THETA_Z: mu * (v_z - n * w / r)}
+    return found
+
+
+def _twice_density(stress: Parts, material: Elastic) -> np.ndarray:
     """σ:C⁻¹:σ of amplitudes; cos² and sin² have the same mean."""
-    compliance = np.linalg.inv(elasticity(material))
-    return np.einsum("...a,ab,...b->...", stress, compliance, stress)
+    lam, mu = material.lam, material.mu
+    twice = sum((1 if k in DIRECT else 2) * part**2 for k, part in stress.items())
+    trace = sum((stress[k] for k in DIRECT if k in stress), np.zeros(1))
+    return (twice - lam / (3 * lam + 2 * mu) * trace**2) / (2 * mu)
 
 
-def _mises_squared(stress: np.ndarray) -> np.ndarray:
-    parts = mises_parts(stress)
-    return np.maximum(parts[0], parts[1])
+def _mises_squared(stress: Parts) -> np.ndarray:
+    return np.maximum(*mises_parts(stress))
 
 
-def mises_parts(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ, stress (..., 6)."""
-    rr, tt, zz, rz = np.moveaxis(stress[..., COSINE], -1, 0)
+def mises_parts(stress: Parts) -> tuple[np.ndarray, np.ndarray]:
+    """A, B [MPa²] of the squared von Mises stress A cos² nφ + B sin² nφ; absent stresses are 0."""
+    none = np.zeros_like(next(iter(stress.values())))
+    rr, tt, zz, rz, rt, tz = (stress.get(k, none) for k in range(6))
     direct = ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) / 2 + 3 * rz**2
-    return direct, 3 * (stress[..., 4] ** 2 + stress[..., 5] ** 2)
+    return direct, 3 * (rt**2 + tz**2)

@@ -1,4 +1,4 @@
-"""Quadratic (P2) fields on a meridian mesh: numbering, gradients, sparse sums, solve."""
+"""Quadratic (P2) fields on a meridian mesh: numbering, quadrature, sparse sums, solve."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
+from fea.axisymmetric.points import Points, mapped, quadrature, straight
 
 
 @dataclass(frozen=True)
@@ -17,44 +18,47 @@ class Space:
 
     Attributes
     ----------
-    dofs : (m, 6) numbers of each triangle's three vertices and three edge middles.
+    dofs : (m, 6) numbers of each triangle's corners, rising, and of the middles of 01, 12, 02.
     count : how many there are.
     places : (count, 2) their points (r, z) [mm].
-    values : (6, q) shape functions at the q quadrature points.
-    gradients : (m, 6, q, 2) of the shape functions in (r, z) [1/mm].
+    points : the quadrature points in each triangle.
     weights : (m, q) quadrature weights times area [mm²].
-    rz : (m, q, 2) quadrature points [mm].
     rim : (k, 3) numbers on each boundary edge: start, end, middle.
     """
 
     dofs: np.ndarray
     count: int
     places: np.ndarray
-    values: np.ndarray
-    gradients: np.ndarray
+    points: Points
     weights: np.ndarray
-    rz: np.ndarray
     rim: np.ndarray
 
     @property
     def r(self) -> np.ndarray:
         """Radius of the quadrature points (m, q) [mm]."""
-        return self.rz[..., 0]
+        return self.points.rz[0]
 
     def on(self, mesh: MeridianMesh, segments: np.ndarray) -> np.ndarray:
         """Sorted numbers on the given segments of the outline, their ends included."""
         return np.unique(self.rim[np.isin(mesh.edge_segment, segments)])
 
-    def gradient(self, field: np.ndarray) -> np.ndarray:
-        """Of a field given by its numbers (count,), at the quadrature points: (m, q, 2)."""
-        return np.einsum("mi,miqd->mqd", field[self.dofs], self.gradients)
+    def gradient(self, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """∂/∂r and ∂/∂z (m, q) of a field given by its numbers (count,), at the quadrature points."""
+        return self.points.gradient(field[self.dofs])
+
+    def shape_slopes(self) -> tuple[np.ndarray, np.ndarray]:
+        """∂/∂r and ∂/∂z of the shape functions at the quadrature points, each (m, 6, q) [1/mm]."""
+        (_, a), (_, b) = self.points.derivative(0)
+        (_, c), (_, d) = self.points.derivative(1)
+        xi, eta = self.points.reference.functions[:2]
+        return (
+            a[:, None] * xi + b[:, None] * eta,
+            c[:, None] * xi + d[:, None] * eta,
+        )
 
     def dirichlet_matrices(self, weight: np.ndarray) -> np.ndarray:
-        """∫ weight ∇u·∇v of each triangle, (m, 6, 6); weight (m, q) at the quadrature points."""
-        scaled = self.gradients * (weight * self.weights)[:, None, :, None]
-        m = len(self.dofs)
-        left, right = scaled.reshape(m, 6, -1), self.gradients.reshape(m, 6, -1)
-        return left @ right.transpose(0, 2, 1)
+        """∫ weight ∇u·∇v of each triangle, (m, 36); weight (m, q) at the quadrature points."""
+        return self.points.dirichlet(weight * self.weights)
 
 
 def isoparametric(mesh: MeridianMesh, degree: int) -> Space:
@@ -65,82 +69,45 @@ def isoparametric(mesh: MeridianMesh, degree: int) -> Space:
     MeshingError
         If a curved edge folds its triangle.
     """
-    from skfem import ElementTriP2
-    from skfem.quadrature import get_quadrature
-
-    straight = quadratic(mesh, mesh.points, 1)
-    places = straight.places.copy()
-    places[straight.rim[:, 2]] = edge_middles(
-        mesh.outline, mesh.points, mesh.edges, mesh.edge_segment
-    )
-    at, weights = get_quadrature(ElementTriP2, degree)
-    values, slopes = reference_shape(at)
-    gradients, jacobian, rz = mapped(places[straight.dofs], values, slopes)
-    # scikit-fem sorts corners by number, so either sign may come, but one per triangle
-    folded = (jacobian * jacobian[:, :1] <= 0).any(axis=1)
+    dofs, rim, places = _numbered(mesh, mesh.points)
+    places[rim[:, 2]] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
+    seen, weights = quadrature(degree)
+    points = mapped(places.T[:, dofs], seen)
+    # corners stand in any sense, so either sign may come, but one per triangle
+    folded = (points.jacobian * points.jacobian[:, :1] <= 0).any(axis=1)
     if folded.any():
         raise MeshingError(f"{int(folded.sum())} curved triangles fold over")
-    return Space(
-        straight.dofs,
-        straight.count,
-        places,
-        values,
-        gradients,
-        np.abs(jacobian) * weights,
-        rz,
-        straight.rim,
-    )
+    return Space(dofs, len(places), places, points, np.abs(points.jacobian) * weights, rim)
 
 
-def reference_shape(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """P2 values (6, q) and slopes (6, q, 2) at points (2, q) of the reference triangle."""
-    from skfem import ElementTriP2
-
-    parts = [ElementTriP2().lbasis(at, i) for i in range(6)]
-    values = np.stack([np.broadcast_to(v, at.shape[1]) for v, _ in parts])
-    slopes = np.stack([np.stack([np.broadcast_to(c, at.shape[1]) for c in g], 1) for _, g in parts])
-    return values, slopes
+def quadratic(mesh: MeridianMesh, vertices: np.ndarray, degree: int) -> Space:
+    """P2 on the mesh's straight triangles, vertices at (n, 2), quadrature of a polynomial degree."""
+    dofs, rim, places = _numbered(mesh, vertices)
+    seen, weights = quadrature(degree)
+    points = straight(places.T[:, dofs], seen)
+    return Space(dofs, len(places), places, points, np.abs(points.jacobian) * weights, rim)
 
 
-def mapped(
-    nodes: np.ndarray, values: np.ndarray, slopes: np.ndarray
+def _numbered(
+    mesh: MeridianMesh, vertices: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients (m, 6, q, 2), Jacobians (m, q) and points (m, q, 2) of six-node triangles."""
-    jacobian = np.einsum("mid,iqe->mqde", nodes, slopes)
-    (a, b), (c, d) = np.moveaxis(jacobian, (2, 3), (0, 1))
-    det = a * d - b * c
-    inverse = np.stack([np.stack([d, -b], -1), np.stack([-c, a], -1)], -2) / det[..., None, None]
-    gradients = np.einsum("iqe,mqed->miqd", slopes, inverse)
-    return gradients, det, np.einsum("mid,iq->mqd", nodes, values)
-
-
-def quadratic(mesh: MeridianMesh, points: np.ndarray, degree: int) -> Space:
-    """P2 over the mesh with its vertices at `points`, quadrature exact to a polynomial degree."""
-    from skfem import Basis, ElementTriP2, MeshTri
-
-    triangulation = MeshTri(points.T.copy(), mesh.triangles.T.copy())
-    basis = Basis(triangulation, ElementTriP2(), intorder=degree)
-    dofs = basis.element_dofs.T
-    n = len(points)
-    facets = triangulation.facets.astype(np.int64)
+    """`dofs`, `rim` and `places` of `Space`, every middle halfway between its ends."""
+    n = len(vertices)
+    triangles = np.sort(mesh.triangles, axis=1)
+    sides = triangles[:, [0, 1, 0]] * n + triangles[:, [1, 2, 2]]
+    keys, of = np.unique(sides, return_inverse=True)
     low, high = np.sort(mesh.edges, axis=1).T
-    order = np.lexsort(facets[::-1])
-    keys = facets[0, order] * n + facets[1, order]
-    rim_middle = basis.facet_dofs[0, order[np.searchsorted(keys, low * n + high)]]
-    return Space(
-        dofs=dofs,
-        count=basis.N,
-        places=basis.doflocs.T,
-        values=np.stack([np.asarray(basis.basis[i][0])[0] for i in range(6)]),
-        gradients=np.stack([basis.basis[i][0].grad for i in range(6)]).transpose(2, 0, 3, 1),
-        weights=basis.dx,
-        rz=np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1),
-        rim=np.column_stack([mesh.edges, rim_middle]),
+    middle = n + np.searchsorted(keys, low * n + high)
+    halfway = (vertices[keys // n] + vertices[keys % n]) / 2
+    return (
+        np.column_stack([triangles, n + of.reshape(-1, 3)]),
+        np.column_stack([mesh.edges, middle]),
+        np.concatenate([vertices, halfway]),
     )
 
 
 def summed(matrices: np.ndarray, numbers: np.ndarray, size: int) -> csc_matrix:
-    """Global sparse matrix from element matrices (m, k, k); entries numbered -1 are left out."""
+    """Global sparse matrix from element matrices, k² numbers each; rows numbered -1 are left out."""
     k = numbers.shape[1]
     rows = np.repeat(numbers, k, axis=1).ravel()
     columns = np.tile(numbers, (1, k)).ravel()
@@ -151,13 +118,17 @@ def summed(matrices: np.ndarray, numbers: np.ndarray, size: int) -> csc_matrix:
 
 def solved(matrix: csc_matrix, load: np.ndarray) -> np.ndarray:
     """Direct solve of a symmetric positive definite system."""
-    factor = splu(
+    return factorised(matrix).solve(load)
+
+
+def factorised(matrix: csc_matrix) -> SuperLU:
+    """Of a symmetric positive definite matrix."""
+    return splu(
         matrix,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return factor.solve(load)
 
 
 def relative_residual(matrix: csc_matrix, x: np.ndarray, load: np.ndarray) -> float:

@@ -72,7 +72,7 @@ class RevolvedField:
 
     def mises(self, phi: float) -> np.ndarray:
         """von Mises stress (count,) at the nodes at an angle [MPa]."""
-        direct, shear = mises_parts(self.stress)
+        direct, shear = mises_parts(dict(enumerate(self.stress.T)))
         if self.n == 0:
             return np.sqrt(direct + shear)
         return np.sqrt(direct * np.cos(self.n * phi) ** 2 + shear * np.sin(self.n * phi) ** 2)

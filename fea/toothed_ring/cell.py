@@ -23,6 +23,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.points import VALUE
 from fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
 from geometry.errors import ComputationError
 from geometry.tooth import ToothCell
@@ -95,8 +96,8 @@ class CellModel:
 
     def _slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """∂/∂r and (1/r)∂/∂φ of the shape functions, each (m, 6, q) [1/mm]."""
-        g = self.space.gradients
-        return g[..., 0], g[..., 1] * (self.cell.unroll / self.space.r)[:, None, :]
+        by_r, by_z = self.space.shape_slopes()
+        return by_r, by_z * (self.cell.unroll / self.space.r)[:, None, :]
 
     def _on(
         self, patch: str, component: int, value: Callable[[np.ndarray], np.ndarray]
@@ -110,7 +111,7 @@ class CellModel:
         """∫ σ:ε / E' with the given displacements, the others free; numbers as in `_on`."""
         s, nu = self.space, poissons_ratio
         along, around = self._slopes()
-        over_r = s.values[None] / s.r[:, None, :]
+        over_r = s.points.reference.functions[VALUE] / s.r[:, None, :]
         m, _, q = along.shape
         parts = np.zeros((m, q, 3, 6, 2))  # rr, φφ, shear
         to_points = (0, 2, 1)

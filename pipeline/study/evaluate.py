@@ -17,7 +17,7 @@ from fea.axisymmetric.contact import contact_stiffness
 from fea.axisymmetric.lobes import lobe_stiffness
 from fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from fea.axisymmetric.torsion import torsional_stiffness
-from fea.types import Elastic
+from fea.types import Elastic, Stiffness
 from geometry.design import Cup, Design, Hat, Shaft
 from geometry.errors import ComputationError, DesignError
 from geometry.load import design_from
@@ -174,15 +174,18 @@ def _torsion(part: Part, nu: float) -> tuple[float, float, float]:
 
 
 @_remembered
+def _lobe_stiffness(part: Part, nu: float, supported: bool) -> Stiffness:
+    return lobe_stiffness(_outline(part), _unit(nu), supported, LOBE_TOLERANCE)
+
+
 def _lobes(part: Part, nu: float, supported: bool) -> tuple[float, float, float]:
-    found = lobe_stiffness(_outline(part), _unit(nu), supported, LOBE_TOLERANCE)
+    found = _lobe_stiffness(part, nu, supported)
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
 @_remembered
 def _contact(part: Part, nu: float) -> tuple[float, float, float]:
-    supported = lobe_stiffness(_outline(part), _unit(nu), True, LOBE_TOLERANCE)
-    found = contact_stiffness(_outline(part), _unit(nu), supported)
+    found = contact_stiffness(_outline(part), _unit(nu), _lobe_stiffness(part, nu, True))
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
