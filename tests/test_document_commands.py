@@ -23,7 +23,6 @@ NOT_RUN = {
     "python3 -m pip install '.[test]' && python3 -m pytest": "installs; .ci/run runs this very line",
     "python3 -m venv .venv && . .venv/bin/activate": "leads to the next",
     "python3 -m pip install -e '.[test,docs]'": "installs; what it installs, tests/package/ installs",
-    "python3 -m pip install 'flexspline[studio,bench]'": "installs; tests/package/ does, from the wheel",
     "python3 -m pytest": "this is it",
 }
 """The whole list of exceptions: how a command begins, and why it is not run here."""
