@@ -163,8 +163,21 @@ function until(met) {
   });
 }
 
+// vtk.js stands in the page as text and starts only where it can draw; it calls loadDataSet at its end.
+function viewer() {
+  return new Promise((resolve) => {
+    window.global = window;
+    window.loadDataSet = resolve;
+    const script = document.createElement("script");
+    script.type = "module";
+    script.textContent = document.getElementById("viewer").textContent;
+    document.head.append(script);
+  });
+}
+
 async function start() {
-  if (!hasWebGL() || !window.OfflineLocalView) return; // the pictures stay
+  if (!hasWebGL()) return; // the pictures stay
+  await viewer();
   for (const element of document.querySelectorAll(".view")) {
     const figure = element.closest("figure");
     element.hidden = false;

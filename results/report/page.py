@@ -10,7 +10,7 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -31,7 +31,13 @@ WORDS = {
 }
 """What only a page needs to say."""
 
-_ICON = re.compile(r"https?://[\w./-]*favicon-[^`\"']*")
+_UNWANTED = (
+    (re.compile(r"https?://[\w./-]*favicon-[^`\"']*"), "data:,"),  # its icons, from the network
+    (re.compile(r'__vtkStyle\.textContent = "(?:[^"\\]|\\.)*";'), ""),  # for a page of its own
+    (re.compile(r"\(document\.head \|\| [^;]*\.appendChild\(__vtkStyle\);"), ""),
+    (re.compile(r"console\.log\(Object\.keys\(\w+\)\),"), ""),  # a word for each scene
+)
+"""What the viewer's script does that a report must not, and what stands there instead."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +77,7 @@ def page_of(
     found: dict[str, dict[str, Any]] = (
         {n: json.loads(v) for n, v in views.items()} if views and viewer else {}
     )
-    # a module runs after those before it
-    scripts = (
-        ((False, "window.global = window;"), (True, viewer), (True, _file(SCRIPT))) if found else ()
-    )
+    driver, style = _file(SCRIPT), _file(STYLE)
     shown = {
         "views": {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()},
         "ramp": _ramp() if found else [],
@@ -87,21 +90,24 @@ def page_of(
             pictures=pictures,
             views=found,
             shown=shown,
-            scripts=[{"module": m, "text": Markup(s)} for m, s in scripts],
-            css=Markup(_file(STYLE)),
-            policy=_policy([s for _, s in scripts]),
+            viewer=Markup(viewer),
+            driver=Markup(driver),
+            css=Markup(style),
+            policy=_policy([viewer, driver] if found else [], style),
             ui=WORDS,
         )
     )
     return text.encode()
 
 
-def _policy(scripts: list[str]) -> str:
-    hashes = (base64.b64encode(hashlib.sha256(s.encode()).digest()).decode() for s in scripts)
-    allowed = " ".join(f"'sha256-{h}'" for h in hashes) or "'none'"
+def _policy(scripts: Sequence[str], style: str) -> str:
+    def allowed(texts: Sequence[str]) -> str:
+        hashes = (base64.b64encode(hashlib.sha256(t.encode()).digest()).decode() for t in texts)
+        return " ".join(f"'sha256-{h}'" for h in hashes) or "'none'"
+
     return (
-        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data:; "
-        "base-uri 'none'; form-action 'none'"
+        f"default-src 'none'; script-src {allowed(scripts)}; style-src {allowed([style])}; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
     )
 
 
@@ -115,8 +121,10 @@ def _viewer() -> str:
     found = re.search(r'<script type="module">(.*?)</script>', page, re.S)
     if found is None or "OfflineLocalView" not in found.group(1):
         return ""
-    script = found.group(1).replace("console.log(Object.keys(s)),", "")  # a word for each scene
-    return _ICON.sub("data:,", script)  # the viewer would ask for its own icons on the network
+    script = found.group(1)
+    for unwanted, instead in _UNWANTED:
+        script = unwanted.sub(instead, script)
+    return script
 
 
 def _ramp() -> list[str]:

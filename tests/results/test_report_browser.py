@@ -1,0 +1,183 @@
+"""report.html in a real browser, offline: its views turn, its policy holds, it works without WebGL."""
+
+import io
+import json
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from browser import chromium
+from hand_made_gear import content, design
+from hand_made_tube import LENGTH, OUTER, field, oval, tube, twisted
+from PIL import Image
+
+from results.renders.ellipse_picture import turning_ellipse
+from results.renders.stress_picture import turning_torque_stress
+from results.report.content import Pictures
+from results.report.page import WORDS, page_of, png
+from results.report.sections import run_document
+from results.report.write import pictures_of
+
+NASTY = '</script><script>window.hacked = 1</script><img src=x onerror="window.hacked = 1">'
+VIEWS = ("flexspline_torque", "shaft_torque", "wave_generator")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """A whole report on a small tube, its design named to do harm."""
+    folder = tmp_path_factory.mktemp("page")
+    paths = {n: folder / f"{n}.png" for n in Pictures.__dataclass_fields__}
+    for path in paths.values():
+        Image.new("RGB", (160, 120), (200, 210, 220)).save(path)
+    made = content(design=design(name=NASTY), pictures=Pictures(**paths), warnings=(NASTY,))
+    mesh = tube(30.0, 2)
+    torque = field(mesh, twisted(mesh.nodes), (OUTER, 0.0, LENGTH))
+    ellipse = field(mesh, oval(mesh.nodes), (OUTER, 0.0, LENGTH))
+    views = {
+        name: turning_torque_stress(name, torque, part, 0.5)
+        for name, part in (("flexspline_torque", "Flexspline"), ("shaft_torque", "Output shaft"))
+    } | {"wave_generator": turning_ellipse("wave_generator", ellipse, 0.2)}
+    images = {n: png(p) for n, p in pictures_of(made).items()}
+    path = folder / "report.html"
+    path.write_bytes(page_of(run_document(made), images, views))
+    return path, views
+
+
+@contextmanager
+def opened(browser, path, scheme="light", script=""):
+    """The page with the network cut off; nothing may have been asked for or complained about."""
+    context = browser.new_context(
+        viewport={"width": 1280, "height": 900}, color_scheme=scheme, offline=True
+    )
+    asked, complaints = [], []
+    try:
+        page = context.new_page()
+        page.on("request", lambda r: asked.append(r.url))
+        page.on("pageerror", lambda e: complaints.append(str(e)))
+        page.on("console", lambda m: complaints.append(m.text) if m.type == "error" else None)
+        if script:
+            page.add_init_script(script)
+        page.goto(path.as_uri())
+        yield page
+        assert [u for u in asked if not u.startswith("data:")] == [path.as_uri()]
+        assert complaints == []
+    finally:
+        context.close()
+
+
+def pixels(page, view):
+    shot = page.locator(f"[data-view={view}] .stage").screenshot()
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def differing(one, other):
+    return (np.abs(one - other).max(axis=2) > 24).mean()
+
+
+def becomes(page, view, first, met):
+    """Whether the share of pixels that differ from `first` soon is as wanted; a loaded machine lags."""
+    for _ in range(40):
+        if met(differing(first, pixels(page, view))):
+            return True
+        page.wait_for_timeout(100)
+    return False
+
+
+def turned(share):
+    return share > 0.03
+
+
+def as_before(share):
+    return share < 0.002  # the antialiased rim of the button's focus ring, if anything
+
+
+def ready(page):
+    page.wait_for_selector("html[data-views=ready]", state="attached", timeout=20_000)
+
+
+def test_views_turn_offline(browser, report):
+    path, _ = report
+    with opened(browser, path) as page:
+        ready(page)
+        for view in VIEWS:
+            stage = page.locator(f"[data-view={view}] .stage")
+            stage.scroll_into_view_if_needed()
+            first = pixels(page, view)
+            coloured = (np.ptp(first, axis=2) > 60).mean()
+            assert coloured > 0.05  # the tube is there, in the map's colours
+            box = stage.bounding_box()
+            x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            page.mouse.move(x, y)
+            page.mouse.down()
+            page.mouse.move(x + 90, y + 40, steps=4)
+            page.mouse.up()
+            page.mouse.move(0, 0)
+            assert becomes(page, view, first, turned)
+            page.locator(f"[data-view={view}] .reset").click()
+            assert becomes(page, view, first, as_before)
+        assert page.evaluate("window.hacked") is None
+        assert page.locator("h1 + p").inner_text() == NASTY
+
+
+def test_keys_turn_and_the_page_scrolls_over_a_view(browser, report):
+    path, views = report
+    with opened(browser, path) as page:
+        ready(page)
+        stage = page.locator("[data-view=wave_generator] .stage")
+        stage.focus()
+        first = pixels(page, "wave_generator")
+        for _ in range(3):
+            page.keyboard.press("ArrowLeft")
+        assert becomes(page, "wave_generator", first, turned)
+        page.keyboard.press("Home")
+        assert becomes(page, "wave_generator", first, as_before)
+        stage.hover()
+        before = page.evaluate("scrollY")
+        page.mouse.wheel(0, -200)
+        for _ in range(40):
+            if page.evaluate("scrollY") < before:
+                break
+            page.wait_for_timeout(100)
+        assert page.evaluate("scrollY") < before
+        assert becomes(page, "wave_generator", first, as_before)  # scrolled, not zoomed
+        # the mark stands where the peak is: the label and its ring lie inside the stage
+        said = json.loads(views["wave_generator"])["mark"]["text"]
+        flag = page.locator("[data-view=wave_generator] .flag")
+        assert flag.inner_text() == said
+        inner, outer = flag.bounding_box(), stage.bounding_box()
+        assert outer["x"] <= inner["x"] <= outer["x"] + outer["width"]
+
+
+def test_dark_light_and_print(browser, report):
+    path, _ = report
+    grounds = {}
+    for scheme in ("light", "dark"):
+        with opened(browser, path, scheme) as page:
+            ready(page)
+            grounds[scheme] = pixels(page, "shaft_torque")[3, 3].mean()
+            if scheme == "dark":
+                page.emulate_media(media="print")
+                assert page.locator(".view").first.is_hidden()
+                assert page.locator("figure.turns img").first.is_visible()
+                assert page.evaluate("getComputedStyle(document.querySelector('main')).color") == (
+                    "rgb(31, 36, 41)"
+                )
+    assert grounds["light"] > 240
+    assert grounds["dark"] < 80
+
+
+def test_without_webgl_the_pictures_stay(browser, report):
+    path, _ = report
+    none = "HTMLCanvasElement.prototype.getContext = () => null;"
+    with opened(browser, path, script=none) as page:
+        page.wait_for_timeout(500)  # what the viewer does of its own accord comes after 0.1 s
+        assert page.locator("input").count() == 0
+        assert page.locator(".view:visible").count() == 0
+        assert page.locator("figure.turns img:visible").count() == 3
+        assert WORDS["reset"] not in page.locator("main").inner_text()
