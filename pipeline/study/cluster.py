@@ -16,6 +16,7 @@ from pipeline.study.load import StudyError
 
 RETRIES = 2
 """A design whose worker dies is tried again so many times."""
+WORKER_DIED = f"its worker died {RETRIES + 1} times"
 CONNECT_S = 30.0
 WORKER_ENVIRONMENT = {
     "OMP_NUM_THREADS": 1,

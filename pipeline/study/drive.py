@@ -8,7 +8,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from pipeline.study.cluster import RETRIES, Hands
+from pipeline.study.cluster import WORKER_DIED, Hands
 from pipeline.study.evaluate import Outcome, Task
 from pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
 
@@ -105,7 +105,7 @@ def _outcome(future: Future, hands: Hands) -> Outcome:
     try:
         return future.result()
     except hands.lost:
-        return Outcome(reason=f"its worker died {RETRIES + 1} times")
+        return Outcome(reason=WORKER_DIED)
 
 
 def _next(source: Source, ledger: Ledger) -> Job | None:

@@ -18,7 +18,7 @@ from pipeline.study.result import StudyResult
 from pipeline.study.samplers import sampler_of
 from pipeline.study.scatter import Scatter, scatter_of
 from pipeline.study.source import Planned, Sampled, solves_of, study_name
-from pipeline.study.store import Ledger, Row, open_ledger
+from pipeline.study.store import Ledger, LedgerError, Row, StorageError, open_ledger
 from pipeline.study.tolerance import Scattered, outputs_of, scattered
 from pipeline.study.verify import verify
 
@@ -38,14 +38,21 @@ def ledger_of(study: Study, folder: Path) -> Ledger:
 
     Raises
     ------
-    StorageError
+    StorageError : the storage that the study names cannot be opened.
+    LedgerError : `study.db` cannot.
     """
     url = study.file.run.storage
+    own = folder / "study.db"
     if not url:
         folder.mkdir(parents=True, exist_ok=True)
-        url = f"sqlite:///{(folder / 'study.db').resolve()}"
     directions = list(study.file.objective.values()) or ["minimize"]
-    return open_ledger(url, study_name(study), directions, sampler_of(study))
+    try:
+        given = url or f"sqlite:///{own.resolve()}"
+        return open_ledger(given, study_name(study), directions, sampler_of(study))
+    except StorageError as fault:
+        if url:
+            raise
+        raise LedgerError(f"{own}: {fault.cause}") from fault
 
 
 def run_study(

@@ -12,12 +12,12 @@ from __future__ import annotations
 import os
 import socket
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from geometry.errors import DesignError
+from geometry.errors import ComputationError, DesignError, one_line
 from pipeline.study.evaluate import Outcome
 
 if TYPE_CHECKING:
@@ -35,6 +35,35 @@ SILENT_S = 60.0
 LOCK_S = 60
 """How long to wait for another process that writes to the same SQLite file."""
 OPENINGS = 6
+
+
+class LedgerError(ComputationError):
+    """The storage of a study does not work: a full disk, a damaged file, a database gone."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(
+            f"the study's storage does not work: {reason}; what is stored is kept, the same command "
+            "goes on from there"
+        )
+
+
+@contextmanager
+def storage_faults() -> Iterator[None]:
+    """What the database and its libraries raise, as a LedgerError."""
+    from optuna.exceptions import StorageInternalError
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (SQLAlchemyError, StorageInternalError) as fault:
+        raise LedgerError(_said(fault)) from fault
+
+
+def _said(fault: BaseException) -> str:
+    """The database's own words, without the statement and its values."""
+    while isinstance(fault.__cause__, Exception):
+        fault = fault.__cause__
+    return one_line((str(fault) or type(fault).__name__).splitlines()[0])
 
 
 @dataclass(frozen=True)
@@ -73,6 +102,7 @@ class Ledger:
     storage: BaseStorage
     owner: str
 
+    @storage_faults()
     def all(self) -> list[FrozenTrial]:
         """Every trial, as the database has it now."""
         return self.trials.get_trials(deepcopy=False)
@@ -94,6 +124,7 @@ class Ledger:
                 found.setdefault(trial.user_attrs[CLAIM]["slot"], []).append(trial)
         return found
 
+    @storage_faults()
     def create(
         self,
         slot: int,
@@ -122,11 +153,21 @@ class Ledger:
         self.tell(mine.number, None)
         return None
 
+    @storage_faults()
+    def suggested(self, job: Job, over: Mapping[str, BaseDistribution]) -> Job:
+        """A claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
+        from optuna.trial import Trial
+
+        trial = Trial(self.trials, job.trial_id)
+        values = {key: float(trial._suggest(key, span)) for key, span in over.items()}
+        return replace(job, values=values)
+
     def finish(self, job: Job, outcome: Outcome, values: list[float] | None) -> None:
         """Store the row, then close the trial; a stop between the two loses nothing."""
         self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(outcome))
         self.tell(job.number, values)
 
+    @storage_faults()
     def tell(self, number: int, values: list[float] | None) -> None:
         """Close a trial: with its objectives, or as failed; closed ones stay as they are."""
         from optuna.exceptions import UpdateFinishedTrialError
@@ -136,10 +177,12 @@ class Ledger:
         with suppress(UpdateFinishedTrialError):  # another process did so just now
             self.trials.tell(number, values, state=state, skip_if_finished=True)
 
+    @storage_faults()
     def beat(self) -> None:
         """Say that this process lives, for those on other machines."""
         self.trials.set_user_attr(f"beat {self.owner}", time.time())
 
+    @storage_faults()
     def gone(self, trial: FrozenTrial) -> bool:
         """Whether the process that claimed a trial is no more."""
         owner = trial.user_attrs[CLAIM]["owner"]
@@ -176,8 +219,9 @@ def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSam
     StorageError : the database cannot be opened.
     """
     import optuna
+    from optuna.exceptions import StorageInternalError
     from optuna.storages import RDBStorage
-    from sqlalchemy.exc import SQLAlchemyError
+    from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else {}
@@ -192,10 +236,11 @@ def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSam
                 load_if_exists=True,
             )
             return Ledger(trials, storage, this_process())
-        except (SQLAlchemyError, ImportError, RuntimeError) as fault:
+        except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
             # two processes that make the tables at once: the second finds them on its next try
-            if attempt == OPENINGS - 1 or not isinstance(fault, SQLAlchemyError):
-                raise StorageError(url, str(fault)) from fault
+            again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)
+            if attempt == OPENINGS - 1 or not again:
+                raise StorageError(url, _said(fault)) from fault
             time.sleep(0.5 * (attempt + 1))
     raise AssertionError("the last attempt returns or raises")
 
@@ -204,5 +249,5 @@ class StorageError(DesignError):
     """A database that cannot be opened; `url` and why."""
 
     def __init__(self, url: str, reason: str) -> None:
-        self.url = url
-        super().__init__("run.storage", url, f"cannot be opened: {reason.splitlines()[0]}")
+        self.url, self.cause = url, reason
+        super().__init__("run.storage", url, f"cannot be opened: {reason}")

@@ -13,11 +13,11 @@ from pipeline.diagnosis.specimens.designs import with_values
 from pipeline.parts import Workshop
 from pipeline.progress import Progress
 from pipeline.storage import cache_folder
-from pipeline.study.cluster import Hands
+from pipeline.study.cluster import WORKER_DIED, Hands
 from pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from pipeline.study.figures import GIVEN_BY
 from pipeline.study.result import StudyResult
-from pipeline.study.store import Ledger, Row
+from pipeline.study.store import Ledger, Row, storage_faults
 from pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
@@ -73,8 +73,12 @@ def verify(
             pending[hands().submit(solid_outcome, task(row.values), rim)] = row
     for future in as_completed(pending):
         name = f"{VERIFIED} {pending[future].slot}"
-        stored[name] = asdict(future.result())
-        ledger.trials.set_user_attr(name, stored[name])
+        try:
+            stored[name] = asdict(future.result())
+        except hands().lost:
+            stored[name] = asdict(Outcome(reason=WORKER_DIED))
+        with storage_faults():
+            ledger.trials.set_user_attr(name, stored[name])
     case = result.study.design.solver.load_case
     return tuple(checked(r, Outcome(**stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
 
