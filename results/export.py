@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Callable
 from functools import partial
@@ -12,6 +11,7 @@ from fea.solid.deck import torsion_deck
 from fea.types import SolidField
 from geometry.cad import build_solid, write_step, write_stl
 from geometry.design import Design
+from geometry.errors import ComputationError
 from pipeline.chain import torque_field
 from pipeline.parts import DRIVEN, Workshop
 from pipeline.progress import Progress
@@ -71,14 +71,37 @@ def write_decks(shop: Workshop, folder: Path) -> list[Path]:
     return done
 
 
+ENDINGS = {".step": b"END-ISO-10303-21;", ".vtu": b"</VTKFile>"}
+"""How whole files end: their writers say nothing of a full disk."""
+STL_HEAD_BYTES, STL_TRIANGLE_BYTES = 84, 50
+
+
+class ExportError(ComputationError):
+    """A file that its writer did not finish."""
+
+
 def _whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Write under another name with the same ending, then move into place."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".export-") as folder:
+    """Write among the scratch files under the same name, see that it is whole, move it into place.
+
+    Raises
+    ------
+    ExportError : it is not.
+    """
+    with tempfile.TemporaryDirectory(prefix="flexspline-export-") as folder:
         made = Path(folder) / path.name
         write(made)
-        os.replace(made, path)
+        data = made.read_bytes() if made.exists() else b""
+        if not _is_whole(data, path.suffix):
+            raise ExportError(f"{path.name} was not written whole; is the disk of {folder} full?")
+        write_bytes(path, data)
     return path
+
+
+def _is_whole(data: bytes, suffix: str) -> bool:
+    if suffix == ".stl":
+        triangles = int.from_bytes(data[80:84], "little")
+        return len(data) == STL_HEAD_BYTES + STL_TRIANGLE_BYTES * triangles > STL_HEAD_BYTES
+    return data.rstrip().endswith(ENDINGS[suffix])
 
 
 def _write_vtu(field: SolidField, parity: Parity, path: Path) -> None:

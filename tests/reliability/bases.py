@@ -1,0 +1,96 @@
+"""Good files of every kind that the program reads, small, and the command that reads each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+
+from in_process import flexspline
+
+from geometry.errors import ComputationError
+from pipeline.study.cluster import Hands
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+CUP = EXAMPLES / "xb1-40.toml"
+GIVEN = ("--Kb", 31329, "--Ke", 43339)
+ROWS = {"xb1-40-sweep": 130, "size-40-end-points": 8, "xb1-40-specimens": 6}
+"""Lines kept of each measured example."""
+STUDY = f"""# A small study: neither clearance nor torque asks for a new solution.
+design = "{CUP}"
+[vary]
+"gear.flank_clearance_um" = {{ min = 2.0, max = 4.0 }}
+"load.torque_Nm" = {{ values = [0.4, 0.5, 0.6] }}
+[objective]
+"backlash_arcsec.total" = "minimize"
+[constraint]
+"K_b_Nm_per_rad" = {{ min = 20000.0 }}
+[run]
+method = "sobol"
+evaluations = 4
+seed = 3
+workers = 1
+"""
+ENOUGH = 16
+"""Designs of a study after which it has shown that it runs."""
+
+
+class EnoughError(ComputationError):
+    """A mutation made a good study long."""
+
+
+@contextmanager
+def hands(workers: int, scheduler: str) -> Iterator[Hands]:
+    """In place of `dask_hands`: one thread of this process, for `ENOUGH` designs."""
+    with ThreadPoolExecutor(1) as executor:
+        left = iter(range(ENOUGH))
+
+        def submit(function: Callable, *arguments: object):  # type: ignore[no-untyped-def]
+            if next(left, None) is None:
+                raise EnoughError("enough")
+            return executor.submit(function, *arguments)
+
+        here = Hands(executor, lambda: 1)
+        object.__setattr__(here, "submit", submit)
+        yield here
+
+
+def head(name: str) -> bytes:
+    """The first rows of a measured example."""
+    lines = (EXAMPLES / "measured" / f"{name}.csv").read_bytes().splitlines(keepends=True)
+    return b"".join(lines[: ROWS[name]])
+
+
+@cache
+def base(kind: str, folder: Path) -> bytes:
+    """The good file of a kind; `folder` is where the extended model is found first."""
+    if kind == "design":
+        return CUP.read_bytes()
+    if kind == "study":
+        return STUDY.encode()
+    if kind == "extended model":
+        out = folder / "found"
+        sweep = folder / "sweep.csv"
+        sweep.write_bytes(head("xb1-40-sweep"))
+        flexspline("diagnose", CUP, sweep, *GIVEN, "--out", out, folder=folder)
+        return (out / "extended_model.toml").read_bytes()
+    return head(
+        {"sweep": "xb1-40-sweep", "end points": "size-40-end-points"}.get(kind, "xb1-40-specimens")
+    )
+
+
+SUFFIX = {"design": "toml", "study": "toml", "extended model": "toml"}
+KINDS = ("design", "study", "extended model", "sweep", "end points", "specimens")
+
+
+def words(kind: str, path: Path, torque: Path) -> tuple[object, ...]:
+    """The command line that reads a file of a kind."""
+    if kind == "design":
+        return ("backlash", path, *GIVEN)
+    if kind == "study":
+        return ("study", path)
+    if kind == "extended model":
+        return ("predict", CUP, torque, "--model", path)
+    return ("diagnose", CUP, path, *GIVEN)

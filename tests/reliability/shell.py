@@ -1,0 +1,40 @@
+"""The command as a process of its own, with a cache and a scratch folder of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def environment(
+    cache: Path, scratch: Path | None = None, threads: int | None = None
+) -> dict[str, str]:
+    """Of a process that uses these folders, and this tree's modules."""
+    env = os.environ | {"FLEXSPLINE_CACHE": str(cache), "PYTHONPATH": str(ROOT)}
+    if scratch is not None:
+        env["TMPDIR"] = str(scratch)
+    if threads is not None:
+        env |= dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS"), str(threads))
+    return env
+
+
+def command(*words: object) -> list[str]:
+    return [sys.executable, "-m", "results.cli", *map(str, words)]
+
+
+def run(
+    *words: object,
+    cache: Path,
+    scratch: Path | None = None,
+    threads: int | None = None,
+    timeout_s: float = 600,
+) -> subprocess.CompletedProcess[str]:
+    """Run it to its end."""
+    return subprocess.run(
+        command(*words), capture_output=True, text=True, check=False, timeout=timeout_s,
+        env=environment(cache, scratch, threads),
+    )  # fmt: skip

@@ -1,0 +1,148 @@
+"""A full disk, a disk mounted read-only, a file in the way: one line, status 1, nothing half-written."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from bases import CUP, GIVEN, STUDY, head
+from in_process import Ended, flexspline
+from shell import run
+
+ROOT = Path(__file__).parents[2]
+PLAIN = ("bolt_count = 6", "bolt_count = 0")
+FREE_BYTES = 24_000
+"""Room for result.json and one small picture, not for more."""
+
+
+def mounted(folder: Path, *options: str) -> bool:
+    """Whether a small file system could be put there."""
+    if sys.platform != "linux" or os.geteuid() != 0 or shutil.which("mount") is None:
+        return False
+    command = ["mount", "-t", "tmpfs", *options, "tmpfs", str(folder)]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+@pytest.fixture
+def full(tmp_path: Path) -> Iterator[Path]:
+    """A folder on a disk with a few kilobytes left."""
+    folder = tmp_path / "full"
+    folder.mkdir()
+    if not mounted(folder, "-o", "size=128k"):
+        pytest.skip("mounting a small file system takes root on Linux")
+    try:
+        there = os.statvfs(folder)
+        (folder / "others").write_bytes(b"x" * (there.f_bavail * there.f_frsize - FREE_BYTES))
+        yield folder
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@pytest.fixture
+def read_only(tmp_path: Path) -> Iterator[Path]:
+    """A folder on a disk that is mounted read-only, which binds root too."""
+    folder = tmp_path / "read only"
+    folder.mkdir()
+    if not mounted(folder, "-o", "ro,size=64k"):
+        pytest.skip("mounting a file system takes root on Linux")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cup and shaft without holes: bodies of revolution."""
+    path = tmp_path_factory.mktemp("plain") / "plain.toml"
+    path.write_text(CUP.read_text(encoding="utf-8").replace(*PLAIN), encoding="utf-8")
+    return path
+
+
+def failed(ended: Ended, needle: str) -> None:
+    assert ended.status == 1, ended
+    assert needle in ended.said[0]
+
+
+WHERE_IT_GOES = {"full": "No space left on device", "read_only": "Read-only file system"}
+
+
+@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+def test_a_diagnosis(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    there: Path = request.getfixturevalue(disk)
+    measured = tmp_path / "points.csv"
+    measured.write_bytes(head("size-40-end-points"))
+    ended = flexspline("diagnose", CUP, measured, *GIVEN, "--out", there / "out", folder=there)
+    failed(ended, WHERE_IT_GOES[disk])
+
+
+@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+def test_a_backlash_sum(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    there: Path = request.getfixturevalue(disk)
+    if disk == "full":
+        filler = there / "others"
+        filler.write_bytes(filler.read_bytes() + b"x" * FREE_BYTES)
+    failed(
+        flexspline("backlash", CUP, *GIVEN, "--out", there / "out", folder=there),
+        WHERE_IT_GOES[disk],
+    )
+
+
+@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """Its database meets the full disk, in SQLite's words."""
+    there: Path = request.getfixturevalue(disk)
+    file = tmp_path / "study.toml"
+    file.write_text(STUDY, encoding="utf-8")
+    ended = flexspline("study", file, "--out", there / "out", folder=there)
+    failed(ended, "disk is full" if disk == "full" else WHERE_IT_GOES[disk])
+
+
+@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+def test_a_cache_without_room_is_no_reason_to_stop(
+    disk: str, plain: Path, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    there: Path = request.getfixturevalue(disk)
+    if disk == "full":
+        filler = there / "others"
+        filler.write_bytes(filler.read_bytes() + b"x" * FREE_BYTES)
+    done = run("backlash", plain, "--out", tmp_path / "out", "--json", cache=there / "cache")
+    assert done.returncode == 0, done.stderr
+    assert f"could not store a result in {there}" in done.stderr
+    assert json.loads(done.stdout)["K_b_Nm_per_rad"] > 0
+
+
+def test_a_file_in_the_way_of_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "out").write_bytes(b"")
+    ended = flexspline("backlash", CUP, *GIVEN, "--out", tmp_path / "out", folder=tmp_path)
+    assert ended.status == 2
+    ended = flexspline("backlash", CUP, *GIVEN, "--out", tmp_path / "out" / "in", folder=tmp_path)
+    failed(ended, "Not a directory")
+    assert (tmp_path / "out").read_bytes() == b""
+
+
+@pytest.mark.long
+def test_export_and_run(full: Path, plain: Path, tmp_path: Path) -> None:
+    """CAD's and VTK's writers say nothing of a full disk; no file of theirs may pass for a whole one."""
+    for command in ("export", "run"):
+        done = run(command, plain, "--out", full / "out", cache=tmp_path / "cache")
+        assert done.returncode == 1, done.stderr
+        assert "No space left on device" in done.stderr.splitlines()[-1]
+        assert [p.name for p in full.rglob("*") if p.name.startswith(".")] == []
+        for made in full.rglob("*.step"):
+            assert made.read_bytes().rstrip().endswith(b"END-ISO-10303-21;")
+
+
+@pytest.mark.long
+def test_a_full_scratch_disk(full: Path, plain: Path, tmp_path: Path) -> None:
+    done = run("export", plain, "--out", tmp_path / "out", cache=tmp_path / "cache", scratch=full)
+    assert done.returncode == 1, done.stderr
+    assert "Traceback" not in done.stderr
+    assert "full" in done.stderr.splitlines()[-1] or "No space" in done.stderr.splitlines()[-1]
+    assert list((tmp_path / "out").glob("*")) == []
