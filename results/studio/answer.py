@@ -83,8 +83,8 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
     own = design.shaft_material if name == "shaft_torque_peak" else design.material.flexspline
     if own.fatigue_limit_MPa is not None:
         share = figures[key] / own.fatigue_limit_MPa
-        limit = f"fatigue limit {own.fatigue_limit_MPa:g} MPa"
-        row |= {"limit": f"{100 * share:.3g} % of the {limit}", "over": share > 1}
+        limit = f"the fatigue limit, {own.fatigue_limit_MPa:g} MPa"
+        row |= {"limit": f"{100 * share:.3g} % of {limit}", "over": share > 1}
     return row
 
 

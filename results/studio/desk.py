@@ -9,8 +9,8 @@ from typing import Any, get_args
 from aiohttp import web
 
 from geometry.errors import DesignError
-from geometry.load import design_from
 from pipeline.live import View
+from results.studio.fields import received
 from results.studio.jobs import KINDS, Job, Kind
 from results.studio.results import told
 from results.studio.tab import Tab, Workers
@@ -74,7 +74,7 @@ class Desk:
         if old is not None:
             old.close()
         try:
-            design = design_from(tables)
+            design = received(tables)
         except DesignError as fault:
             await self._send(
                 {"is": "ended", "kind": job.kind, "state": "failed", "text": str(fault)}

@@ -10,6 +10,8 @@ from math import floor, log10
 from typing import Any
 
 from geometry.design import Design
+from geometry.errors import DesignError
+from geometry.load import design_from
 from geometry.schema import UNITS, Location, Node, dotted, node_at
 
 GROUPS: tuple[tuple[str, Location], ...] = (
@@ -28,6 +30,18 @@ SPAN = 0.5
 STEPS = 200
 """A slider has at least so many places."""
 Tables = dict[str, Any]
+
+
+def received(tables: Any) -> Design:
+    """A design from what a browser sent.
+
+    Raises
+    ------
+    DesignError : no tables at all, or as `design_from`.
+    """
+    if not isinstance(tables, dict):
+        raise DesignError("the design", tables, "must be the tables of a design file")
+    return design_from(tables)
 
 
 def form(design: Design) -> list[Tables]:

@@ -66,7 +66,7 @@ class Guard:
                 # the token leaves the address bar and the history at once
                 moved = web.HTTPFound("/", headers=HEADERS)
                 moved.set_cookie(COOKIE, given, httponly=True, samesite="Strict", path="/")
-                return moved
+                raise moved
             return await handler(request)
 
         return check

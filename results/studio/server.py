@@ -15,7 +15,7 @@ from geometry.errors import DesignError
 from geometry.load import LARGEST_BYTES, design_from, tables_from
 from geometry.template import design_text, template
 from results.studio.desk import Desk
-from results.studio.fields import form
+from results.studio.fields import form, received
 from results.studio.guard import HEADERS, Guard
 from results.studio.jobs import SERVED
 from results.studio.looks import looks
@@ -110,7 +110,7 @@ async def _open(request: web.Request) -> web.Response:
         if kind in ("cup", "hat"):
             tables = tables_from(template("hat" if kind == "hat" else "cup").encode(), kind)
         elif request.content_type == "application/json":
-            tables = json.loads(await _body(request, LARGEST_MESSAGE))
+            return _json(_opened(received(await _sent(request))))
         else:
             tables = tables_from(await _body(request, LARGEST_BYTES), "the file")
         return _json(_opened(design_from(tables)))
@@ -121,7 +121,7 @@ async def _open(request: web.Request) -> web.Response:
 async def _text(request: web.Request) -> web.Response:
     """JSON tables as the text of a design file."""
     try:
-        design = design_from(json.loads(await _body(request, LARGEST_MESSAGE)))
+        design = received(await _sent(request))
     except DesignError as fault:
         return _json({"key": fault.key, "text": str(fault)}, status=422)
     return web.Response(text=design_text(design), headers=HEADERS)
@@ -134,6 +134,14 @@ async def _measured(request: web.Request) -> web.Response:
         raise web.HTTPNotFound
     desk.measured = await _body(request, LARGEST_MEASURED)
     return _json({"bytes": len(desk.measured)})
+
+
+async def _sent(request: web.Request) -> Any:
+    """JSON of a design; what is no JSON is no design either."""
+    try:
+        return json.loads(await _body(request, LARGEST_MESSAGE))
+    except (ValueError, RecursionError):
+        return None
 
 
 async def _body(request: web.Request, most: int) -> bytes:

@@ -14,11 +14,11 @@ from typing import Any
 
 from geometry.design import Design
 from geometry.errors import DesignError
-from geometry.load import design_from
 from geometry.sanity import warnings
 from pipeline.bearing_play import BearingPlayDomainError
 from pipeline.live import left_out
 from results.studio.answer import message
+from results.studio.fields import received
 from results.studio.questions import RIM_CASES, VIEWS
 from results.studio.worker import Fault, Worker
 
@@ -37,7 +37,7 @@ class Workers:
 
     @classmethod
     def of_this_machine(cls) -> Workers:
-        return cls(Worker("quick"), Worker("picture", 5), Worker("slow", 10))
+        return cls(Worker("quick"), Worker("picture", 2), Worker("slow", 4))
 
     def start(self) -> None:
         for worker in (self.quick, self.picture, self.slow):
@@ -89,7 +89,7 @@ class Tab:
     async def want(self, number: int, tables: Mapping[str, Any], view: str) -> None:
         """Take a design: refuse it with its key and reason, or set the lanes on it."""
         try:
-            design = design_from(tables)
+            design = received(tables)
             first = message(design, {})
         except (DesignError, BearingPlayDomainError) as fault:
             self._wanted = None

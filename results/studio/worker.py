@@ -38,6 +38,7 @@ class Worker:
     def __init__(self, name: str, niceness: int = 0) -> None:
         self.name, self.niceness = name, niceness
         self._turn = asyncio.Lock()
+        self._asked: set[asyncio.Task[Any]] = set()
         self._process: BaseProcess | None = None
         self._pipe: Connection | None = None
 
@@ -62,20 +63,27 @@ class Worker:
         self._process, self._pipe = process, ours
 
     async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
-        """The answer to a question of `results.studio.questions`, or a Fault."""
+        """The answer to a question of `results.studio.questions`, or a Fault.
+
+        Who stops waiting leaves the question to end by itself: the next one must not get its answer.
+        """
+        turn = asyncio.create_task(self._in_turn(question, tables))
+        self._asked.add(turn)
+        turn.add_done_callback(self._asked.discard)
+        return await asyncio.shield(turn)
+
+    async def _in_turn(self, question: str, tables: Mapping[str, Any]) -> Any:
         async with self._turn:
             if self._process is None or not self._process.is_alive():
                 self.start()
             assert self._pipe is not None
-            reply = asyncio.ensure_future(
-                asyncio.to_thread(_exchange, self._pipe, question, tables)
-            )
-            try:
-                return await asyncio.wait_for(asyncio.shield(reply), SLOWEST_S)
-            except TimeoutError:
-                self.stop()
-                await reply
-                return Fault("", f"the fast model gave no answer within {SLOWEST_S:g} s")
+            reply = asyncio.create_task(asyncio.to_thread(_exchange, self._pipe, question, tables))
+            done, _ = await asyncio.wait({reply}, timeout=SLOWEST_S)
+            if done:
+                return reply.result()
+            self.stop()
+            await reply
+            return Fault("", f"the fast model gave no answer within {SLOWEST_S:g} s")
 
     def stop(self) -> None:
         """End the process at once."""

@@ -52,7 +52,7 @@ function dot(colour) {
 }
 
 const W = 400;
-const H = 150;
+const H = 138;
 const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
 
 // θ(T): two elastic branches, the gap between them, one standard deviation as a band.
@@ -95,7 +95,7 @@ export function chartLine(line, budget, looks, pinned) {
 
 function ticks(top) {
   const decade = 10 ** Math.floor(Math.log10(top));
-  const step = [0.2, 0.5, 1].map((s) => s * decade).find((s) => top / s <= 3) ?? decade;
+  const step = [0.2, 0.5, 1, 2, 5].map((s) => s * decade).find((s) => top / s <= 3);
   return Array.from({ length: Math.floor(top / step) + 1 }, (_, i) => i * step);
 }
 

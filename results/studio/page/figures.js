@@ -19,9 +19,10 @@ export class Figures {
   constructor(root, looks) {
     Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set() });
     this.stiffness = el("section", {});
-    this.peaks = el("section", {});
+    this.work = el("section", { id: "solid" });
+    this.peaks = el("section", { class: "peaks" });
     this.backlash = el("section", {});
-    root.append(this.stiffness, this.peaks, this.backlash);
+    root.append(this.stiffness, this.work, this.peaks, this.backlash);
   }
 
   // A newer answer keeps the older figures, marked, until their own turn comes.
@@ -50,8 +51,7 @@ export class Figures {
 
   draw() {
     if (!this.now) return;
-    this.root.classList.toggle("compared", Boolean(this.pinned));
-    this.root.classList.toggle("solved", Boolean(this.solid));
+    this.root.classList.toggle("narrow", this.narrow);
     const unit = (rows) => rows.find((row) => row.unit)?.unit ?? "";
     this.stiffness.replaceChildren(
       this.heading("Stiffness", unit(this.now.stiffness)),
@@ -68,7 +68,7 @@ export class Figures {
     if (now) {
       this.backlash.append(
         chartBudget(now, this.looks, this.pinned?.budget, this.solidFresh() ? this.solid.budget : null),
-        this.heading("Angle at the output, wave generator locked", "arcsec over N·m"),
+        this.heading("Output angle, wave generator locked", "arcsec over N·m"),
         chartLine(this.now.line, now, this.looks, this.pinned?.line),
       );
     }
@@ -78,9 +78,15 @@ export class Figures {
     return el("h2", {}, text, el("span", { class: "unit" }, unit));
   }
 
+  // Beside other columns, bounds and places stand below their figure.
+  get narrow() {
+    return Boolean(this.solid || this.pinned);
+  }
+
   head(third) {
-    const cells = [el("th", { colspan: 2 }, ""), el("th", {}, "fast model"), el("th", {}, third)];
-    if (this.solid) cells.push(el("th", {}, this.solid.old ? "solid, earlier design" : "solid"));
+    const cells = [el("th", { colspan: 2 }), el("th", {}, "fast model")];
+    if (!this.narrow) cells.push(el("th", {}, third));
+    if (this.solid) cells.push(el("th", {}, this.solid.old ? "solid, of earlier" : "solid"));
     if (this.pinned) cells.push(el("th", {}, "to pinned"));
     return el("thead", {}, el("tr", {}, ...cells));
   }
@@ -88,19 +94,17 @@ export class Figures {
   row(row, part) {
     const busy = row.text !== undefined && this.fresh.has(row.key) ? "" : "stale";
     const side = part === "peaks" ? row.at?.replace("at ", "") : row.bounds;
-    const cells = [
-      el("td", { class: "sym" }, symbol(row.symbol)),
-      el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name),
-      el("td", { class: "value" }, row.text ?? "…"),
-      el("td", { class: "side", title: row.half_pct }, side ?? ""),
-    ];
-    cells[2].dataset.value = row.value ?? "";
+    const value = el("td", { class: "value" }, row.text ?? "…");
+    value.dataset.value = row.value ?? "";
+    const cells = [el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name), value];
+    const below = (cell, text) => text && cell.append(el("br"), el("span", { class: "limit" }, text));
+    if (this.narrow) below(value, side);
+    else cells.push(el("td", { class: "side", title: row.half_pct }, side ?? ""));
+    below(cells.at(this.narrow ? 1 : -1), row.limit);
     if (this.solid) cells.push(this.solidCell(row, part));
     if (this.pinned) cells.push(this.pinnedCell(row, part));
     const line = el("tr", { class: busy, "data-key": row.key }, ...cells);
-    if (!row.limit) return line;
-    line.classList.toggle("over", row.over);
-    cells[3].append(el("br"), el("span", { class: "limit" }, row.limit));
+    line.classList.toggle("over", Boolean(row.over));
     return line;
   }
 

@@ -41,7 +41,8 @@ const measured = new Measured(document.getElementById("measured"), {
   upload: (file) => ask(`measured/${link.tab}`, file, "text/csv"), start: startWork, stop: stopWork, address });
 works.diagnose = measured.work;
 const pins = new Pins({ figures, changed: () => { keep(); figures.draw(); } });
-figures.root.append(el("section", { id: "solid" }, works.solid.button, works.solid.line), pins.list);
+figures.work.append(works.solid.button, works.solid.line);
+figures.root.append(pins.list);
 
 document.getElementById("tools").append(
   el("button", { id: "new-cup", onclick: () => open("open?kind=cup", "") }, "New cup"),
@@ -92,7 +93,9 @@ function adopt({ tables, form: groups }) {
 
 function send() {
   state.number += 1;
-  solidIsOld();
+  whatIsOld();
+  figures.stale();
+  document.getElementById("stage").dataset.number = state.number;
   link.say({ do: "want", number: state.number, tables: state.tables, view: state.view });
 }
 
@@ -104,7 +107,6 @@ function heard(note) {
   if (note.number !== state.number) return;
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
-    if (note.is === "fault") figures.stale();
     stage.working(false);
   }
   if (note.is === "taken") {
@@ -180,7 +182,7 @@ function finished(kind, note, line) {
   if (kind === "solid") {
     figures.solid = note.answer;
     line.textContent = `${note.solved.join("; ")}; ${note.wall_s.toFixed(1)} s`;
-    solidIsOld();
+    whatIsOld();
     figures.draw();
     return;
   }
@@ -188,7 +190,9 @@ function finished(kind, note, line) {
   line.replaceChildren(...shown.map((name) => el("a", { href: address(kind, name), download: `${stem()}-${name}` }, name)));
 }
 
-function solidIsOld() {
-  if (!figures.solid) return;
-  figures.solid.old = differences(works.solid.design, state.tables).length > 0;
+// Answers of long work stay, marked, when the design has moved on.
+function whatIsOld() {
+  const moved = (kind) => works[kind].design && differences(works[kind].design, state.tables).length > 0;
+  if (figures.solid) figures.solid.old = moved("solid");
+  measured.old(moved("diagnose"));
 }

@@ -10,7 +10,7 @@ export class Measured {
   constructor(root, { upload, start, stop, address }) {
     Object.assign(this, { root, upload, address });
     this.work = new Work({ kind: "diagnose", words: "Diagnose again", title: "With the design as it stands now",
-      start, stop, done: (note) => this.show(note) });
+      start, stop, done: (note) => this.show(note), said: (text) => text.replaceAll("measured.csv", this.file?.name ?? "") });
     this.work.button.hidden = true;
     this.name = el("span", { class: "limit" });
     const zone = el("div", { id: "drop", tabindex: 0 },
@@ -37,8 +37,8 @@ export class Measured {
     } catch (error) {
       return this.refuse(`${file.name}: ${error.message}`);
     }
-    this.name.textContent = file.name;
     this.file = file;
+    this.name.textContent = file.name;
     this.work.button.hidden = false;
     this.work.begin();
   }
@@ -48,8 +48,9 @@ export class Measured {
     this.fault.hidden = !text;
   }
 
-  old() {
-    this.findings.classList.add("stale");
+  // The design has moved on since: what stands here is of an earlier one.
+  old(is) {
+    this.findings.classList.toggle("stale", is);
   }
 
   show({ diagnosis: d, files }) {
@@ -57,12 +58,13 @@ export class Measured {
     const list = (title, entries) => (entries.length ? [el("h3", {}, title), el("ul", {}, ...entries.map((line) => el("li", {}, line)))] : []);
     const causes = d.causes.map((c) => el("tr", {}, el("td", {}, c.title), el("td", { class: "value" }, c.magnitude),
       el("td", {}, c.sure), el("td", {}, c.others || "")));
+    const heads = ["Cause", "Magnitude", "How sure", d.causes.some((c) => c.others) ? "Cannot be told from" : ""];
     const keep = files.filter((name) => !name.endsWith(".png"));
     this.findings.replaceChildren(
       el("h2", { id: "verdict" }, d.verdict),
       el("p", {}, d.summary),
       d.causes.length ? el("table", { class: "causes" },
-        el("thead", {}, el("tr", {}, ...["Cause", "Magnitude", "How sure", "Cannot be told from"].map((h) => el("th", {}, h)))),
+        el("thead", {}, el("tr", {}, ...heads.map((h) => el("th", {}, h)))),
         el("tbody", {}, ...causes)) : "",
       ...list("Unexplained", d.unexplained),
       d.gain ? el("p", {}, d.gain) : "",

@@ -3,9 +3,9 @@
 import { el } from "./dom.js";
 
 export class Work {
-  // done(note): it ended well. ready(): the design may be sent. start, stop: to the server.
-  constructor({ kind, words, title, start, stop, done }) {
-    Object.assign(this, { kind, words, start, stop, done, running: false });
+  // start, stop: to the server. done(note): it ended well. said(text): its words, as they are shown.
+  constructor({ kind, words, title, start, stop, done, said = (text) => text }) {
+    Object.assign(this, { kind, words, start, stop, done, said, running: false });
     this.button = el("button", { id: `work-${kind}`, title, onclick: () => (this.running ? this.halt() : this.begin()) }, words);
     this.line = el("span", { class: "progress", role: "status", id: `progress-${kind}` });
   }
@@ -33,7 +33,8 @@ export class Work {
     this.button.textContent = this.words;
     this.button.classList.remove("running");
     this.line.className = note.state === "failed" ? "progress fault" : "progress";
-    this.line.textContent = note.state === "done" ? "" : note.text;
+    this.line.textContent = note.state === "done" ? "" : this.said(note.text);
+    this.line.title = this.line.textContent;
     if (note.state === "done") this.done(note, this.line);
   }
 

@@ -1,0 +1,47 @@
+"""One browser and one studio for all tests of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from browser import chromium
+from studio_page import Page, Server, running, write_design
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+
+@pytest.fixture(scope="module")
+def studio_browser() -> Iterator[Browser]:
+    pytest.importorskip("aiohttp", reason="aiohttp is not installed: pip install '.[studio]'")
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def studio(studio_browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A studio of a cup without holes, so that the fast model leaves nothing out."""
+    with running(write_design(tmp_path_factory.mktemp("studio") / "design.toml")) as server:
+        yield server
+
+
+@pytest.fixture
+def opened(studio: Server, studio_browser: Browser) -> Iterator[Callable[..., Page]]:
+    """Opens tabs; afterwards they are closed, and none may have met an error."""
+    pages: list[Page] = []
+
+    def make(**settings: Any) -> Page:
+        pages.append(Page(studio_browser, studio.url, **settings))
+        return pages[-1]
+
+    yield make
+    for page in pages:
+        page.close()
+    assert [error for page in pages for error in page.errors] == []
+
+
+@pytest.fixture
+def page(opened: Callable[..., Page]) -> Page:
+    return opened()

@@ -1,0 +1,71 @@
+"""A worker process of the page: answers in turn, whoever leaves; a new process for one that ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import tomllib
+from typing import Any
+
+import pytest
+
+from geometry.load import design_from
+from geometry.template import template
+from pipeline.diagnosis.specimens.designs import with_values, without_holes
+from results.studio import worker as rules
+from results.studio.worker import Fault, Worker
+
+CUP = without_holes(design_from(tomllib.loads(template("cup"))))
+
+
+def tables(wall_mm: float) -> dict[str, Any]:
+    design = with_values(CUP, {"flexspline.wall_thickness_mm": wall_mm})
+    return design.model_dump(mode="json", exclude_none=True)
+
+
+def test_who_leaves_takes_nobody_s_answer_along() -> None:
+    async def run() -> list[Any]:
+        worker = Worker("tested")
+        try:
+            expected = await worker.ask("torsion", tables(0.45))
+            left = asyncio.create_task(worker.ask("field wave_generator", tables(0.4)))
+            await asyncio.sleep(0.05)
+            left.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await left
+            return [expected, await worker.ask("torsion", tables(0.45))]
+        finally:
+            worker.stop()
+
+    first, second = asyncio.run(run())
+    assert second == first
+    assert "K_b_Nm_per_rad" in first
+
+
+def test_a_worker_that_ended_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def run() -> list[Any]:
+        worker = Worker("tested")
+        try:
+            found = [await worker.ask("torsion", tables(0.4))]
+            monkeypatch.setattr(rules, "SLOWEST_S", 0.01)  # no solve is that fast
+            found.append(await worker.ask("field wave_generator", tables(0.41)))
+            monkeypatch.undo()
+            found.append(await worker.ask("torsion", tables(0.4)))
+            return found
+        finally:
+            worker.stop()
+
+    before, ended, after = asyncio.run(run())
+    assert isinstance(ended, Fault)
+    assert "no answer" in ended.message
+    assert after == before
+
+
+def test_impossible_designs_come_back_as_faults() -> None:
+    from results.studio.questions import answer
+
+    bad = tables(0.4)
+    bad["flexspline"]["wall_thickness_mm"] = 50.0
+    fault = answer("torsion", bad)
+    assert isinstance(fault, Fault)
+    assert fault.key.startswith("flexspline.")
