@@ -18,7 +18,11 @@ SMALLEST_CHANGE = 1e-4
 GRADING = 3.3
 """At the root's notch edges shrink with this power of the others: the energy that a corner of 250°
 loses falls with the edge there to the power 1.2, quadratic elements elsewhere with the fourth."""
+LARGEST_CHANGE = 1e-3
+"""What is accepted where the next mesh would be too large: thin rims under wide teeth, where every corner
+counts. A tenth of a percent of the thickness is below what anybody can make."""
 MOST_TRIANGLES = 100_000
+"""Some 15 s of one core; the next mesh has four times as many and takes as many minutes."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,8 @@ class EquivalentRing:
     bending_mm : as stiff against a change of curvature; what a plain model should use.
     membrane_mm : as stiff against growing all round.
     torsion_mm : as stiff against torsion about the axis.
-    change : largest relative change of the three over the last refinement. All come from above and
+    change : largest relative change of the three over the last refinement, at most `LARGEST_CHANGE`.
+        All come from above and
         each refinement changes them by a small part of the one before, so it exceeds the error.
     elements : triangles of the finest mesh.
     """
@@ -60,20 +65,20 @@ def equivalent_ring(cell: ToothCell, poissons_ratio: float) -> EquivalentRing:
     """
     mesh = triangulate(cell.outline)
     width = cell.unroll * cell.half_pitch
-    before, part = np.full(3, np.inf), 1.0
-    while True:
-        mesh = _finer(mesh, cell, part * width, part**GRADING * width)
-        model = CellModel(cell, mesh)
-        found = np.array(_thicknesses(model, poissons_ratio))
-        change = float((before / found - 1).max())
-        if change < SMALLEST_CHANGE:
+    found, change, part = np.full(3, np.inf), np.inf, 1.0
+    while change >= SMALLEST_CHANGE:
+        finer = _finer(mesh, cell, part * width, part**GRADING * width)
+        if len(finer.triangles) > MOST_TRIANGLES:
             break
-        if len(mesh.triangles) > MOST_TRIANGLES:
-            raise ToothedRingError(
-                f"the equivalent ring still changes by {change:.1e} on {len(mesh.triangles)} "
-                f"triangles, wanted {SMALLEST_CHANGE:.0e}"
-            )
-        before, part = found, part / 2
+        mesh, before = finer, found
+        found = np.array(_thicknesses(CellModel(cell, mesh), poissons_ratio))
+        change, part = float((before / found - 1).max()), part / 2
+    if not change < LARGEST_CHANGE:
+        raise ToothedRingError(
+            f"the equivalent ring still changes by {change:.1e} on {len(mesh.triangles)} "
+            f"triangles, wanted {LARGEST_CHANGE:.0e}: ring_thickness_mm may be too small a part of "
+            'module_mm; teeth = "none" works'
+        )
     bending, membrane, torsion = found.tolist()
     rim = cell.root - cell.inner
     return EquivalentRing(rim, bending, membrane, torsion, change, len(mesh.triangles))

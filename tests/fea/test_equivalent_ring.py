@@ -8,8 +8,14 @@ from pathlib import Path
 import pytest
 from toothed import toothed
 
-from fea.toothed_ring import plain
-from fea.toothed_ring.equivalent import SMALLEST_CHANGE, EquivalentRing, equivalent_ring
+from fea.toothed_ring import equivalent, plain
+from fea.toothed_ring.cell import ToothedRingError
+from fea.toothed_ring.equivalent import (
+    LARGEST_CHANGE,
+    SMALLEST_CHANGE,
+    EquivalentRing,
+    equivalent_ring,
+)
 from geometry.tooth import ToothCell, tooth_cell
 
 RIM, HALF_PITCH, INNER = 0.55, pi / 200, 19.2
@@ -94,3 +100,26 @@ def test_thin_ring_bends_as_a_plate() -> None:
     t = 1e-4 * INNER
     # the closed form itself differs from t³/12R by the order of (t/R)²
     assert plain.bending(INNER, INNER + t) == pytest.approx(t**3 / 12 / (INNER + t / 2), rel=1e-7)
+
+
+def test_a_thin_rim_under_wide_teeth_is_answered_without_a_huge_mesh(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Rim 0.06 of the pitch: each halving gains little, and the last would take minutes.
+
+    The mesh is stopped earlier here than in earnest, to save the time.
+    """
+    monkeypatch.setattr(equivalent, "MOST_TRIANGLES", 20_000)
+    inner, rim, half_pitch = 97.13, 1.16, pi / 30
+    root, edge = inner + rim, 0.7 * half_pitch
+    cell = ToothCell(inner, half_pitch, ((root + 16.0, 0.3 * half_pitch), (root, edge)))
+    found = equivalent_ring(cell, 0.3)
+    assert found.elements <= 20_000
+    assert SMALLEST_CHANGE < found.change < LARGEST_CHANGE
+    assert rim < found.bending_mm < rim + 16.0
+
+
+def test_a_ring_that_does_not_settle_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(equivalent, "MOST_TRIANGLES", 200)
+    with pytest.raises(ToothedRingError, match=r"still changes by .* wanted 1e-03"):
+        equivalent_ring(block(0.2, 0.5), 0.3)
