@@ -9,7 +9,6 @@ import numpy as np
 
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.fleet import unit_shares
 from pipeline.diagnosis.model import ExtendedModel
 from pipeline.diagnosis.record import Sweep
 from pipeline.diagnosis.result import NamedCause
@@ -35,7 +34,7 @@ def named_causes(explained: Explained) -> tuple[NamedCause, ...]:
             other = {"friction_hysteresis": "rate_dependence"}.get(c, "friction_hysteresis")
             rivals = tuple(dict.fromkeys((*rivals, other)))
         found.append(NamedCause(
-            c, causes()[c].title, posterior.get(c, 0.0), rivals, magnitude[c], std[c],
+            c, causes()[c].title_at(magnitude[c]), posterior.get(c, 0.0), rivals, magnitude[c], std[c],
             causes()[c].unit, weighed.evidence.get(c, 0.0), weighed.rms[c],
             _own_units(explained, c),
         ))  # fmt: skip
@@ -54,10 +53,8 @@ def named_causes(explained: Explained) -> tuple[NamedCause, ...]:
 
 def _own_units(explained: Explained, cause: str) -> tuple[str, ...]:
     """Names of the units that alone show a cause."""
-    names = explained.prepared.sweep.units
-    if len(names) < 2:
-        return ()
-    return tuple(names[u] for u in unit_shares(explained.weighed, cause).own)
+    share = explained.shares.get(cause)
+    return tuple(explained.prepared.sweep.units[u] for u in share.own) if share else ()
 
 
 def _probabilities(weighed: Weighed) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -27,6 +27,20 @@ class NamedCause:
     rms_arcsec: float
     own_units: tuple[str, ...] = ()
     """Units under test that alone show it; empty: all do."""
+
+    @property
+    def is_surplus(self) -> bool:
+        """Whether the simulation has too much of it, not too little: compliance that the gear lacks."""
+        return self.id == "series_compliance" and self.magnitude < 0
+
+
+def left_out(found: Sequence[NamedCause], said: Callable[[NamedCause], str]) -> str:
+    """What the simulation leaves out and where it is too soft; `said` words one cause."""
+    missing = [said(c) for c in found if not c.is_surplus]
+    surplus = [said(c) for c in found if c.is_surplus]
+    sentences = [f"The simulation leaves out: {'; '.join(missing)}."] if missing else []
+    sentences += [f"The simulation is too soft: {'; '.join(surplus)}."] if surplus else []
+    return " ".join(sentences)
 
 
 @dataclass(frozen=True)

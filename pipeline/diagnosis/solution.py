@@ -103,16 +103,20 @@ def calibrated_residual(race: Race) -> np.ndarray:
     """(n,) measured less the simulation alone, calibrated on the race's rows as far as its doubt goes.
 
     Stiffness and gap, common and each unit's own, move by no more than `ALLOWED` of their stated
-    standard deviations; zeros are free, and fitted on the race's rows.
+    standard deviations, and the best within those limits is taken; zeros are free.
     """
-    columns, prior = race.columns.base, race.columns.base_prior
-    mean = fitted(race, ()).mean.copy()
+    from scipy.optimize import lsq_linear
+
     history = race.columns.rig.history
     units = len(history.unit_slices)
     limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
-    limit = ALLOWED * prior[limited]
-    mean[limited] = np.clip(mean[limited], -limit, limit)
-    return less_zero(race.target - columns[:, limited] @ mean[limited], race.kept, history)
+    limit = np.full(len(race.base_right), np.inf)
+    limit[limited] = ALLOWED * race.columns.base_prior[limited]
+    # the fit's normal equations G x = b as least squares: G = L Lᵀ, so |Lᵀx − L⁻¹b|² is its misfit
+    lower = np.linalg.cholesky(race.base_gram)
+    mean = lsq_linear(lower.T, np.linalg.solve(lower, race.base_right), (-limit, limit)).x
+    seen = race.columns.base[:, limited] @ mean[limited]
+    return less_zero(race.target - seen, race.kept, history)
 
 
 def less_zero(values: np.ndarray, rows: np.ndarray, history: History) -> np.ndarray:

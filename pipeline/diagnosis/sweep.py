@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Cause, Rig
 from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from pipeline.diagnosis.fleet import UnitShare, unit_shares
 from pipeline.diagnosis.noise import (
     Noise,
     crossing_band_Nm,
@@ -85,6 +87,13 @@ class Explained:
     crossing: Crossing | None
     offset_Nm: float
     offset_nats: float
+
+    @cached_property
+    def shares(self) -> dict[str, UnitShare]:
+        """How much of each named cause each unit shows, by cause id; none for a single unit."""
+        if len(self.prepared.sweep.units) < 2:
+            return {}
+        return {c: unit_shares(self.weighed, c) for c in self.weighed.named}
 
 
 def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Prepared:

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from math import floor, hypot, log10
 
 from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.fleet import unit_shares
 from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest
 from pipeline.diagnosis.model import ExtendedModel
 from pipeline.diagnosis.naming import model_of
 from pipeline.diagnosis.next_measurement import to_tell_apart
-from pipeline.diagnosis.result import NamedCause, NextMeasurement, Unexplained, Verdict
+from pipeline.diagnosis.result import NamedCause, NextMeasurement, Unexplained, Verdict, left_out
 from pipeline.diagnosis.search import Candidate
 from pipeline.diagnosis.solution import solved
 from pipeline.diagnosis.sweep import Explained
@@ -113,7 +112,7 @@ def summary_of(
         case "consistent":
             return "The measurement agrees with the simulation within its stated uncertainty and the noise."
         case "named":
-            return f"The simulation leaves out: {listed}."
+            return left_out(found, _said)
         case "ambiguous":
             rivals = "; ".join(
                 f"{c.title} cannot be told from {' or '.join(causes()[r].title for r in c.alternatives)}"
@@ -142,11 +141,8 @@ def _figures(value: float, std: float) -> str:
 def _fleet_notes(explained: Explained) -> list[str]:
     """What the units have in common, and how they differ."""
     names = explained.prepared.sweep.units
-    if len(names) < 2:
-        return []
     notes = []
-    for cause in explained.weighed.named:
-        shares = unit_shares(explained.weighed, cause)
+    for cause, shares in explained.shares.items():
         title = causes()[cause].title
         if not shares.differ:
             notes.append(f"{title}: common to all {len(names)} units")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, log10
 
 from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.result import Gain, NamedCause, Outcome
+from pipeline.diagnosis.result import Gain, NamedCause, Outcome, left_out
 from results.quantities import grouped
 
 CHANNELS = {
@@ -108,8 +108,7 @@ def sentence(outcome: Outcome) -> str:
     """The verdict in one sentence; magnitudes with as many digits as their deviation bears."""
     if outcome.verdict != "named":
         return outcome.summary
-    listed = "; ".join(f"{c.title}, {magnitude_words(c)}" for c in outcome.causes)
-    return f"The simulation leaves out {listed}."
+    return left_out(outcome.causes, lambda c: f"{c.title}, {magnitude_words(c)}")
 
 
 def calibrated_words(gain: Gain) -> str:

@@ -99,6 +99,10 @@ class Cause(ABC):
     reveals: ClassVar[str]
     """The measurement that shows this cause most plainly."""
 
+    def title_at(self, magnitude: float) -> str:
+        """What a person reads where its sign changes what it is."""
+        return self.title
+
     @abstractmethod
     def shapes(self, rig: Rig) -> list[Shape]:
         """Shapes worth trying on a rig's record; none where it lacks the channel."""

@@ -9,6 +9,8 @@ import numpy as np
 from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
 from pipeline.diagnosis.record import History
 
+STIFFER = "gear stiffer than simulated"
+
 
 class SeriesCompliance(Cause):
     """A spring in series that the simulation does not have: twist c·T with c [arcsec per N·m]."""
@@ -20,6 +22,9 @@ class SeriesCompliance(Cause):
     shape_doubt = 0.003
     vary = "input_angle_deg"
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
+
+    def title_at(self, magnitude: float) -> str:
+        return self.title if magnitude >= 0 else STIFFER
 
     def shapes(self, rig: Rig) -> list[Shape]:
         return [{}]

@@ -206,7 +206,7 @@ def _decided(
         magnitude, std = _magnitude(best.best, i, rig, prediction)
         term = best.best.terms[i]
         found.append(NamedCause(
-            cause, causes()[cause].title, float(having / weights.sum()), tuple(alternatives),
+            cause, causes()[cause].title_at(magnitude), float(having / weights.sum()), tuple(alternatives),
             magnitude, std, causes()[cause].unit, best.score - without,
             float(np.sqrt(np.mean((term.column * best.best.mean[i])[term.column != 0] ** 2))),
             () if best.own is None else (names[best.own],),

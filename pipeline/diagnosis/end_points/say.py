@@ -8,7 +8,7 @@ from math import isfinite
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.end_points.envelope import Envelope
 from pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from pipeline.diagnosis.result import NamedCause, Verdict
+from pipeline.diagnosis.result import NamedCause, Verdict, left_out
 
 LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""
@@ -25,11 +25,7 @@ def summary_of(
         case "consistent":
             return "Every unit's total agrees with the simulation within its stated uncertainty."
         case "named":
-            listed = "; ".join(
-                f"{c.title}, {c.magnitude:.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
-                for c in found
-            )  # fmt: skip
-            return f"The simulation leaves out: {listed}."
+            return left_out(found, _said)
         case "unknown":
             return "The totals depend on torque in a way that no known cause explains."
         case _:
@@ -46,6 +42,10 @@ def summary_of(
             )
             why = "" if several else ", because each unit was measured at one torque"
             return f"{where}, and these end points cannot tell why: {rival}{why}."
+
+
+def _said(c: NamedCause) -> str:
+    return f"{c.title}, {c.magnitude:.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
 
 
 def notes_of(analysis: EndPointAnalysis, several: bool) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.fleet import UnitShare, unit_shares
+from pipeline.diagnosis.fleet import UnitShare
 from results.diagnosis.words import capital
 from results.figures.diagnosis.panels import DPI
 from results.figures.diagnosis.seen import Seen, plain_names
@@ -18,13 +18,9 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
 
 def shared_causes(shown: Seen) -> dict[str, UnitShare]:
     """Shares of each cause that the race named, by its title; none for a single unit."""
-    if len(shown.explained.prepared.sweep.units) < 2:
-        return {}
-    weighed = shown.explained.weighed
-    named = [c for c in shown.diagnosis.outcome.causes if c.id in weighed.named]
-    return {
-        capital(c.title).partition(" (")[0]: unit_shares(weighed, c.id) for c in named[:MOST_CAUSES]
-    }
+    shares = shown.explained.shares
+    named = [c for c in shown.diagnosis.outcome.causes if c.id in shares]
+    return {capital(c.title).partition(" (")[0]: shares[c.id] for c in named[:MOST_CAUSES]}
 
 
 def write_units(path: Path, shown: Seen, shares: dict[str, UnitShare]) -> None:

@@ -1,0 +1,83 @@
+"""What calibrating stiffness and gap alone can do, and how a gear stiffer than simulated is worded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from histories import LARGEST, PREDICTION
+from histories import sweep as swept
+
+from pipeline.diagnosis.columns import columns_of
+from pipeline.diagnosis.effects import causes
+from pipeline.diagnosis.effects.cause import Rig
+from pipeline.diagnosis.noise import Noise
+from pipeline.diagnosis.result import NamedCause, left_out
+from pipeline.diagnosis.solution import ALLOWED, calibrated_residual, less_zero
+from pipeline.diagnosis.terms import Race, race
+
+SIGMA = 0.5
+
+
+def raced(compliance: float, gap: float) -> Race:
+    """A record that lacks nothing but so many standard deviations of stiffness and gap."""
+    history = swept(cycles=2)
+    columns = columns_of(
+        Rig(PREDICTION, history), {"clearance_offset": causes()["clearance_offset"]}
+    )
+    target = columns.base[:, 1:3] @ (np.array([compliance, gap]) * columns.base_prior[1:3])
+    kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
+    return race(columns, target, kept, Noise(SIGMA**2, 0.0, 0.5))
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def test_within_its_doubt_the_calibration_takes_all_away() -> None:
+    now = raced(1.0, -1.0)
+    before = rms(less_zero(now.target, now.kept, now.columns.rig.history)[now.kept])
+    # the prior pulls the calibration back by what the noise lets it: far below a tenth
+    assert rms(calibrated_residual(now)[now.kept]) < 0.1 * before
+
+
+@pytest.mark.parametrize(("compliance", "gap"), [(8.0, -8.0), (-8.0, 8.0), (8.0, 1.0), (-1.0, 8.0)])
+def test_no_other_calibration_within_its_limits_is_better(compliance: float, gap: float) -> None:
+    """Against a fine grid of both; stiffness and gap look alike, so limits one by one are not the best."""
+    now = raced(compliance, gap)
+    history, base, prior = now.columns.rig.history, now.columns.base, now.columns.base_prior
+    ends = np.linspace(-ALLOWED, ALLOWED, 41)
+    tried = [
+        rms(
+            less_zero(
+                now.target - base[:, 1:3] @ (np.array([c, g]) * prior[1:3]), now.kept, history
+            )[now.kept]
+        )
+        for c in ends
+        for g in ends
+    ]
+    # the prior counts against each calibration too, as 4 of some thousand squares at the limit
+    assert rms(calibrated_residual(now)[now.kept]) <= min(tried) * 1.01
+
+
+def named(cause: str, magnitude: float) -> NamedCause:
+    title = causes()[cause].title_at(magnitude)
+    return NamedCause(cause, title, 1.0, (), magnitude, 0.5, "%", 20.0, 3.0)
+
+
+def test_a_stiffer_gear_is_no_part_left_out() -> None:
+    soft, stiff = named("series_compliance", 12.0), named("series_compliance", -36.8)
+    friction = replace(soft, id="friction_hysteresis", title="friction")
+
+    def said(*found: NamedCause) -> str:
+        return left_out(found, lambda c: f"{c.title}, {c.magnitude:g} %")
+
+    assert said(soft) == (
+        "The simulation leaves out: elastic part left out of the simulation, 12 %."
+    )
+    assert said(stiff) == "The simulation is too soft: gear stiffer than simulated, -36.8 %."
+    assert said(stiff, friction) == (
+        "The simulation leaves out: friction, 12 %. "
+        "The simulation is too soft: gear stiffer than simulated, -36.8 %."
+    )
