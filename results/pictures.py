@@ -23,7 +23,7 @@ ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 DRAWING = 3
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
-TURNING = 1
+TURNING = 2
 """The same of the 3-D views."""
 
 

@@ -96,13 +96,14 @@ def turning(name: str, drawn: Drawn, said: Said) -> bytes:
             "at": _rounded(said.mark.at_mm),
             "normal": _rounded(normals[nearest]),
         },
+        "ramp": _ramp(),
         "camera": camera,
         "scene": base64.b64encode(zipped(window(name, actors, camera), arrays)).decode(),
     }
     return json.dumps(view).encode()
 
 
-def ramp() -> list[str]:
+def _ramp() -> list[str]:
     """Colours of the scale from 0 up, evenly spaced, as CSS has them."""
     return ["#{:02x}{:02x}{:02x}".format(*c[:3]) for c in colour_table()[:: 255 // 15]]
 

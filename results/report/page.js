@@ -1,5 +1,5 @@
 // Turns the report's 3-D views. Scenes and their words are data in the page; vtk.js draws them.
-const { views, ramp } = JSON.parse(document.getElementById("views").textContent);
+const views = JSON.parse(document.getElementById("views").textContent);
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
 function hasWebGL() {
@@ -32,7 +32,7 @@ class Turntable {
   }
 
   paintScale() {
-    this.element.querySelector(".ramp").style.background = `linear-gradient(to top, ${ramp.join()})`;
+    this.element.querySelector(".ramp").style.background = `linear-gradient(to top, ${views[this.name].ramp.join()})`;
     for (const tick of this.element.querySelectorAll(".tick")) {
       tick.style.bottom = `${100 * Number(tick.dataset.at)}%`;
     }

@@ -78,10 +78,7 @@ def page_of(
         {n: json.loads(v) for n, v in views.items()} if views and viewer else {}
     )
     driver, style = _file(SCRIPT), _file(STYLE)
-    shown = {
-        "views": {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()},
-        "ramp": _ramp() if found else [],
-    }
+    shown = {n: {k: v[k] for k in ("camera", "mark", "ramp")} for n, v in found.items()}
     text = (
         _environment()
         .get_template(TEMPLATE)
@@ -125,12 +122,6 @@ def _viewer() -> str:
     for unwanted, instead in _UNWANTED:
         script = unwanted.sub(instead, script)
     return script
-
-
-def _ramp() -> list[str]:
-    from results.renders.turntable import ramp
-
-    return ramp()
 
 
 def _file(name: str) -> str:
