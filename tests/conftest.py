@@ -9,6 +9,7 @@ import pytest
 from validation_page import TOPICS, Row, has_case, markdown
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
+WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 
@@ -19,6 +20,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help=f"write {PAGE.name} from what the tests find",
     )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """A page is written by the process that ran the tests: one, whatever `-n` says."""
+    if any(config.getoption(name, default=False) for name in WRITERS):
+        config.option.numprocesses = 0
 
 
 def pytest_configure(config: pytest.Config) -> None:
