@@ -6,28 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
+from example_cup import CUP
 
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
 from fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
-from geometry.design import Cup
 from geometry.meridian import cup_meridian
 from geometry.outline import Meridian, Segment
-
-CUP = Cup(
-    kind="cup",
-    inner_diameter_mm=38.4,
-    wall_thickness_mm=0.4,
-    ring_thickness_mm=0.55,
-    length_mm=30.0,
-    ring_width_mm=8.0,
-    diaphragm_thickness_mm=0.6,
-    boss_diameter_mm=18.0,
-    boss_thickness_mm=3.0,
-    bore_diameter_mm=8.0,
-    inner_fillet_mm=1.0,
-    outer_fillet_mm=1.0,
-)
 
 
 def angles(points, triangles):

@@ -7,30 +7,15 @@ from math import pi
 import numpy as np
 import pytest
 from axisymmetric_shapes import annular_plate, tube
+from example_cup import CUP
 
 from fea.axisymmetric.peak import StressError
 from fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from fea.types import NMM_PER_NM, Elastic
-from geometry.design import Cup
 from geometry.meridian import cup_meridian
 from geometry.outline import Meridian, Segment
 
 STEEL = Elastic(206e3, 0.3)
-CUP = Cup(
-    kind="cup",
-    inner_diameter_mm=38.4,
-    wall_thickness_mm=0.4,
-    ring_thickness_mm=0.55,
-    length_mm=30.0,
-    ring_width_mm=8.0,
-    diaphragm_thickness_mm=0.6,
-    boss_diameter_mm=18.0,
-    boss_thickness_mm=3.0,
-    bore_diameter_mm=8.0,
-    inner_fillet_mm=1.0,
-    outer_fillet_mm=1.0,
-)
-"""The example design XB1-40 without its bolt holes."""
 
 
 def test_coulomb_stress_of_a_tube(record):

@@ -1,0 +1,15 @@
+"""The example design XB1-40 without its bolt holes: a body of revolution."""
+
+from pathlib import Path
+
+from geometry.design import Cup
+from geometry.load import load_design
+
+
+def _revolved() -> Cup:
+    cup = load_design(Path(__file__).parents[1] / "examples" / "xb1-40.toml").flexspline
+    assert isinstance(cup, Cup)
+    return cup.model_copy(update={"bolt_count": 0})
+
+
+CUP = _revolved()
