@@ -1,6 +1,7 @@
 """One design of a study: its figures by the fast model, or why there are none.
 
-The fast model is the axisymmetric one of the same meridian: bolt holes and keyway are left out. K is
+The fast model is the axisymmetric one of the same meridian: bolt holes and keyway are left out, but for a
+factor on K_b and K_e where a study gives one (`pipeline.study.holes`). K is
 proportional to Young's modulus, so parts are solved for 1 GPa and kept: a design that differs in a
 clearance, the torque or the modulus costs nothing.
 """
@@ -11,6 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 from fea.axisymmetric.contact import contact_stiffness
@@ -32,6 +34,7 @@ from pipeline.progress import Progress
 from pipeline.rim import wave_generator_amplitude
 from pipeline.storage import cache_folder
 from pipeline.study.figures import SIZES, Solve
+from pipeline.study.holes import Holes, with_holes
 from pipeline.study.mass import part_mass_g
 
 TORSION_TOLERANCE = 2e-3
@@ -51,6 +54,7 @@ class Task:
     tables: Mapping[str, Any]
     values: Mapping[str, float]
     solves: tuple[Solve, ...]
+    holes: Holes = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -66,14 +70,17 @@ def evaluate(task: Task) -> Outcome:
     """Build and solve one design; only our own errors become a reason."""
     began = time.perf_counter()
     try:
-        figures = figures_of(with_values(design_from(task.tables), task.values), task.solves)
+        design = with_values(design_from(task.tables), task.values)
+        figures = figures_of(design, task.solves, task.holes)
     except OUR_ERRORS as fault:
         return Outcome(reason=str(fault), seconds=time.perf_counter() - began)
     return Outcome(figures, seconds=time.perf_counter() - began)
 
 
-def figures_of(design: Design, solves: tuple[Solve, ...]) -> dict[str, float]:
-    """All figures that the solves give, and the sizes.
+def figures_of(
+    design: Design, solves: tuple[Solve, ...], holes: Holes = MappingProxyType({})
+) -> dict[str, float]:
+    """All figures that the solves give, and the sizes; K_b and K_e corrected for `holes`.
 
     Raises
     ------
@@ -104,12 +111,22 @@ def figures_of(design: Design, solves: tuple[Solve, ...]) -> dict[str, float]:
         found |= _stiffness(
             "K_e", _torsion(plain.shaft, shaft.poissons_ratio), shaft.youngs_modulus_GPa
         )
+        found = with_holes(found, design, holes)
         found |= _sum(design, found["K_b_lobes_Nm_per_rad" if lobed else "K_b_Nm_per_rad"], found)
     sizes = (
         part_mass_g(design, "flexspline"), design.flexspline.length_mm,
         part_mass_g(design, "shaft"), design.shaft.length,
     )  # fmt: skip
     return found | dict(zip(SIZES, sizes, strict=True))
+
+
+def revolved_torsion(design: Design, name: str) -> tuple[float, float, float]:
+    """K and its bounds [N·m/rad] of a part without its holes."""
+    plain = without_holes(with_equivalent_ring(design))
+    part = plain.shaft if name == "shaft" else plain.flexspline
+    own = plain.shaft_material if name == "shaft" else plain.material.flexspline
+    K, low, high = (k * own.youngs_modulus_GPa for k in _torsion(part, own.poissons_ratio))
+    return K, low, high
 
 
 def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, float]:

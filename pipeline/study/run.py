@@ -4,33 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 from pipeline.study.cluster import Hands
+from pipeline.study.database import StorageError, open_ledger
 from pipeline.study.drive import Progress, Source, carry_out, is_complete
-from pipeline.study.evaluate import Outcome, Task, evaluate
+from pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
 from pipeline.study.figures import USUAL
+from pipeline.study.holes import Factor, Holes, holes_of
 from pipeline.study.load import Study
 from pipeline.study.plan import Sobol, grid
 from pipeline.study.result import StudyResult
 from pipeline.study.samplers import sampler_of
 from pipeline.study.scatter import Scatter, scatter_of
 from pipeline.study.source import Planned, Sampled, solves_of, study_name
-from pipeline.study.store import Ledger, LedgerError, Row, StorageError, open_ledger
+from pipeline.study.store import Ledger, LedgerError, Row
 from pipeline.study.tolerance import Scattered, outputs_of, scattered
 from pipeline.study.verify import verify
 
+HOLES_NOTE = "holes"
 
-def source_of(study: Study) -> Source:
-    """Where a study's designs come from."""
+
+def source_of(study: Study, holes: Holes = MappingProxyType({})) -> Source:
+    """Where a study's designs come from, and what corrects their K for holes."""
     if study.file.run.method == "tolerance":
-        return scattered(study)
+        return scattered(study, holes)
     solves = solves_of(study, USUAL)
     if study.file.run.method == "optimize":
-        return Sampled(study, solves)
-    return Planned(study, solves, grid(study) if study.file.run.method == "grid" else Sobol(study))
+        return Sampled(study, solves, holes=holes)
+    plan = grid(study) if study.file.run.method == "grid" else Sobol(study)
+    return Planned(study, solves, plan, holes=holes)
+
+
+def nominal_holes(study: Study, ledger: Ledger, say: Callable[[str], None]) -> Holes:
+    """What bolt holes and keyway do to the K of the design that the study begins with.
+
+    Kept with the study's trials: every row has the same factors, whoever makes it and when.
+    """
+    stored = ledger.notes().get(HOLES_NOTE)
+    if stored is None:
+        found = holes_of(study.design, revolved_torsion, say)
+        stored = ledger.notes().get(HOLES_NOTE)  # another process may have been faster
+        if stored is None:
+            stored = {name: asdict(factor) for name, factor in found.items()}
+            ledger.note(HOLES_NOTE, stored)
+    return {name: Factor(**factor) for name, factor in stored.items()}
 
 
 def ledger_of(study: Study, folder: Path) -> Ledger:
@@ -62,6 +83,7 @@ def run_study(
     watch: Callable[[Progress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
     say: Callable[[str], None] = lambda line: None,
+    holes: Holes = MappingProxyType({}),
 ) -> StudyResult:
     """Evaluate what is not yet evaluated, verify the best; `hands` opens only where there is work.
 
@@ -69,7 +91,7 @@ def run_study(
     ------
     ComputationError : the cluster went away. Designs that fail are rows.
     """
-    source = source_of(study)
+    source = source_of(study, holes)
     with ExitStack() as stack:
 
         @cache

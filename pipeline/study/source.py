@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,10 @@ import numpy as np
 
 from pipeline.study.evaluate import Outcome, Task
 from pipeline.study.figures import Solve, needed
+from pipeline.study.holes import Holes
 from pipeline.study.load import Study
 from pipeline.study.plan import Plan, from_unit, linked
-from pipeline.study.store import CLAIM, Claim, Job, Ledger
+from pipeline.study.store import CLAIM, Job, Ledger
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
@@ -33,6 +34,7 @@ class _Asked:
 
     study: Study
     solves: tuple[Solve, ...]
+    holes: Holes = field(default_factory=dict, kw_only=True)
 
     @cached_property
     def _tables(self) -> dict[str, Any]:
@@ -44,7 +46,7 @@ class _Asked:
         return distributions(self.study)
 
     def task(self, values: Mapping[str, float]) -> Task:
-        return Task(self._tables, linked(self.study, values), self.solves)
+        return Task(self._tables, linked(self.study, values), self.solves, self.holes)
 
     def objectives(self, outcome: Outcome) -> list[float] | None:
         if outcome.reason:
@@ -86,14 +88,26 @@ class Sampled(_Asked):
         return 0  # a design chosen later knows more
 
     def claim(self, ledger: Ledger, slot: int) -> Job | None:
+        return self._suggested(ledger, slot, 0)
+
+    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+        if set(before.params) == set(self.over):
+            return super().again(ledger, slot, attempt, before)
+        return self._suggested(ledger, slot, attempt)  # its process died before it had values
+
+    def _suggested(self, ledger: Ledger, slot: int, attempt: int) -> Job | None:
+        """The slot is taken first, in one transaction, and then given values: two processes cannot
+        both have it."""
         had = [t.params for t in ledger.all() if CLAIM in t.user_attrs]
-        for _ in range(ASKED_AGAIN):
-            trial = ledger.trials.ask(fixed_distributions=dict(self.over))
-            if trial.params not in had:
-                trial.set_user_attr(CLAIM, asdict(Claim(slot, 0, ledger.owner)))
-                return Job(trial._trial_id, trial.number, slot, trial.params)
-            ledger.tell(trial.number, None)
-        return ledger.create(slot, 0, self._unseen(slot, had), self.over)
+        for further in range(ASKED_AGAIN):
+            taken = ledger.create(slot, attempt + further, {}, {})
+            if taken is None:
+                return None
+            job = ledger.suggested(taken, self.over)
+            if job.values not in had:
+                return job
+            ledger.tell(job.number, None)
+        return ledger.create(slot, attempt + ASKED_AGAIN, self._unseen(slot, had), self.over)
 
     def _unseen(self, slot: int, had: list[dict[str, Any]]) -> dict[str, float]:
         """A random design that the study has not had; any, where its lists leave none."""
@@ -141,6 +155,7 @@ def study_name(study: Study) -> str:
     told: dict[str, Any] = {
         "design": study.design.model_dump(mode="json"),
         "study": file,
+        "holes": "by the nominal design's factor",
         "method": run.method,
         "seed": run.seed,
     }

@@ -12,18 +12,17 @@ from __future__ import annotations
 import os
 import socket
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from geometry.errors import ComputationError, DesignError, one_line
+from geometry.errors import ComputationError, one_line
 from pipeline.study.evaluate import Outcome
 
 if TYPE_CHECKING:
     from optuna import Study as Trials
     from optuna.distributions import BaseDistribution
-    from optuna.samplers import BaseSampler
     from optuna.storages import BaseStorage
     from optuna.trial import FrozenTrial
 
@@ -32,9 +31,6 @@ BEAT_S = 10.0
 """How often a process says that it lives."""
 SILENT_S = 60.0
 """A process of another machine that said nothing for so long is gone."""
-LOCK_S = 60
-"""How long to wait for another process that writes to the same SQLite file."""
-OPENINGS = 6
 
 
 class LedgerError(ComputationError):
@@ -56,10 +52,10 @@ def storage_faults() -> Iterator[None]:
     try:
         yield
     except (SQLAlchemyError, StorageInternalError) as fault:
-        raise LedgerError(_said(fault)) from fault
+        raise LedgerError(said(fault)) from fault
 
 
-def _said(fault: BaseException) -> str:
+def said(fault: BaseException) -> str:
     """The database's own words, without the statement and its values."""
     while isinstance(fault.__cause__, Exception):
         fault = fault.__cause__
@@ -162,6 +158,7 @@ class Ledger:
         values = {key: float(trial._suggest(key, span)) for key, span in over.items()}
         return replace(job, values=values)
 
+    @storage_faults()
     def finish(self, job: Job, outcome: Outcome, values: list[float] | None) -> None:
         """Store the row, then close the trial; a stop between the two loses nothing."""
         self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(outcome))
@@ -178,18 +175,26 @@ class Ledger:
             self.trials.tell(number, values, state=state, skip_if_finished=True)
 
     @storage_faults()
-    def beat(self) -> None:
-        """Say that this process lives, for those on other machines."""
-        self.trials.set_user_attr(f"beat {self.owner}", time.time())
+    def notes(self) -> dict[str, Any]:
+        """What is stored beside the trials, by name."""
+        return dict(self.trials.user_attrs)
 
     @storage_faults()
+    def note(self, name: str, value: Any) -> None:
+        """Store something beside the trials: numbers, texts, lists and tables of them."""
+        self.trials.set_user_attr(name, value)
+
+    def beat(self) -> None:
+        """Say that this process lives, for those on other machines."""
+        self.note(f"beat {self.owner}", time.time())
+
     def gone(self, trial: FrozenTrial) -> bool:
         """Whether the process that claimed a trial is no more."""
         owner = trial.user_attrs[CLAIM]["owner"]
         host, pid, born = owner.rsplit("/", 2)
         if host == socket.gethostname():
             return not _lives(int(pid), born)
-        beat = self.trials.user_attrs.get(f"beat {owner}", 0.0)
+        beat = self.notes().get(f"beat {owner}", 0.0)
         return bool(time.time() - beat > SILENT_S)
 
 
@@ -209,45 +214,3 @@ def _lives(pid: int, born: str) -> bool:
         return alive and f"{process.create_time():.0f}" == born
     except psutil.NoSuchProcess:
         return False
-
-
-def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSampler) -> Ledger:
-    """The study of that name in a database, made if it is not there.
-
-    Raises
-    ------
-    StorageError : the database cannot be opened.
-    """
-    import optuna
-    from optuna.exceptions import StorageInternalError
-    from optuna.storages import RDBStorage
-    from sqlalchemy.exc import ArgumentError, SQLAlchemyError
-
-    optuna.logging.set_verbosity(optuna.logging.ERROR)
-    args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else {}
-    for attempt in range(OPENINGS):
-        try:
-            storage = RDBStorage(url, engine_kwargs=args)
-            trials = optuna.create_study(
-                storage=storage,
-                study_name=name,
-                directions=list(directions),  # type: ignore[arg-type]
-                sampler=sampler,
-                load_if_exists=True,
-            )
-            return Ledger(trials, storage, this_process())
-        except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
-            # two processes that make the tables at once: the second finds them on its next try
-            again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)
-            if attempt == OPENINGS - 1 or not again:
-                raise StorageError(url, _said(fault)) from fault
-            time.sleep(0.5 * (attempt + 1))
-    raise AssertionError("the last attempt returns or raises")
-
-
-class StorageError(DesignError):
-    """A database that cannot be opened; `url` and why."""
-
-    def __init__(self, url: str, reason: str) -> None:
-        self.url, self.cause = url, reason
-        super().__init__("run.storage", url, f"cannot be opened: {reason}")

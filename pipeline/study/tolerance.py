@@ -18,6 +18,7 @@ from geometry.errors import DesignError
 from geometry.schema import node_at
 from pipeline.diagnosis.specimens.designs import value_at, with_values
 from pipeline.study.evaluate import Task
+from pipeline.study.holes import Holes
 from pipeline.study.load import Study, StudyError, location_of
 from pipeline.study.plan import Listed, linked
 from pipeline.study.source import Planned, solves_of
@@ -179,10 +180,10 @@ class Scattered(Planned):
         if MODULUS in values and material.shaft is not None:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
-        return Task(self._tables, changed, self.solves)
+        return Task(self._tables, changed, self.solves, self.holes)
 
 
-def scattered(study: Study) -> Scattered:
+def scattered(study: Study, holes: Holes) -> Scattered:
     """The source of a tolerance study.
 
     Raises
@@ -193,4 +194,5 @@ def scattered(study: Study) -> Scattered:
     base = base_size(study, len(inputs))
     points = saltelli(inputs, base, study.file.run.seed)
     solves = solves_of(study, ("torsion",))
-    return Scattered(study, solves, Listed(tuple(x.key for x in inputs), points), inputs)
+    plan = Listed(tuple(x.key for x in inputs), points)
+    return Scattered(study, solves, plan, inputs, holes=holes)

@@ -17,7 +17,7 @@ from pipeline.study.cluster import WORKER_DIED, Hands
 from pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from pipeline.study.figures import GIVEN_BY
 from pipeline.study.result import StudyResult
-from pipeline.study.store import Ledger, Row, storage_faults
+from pipeline.study.store import Ledger, Row
 from pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
@@ -63,9 +63,7 @@ def verify(
     file = result.study.file
     chosen = result.best(file.run.verify)
     rim = bool(RIM & {*file.objective, *file.constraint})
-    stored: dict[str, dict] = {
-        k: v for k, v in ledger.trials.user_attrs.items() if k.startswith(VERIFIED)
-    }
+    stored = ledger.notes()
     pending = {}
     for row in chosen:
         if f"{VERIFIED} {row.slot}" not in stored:
@@ -77,8 +75,7 @@ def verify(
             stored[name] = asdict(future.result())
         except hands().lost:
             stored[name] = asdict(Outcome(reason=WORKER_DIED))
-        with storage_faults():
-            ledger.trials.set_user_attr(name, stored[name])
+        ledger.note(name, stored[name])
     case = result.study.design.solver.load_case
     return tuple(checked(r, Outcome(**stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
 

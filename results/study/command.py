@@ -24,23 +24,27 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     with answered(file):
         from pipeline.study.cluster import dask_hands
         from pipeline.study.load import load_study
-        from pipeline.study.run import ledger_of, run_study, source_of
+        from pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
         from results.records import as_json
         from results.study.figures import write_figures
         from results.study.progress import Watch
         from results.study.record import summary, words
         from results.study.report import write_study_reports
         from results.study.tables import table_of, write_csv, write_parquet
+        from results.study.why import unfollowed
 
         asked = load_study(file)
         folder = folder_of(file, out)
         run = asked.file.run
         source_of(asked)  # refuse before anything is written
         ledger = ledger_of(asked, folder)
+        if keys := unfollowed(asked):
+            tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
         if kept := len(ledger.rows()):
             tell(f"{kept} designs are finished already")
         hands = partial(dask_hands, run.workers, run.scheduler)
-        result = run_study(asked, ledger, hands, Watch(asked), say=tell)
+        holes = nominal_holes(asked, ledger, tell)
+        result = run_study(asked, ledger, hands, Watch(asked), say=tell, holes=holes)
         table = table_of(result)
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)

@@ -12,7 +12,7 @@ from results.records import program_version
 from results.study.labels import entry
 
 SHOWN = 5
-ALARM = "they disagree beyond their bounds; the fast model leaves out bolt holes and keyway"
+ALARM = "they disagree beyond their bounds; the fast model knows holes only as the nominal design's"
 
 
 def summary(result: StudyResult) -> dict[str, Any]:

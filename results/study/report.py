@@ -7,6 +7,7 @@ from itertools import chain
 from pathlib import Path
 
 from pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
+from pipeline.study.holes import DRIFT, pierced
 from pipeline.study.mass import DENSITY_KG_M3
 from pipeline.study.result import StudyResult
 from pipeline.study.scatter import Scatter
@@ -26,7 +27,7 @@ from results.report.document import (
 )
 from results.report.spans import Text, alarm
 from results.study.labels import entry
-from results.study.why import failures, influences, limits
+from results.study.why import failures, influences, limits, signed, unfollowed
 
 COLUMNS = 5
 """Best designs side by side."""
@@ -191,11 +192,37 @@ def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
         )  # fmt: skip
 
 
+def _holes(result: StudyResult) -> Iterable[str]:
+    """How K_b and K_e were corrected for holes and keyway, and what that does to their bounds."""
+    pierced_ones = pierced(result.study.design)
+    factors = {
+        k: next((r.outcome.figures[f] for r in result.built if f in r.outcome.figures), None)
+        for k, f in ((k, f"{k}_holes_factor") for k in pierced_ones)
+    }
+    used = {k: f for k, f in factors.items() if f is not None}
+    if used:
+        said = " and ".join(f"{k} by {signed(100 * (f - 1), 1)} %" for k, f in used.items())
+        yield (
+            f"Holes and keyway change {said} in the design that the study began with (one solid solve). "
+            "Every design's K is corrected by that; its bounds are widened by what both solves leave open "
+            f"and by {100 * DRIFT:g} % of the correction, and are estimates. Lobes and stresses are not "
+            "corrected."
+        )
+    if missing := [k for k in pierced_ones if k not in used]:
+        yield (
+            f"{' and '.join(missing)}: of the part without its holes or keyway, since the solid solve "
+            "that would tell their effect failed."
+        )
+    if keys := unfollowed(result.study):
+        yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
+
+
 def _notes(result: StudyResult) -> list[str]:
     notes = [
-        f"Fast model: the axisymmetric one of the same meridian; bolt holes and keyway are left out. "
-        f"K between guaranteed bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
+        f"Fast model: the axisymmetric one of the same meridian, without bolt holes and keyway; there K "
+        f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
         f"{100 * LOBE_TOLERANCE:g} %.",
+        *_holes(result),
         f"Mass at {DENSITY_KG_M3:g} kg/m³ (steel), since the design file has no density.",
     ]
     if not result.verified:

@@ -6,6 +6,8 @@ from collections import Counter
 
 import numpy as np
 
+from pipeline.study.holes import of_holes
+from pipeline.study.load import Study
 from pipeline.study.result import StudyResult
 from results.study.labels import entry
 
@@ -32,7 +34,7 @@ def influences(result: StudyResult) -> list[str]:
                 found.append((_spearman(x, y), entry(varied).name))
         found.sort(key=lambda f: -abs(f[0]))
         strong = [
-            f"{'rises' if rho > 0 else 'falls'} with {name} (rank correlation {_signed(rho)})"
+            f"{'rises' if rho > 0 else 'falls'} with {name} (rank correlation {signed(rho)})"
             for rho, name in found
             if abs(rho) >= STRONG
         ]
@@ -67,6 +69,12 @@ def limits(result: StudyResult) -> list[str]:
     return said
 
 
+def unfollowed(study: Study) -> str:
+    """Keys of holes and keyway that the study changes; "" where there are none."""
+    file = study.file
+    return ", ".join(of_holes([*file.vary, *file.link, *file.tolerance]))
+
+
 def failures(result: StudyResult) -> list[str]:
     """How many designs have no figures, and the commonest reasons."""
     reasons = Counter(_stem(r.outcome.reason) for r in result.rows if r.outcome.reason)
@@ -85,5 +93,6 @@ def _spearman(x: np.ndarray, y: np.ndarray) -> float:
     return float(spearmanr(x, y).statistic)
 
 
-def _signed(value: float) -> str:
-    return f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
+def signed(value: float, decimals: int = 2) -> str:
+    """With its sign, a true minus."""
+    return f"{value:+.{decimals}f}".replace("-", "\N{MINUS SIGN}")

@@ -85,8 +85,9 @@ def killed_and_resumed(folder: Path, kills: int, seed: int) -> None:
     rows = {r.slot: r for r in ledger_of(study_of(LONG_GRID), folder).rows()}
     assert sorted(rows) == list(range(SIZE))
     assert {s: rows[s] for s in finished} == finished  # nothing finished was lost or redone
-    # a kill hits at most one design of the one thread between its end and its row being stored
-    assert SIZE <= len(counted.lines()) <= SIZE + kills
+    # a kill can hit two designs between their end and their rows being stored: the one thread's, and the
+    # one that waited for it, where storing the first takes as long as evaluating the second
+    assert SIZE <= len(counted.lines()) <= SIZE + 2 * kills
     assert len(set(counted.lines())) == SIZE
 
 

@@ -1,0 +1,61 @@
+"""A study's database, opened or made."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from geometry.errors import DesignError
+from pipeline.study.store import Ledger, said, this_process
+
+if TYPE_CHECKING:
+    from optuna.samplers import BaseSampler
+
+LOCK_S = 60
+"""How long to wait for another process that writes to the same SQLite file."""
+SERVER: dict[str, Any] = {"pool_pre_ping": True}
+"""A connection that the server dropped meanwhile is made anew."""
+OPENINGS = 6
+
+
+class StorageError(DesignError):
+    """A database that cannot be opened; `url` and why."""
+
+    def __init__(self, url: str, reason: str) -> None:
+        self.url, self.cause = url, reason
+        super().__init__("run.storage", url, f"cannot be opened: {reason}")
+
+
+def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSampler) -> Ledger:
+    """The study of that name in a database, made if it is not there.
+
+    Raises
+    ------
+    StorageError : the database cannot be opened.
+    """
+    import optuna
+    from optuna.exceptions import StorageInternalError
+    from optuna.storages import RDBStorage
+    from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else SERVER
+    for attempt in range(OPENINGS):
+        try:
+            storage = RDBStorage(url, engine_kwargs=args)
+            trials = optuna.create_study(
+                storage=storage,
+                study_name=name,
+                directions=list(directions),  # type: ignore[arg-type]
+                sampler=sampler,
+                load_if_exists=True,
+            )
+            return Ledger(trials, storage, this_process())
+        except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
+            # two processes that make the tables at once: the second finds them on its next try
+            again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)
+            if attempt == OPENINGS - 1 or not again:
+                raise StorageError(url, said(fault)) from fault
+            time.sleep(0.5 * (attempt + 1))
+    raise AssertionError("the last attempt returns or raises")

@@ -1,0 +1,93 @@
+"""What bolt holes and keyway do to K, from one solid solve of the study's nominal design.
+
+The fast model has no holes. Its K is multiplied by K_solid/K_axisymmetric of the nominal design, part by
+part. The ratio holds there within both models' bounds; elsewhere it is an estimate, so the bounds are
+widened by a share of the holes' whole effect as well: they are theorems no longer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from geometry.design import Design
+from geometry.errors import ComputationError
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES
+from pipeline.diagnosis.specimens.designs import HOLES
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from pipeline.storage import cache_folder
+
+DRIFT = 0.5
+"""Share of the holes' effect by which it may be another elsewhere in the study."""
+PART_OF = {"K_b": "flexspline", "K_e": "shaft"}
+
+
+@dataclass(frozen=True)
+class Factor:
+    """K with holes over K without, and how far it may be off."""
+
+    value: float
+    doubt: float
+
+
+Holes = Mapping[str, Factor]
+"""By "K_b" and "K_e"; a part without holes is absent."""
+
+
+def pierced(design: Design) -> tuple[str, ...]:
+    """ "K_b" and "K_e", as far as that part has bolt holes or a keyway."""
+    shaft = design.shaft
+    has = {"K_b": design.flexspline.bolts, "K_e": shaft.bolts or shaft.keyway}
+    return tuple(name for name, holes in has.items() if holes)
+
+
+def of_holes(keys: Iterable[str]) -> tuple[str, ...]:
+    """Those of some design keys that say what the holes or the keyway are."""
+    return tuple(k for k in keys if k.endswith(("bolt_count", *HOLES)) or ".keyway." in k)
+
+
+def with_holes(found: Mapping[str, float], design: Design, holes: Holes) -> dict[str, float]:
+    """Figures with K and its bounds corrected where the part has holes, and the factor beside them."""
+    out = dict(found)
+    for name in pierced(design):
+        if name not in holes:
+            continue
+        factor = holes[name]
+        bounds = f"{name}_bounds_Nm_per_rad"
+        out[f"{name}_Nm_per_rad"] *= factor.value
+        out[f"{bounds}[0]"] *= factor.value - factor.doubt
+        out[f"{bounds}[1]"] *= factor.value + factor.doubt
+        out[f"{name}_holes_factor"] = factor.value
+    return out
+
+
+def holes_of(
+    design: Design,
+    torsion: Callable[[Design, str], tuple[float, float, float]],
+    say: Callable[[str], None],
+) -> Holes:
+    """The factors of a nominal design; `torsion` gives K and bounds of a part without its holes.
+
+    Where the solid solve fails there is none, and `say` is told.
+    """
+    shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress())
+    found = {}
+    for figure in pierced(design):
+        name = PART_OF[figure]
+        part = shop.part(name)
+        say(
+            f"the {name} of the nominal design with the solid model, for what its holes do to {figure}"
+        )
+        try:
+            solid = part.twisted().stiffness
+        except ComputationError as fault:
+            say(f"{figure} stays that of the {name} without holes: {fault}")
+            continue
+        K, low, high = torsion(design, name)
+        value = solid.K_Nm_per_rad / K
+        ends = (solid.lower_Nm_per_rad / high, solid.upper_Nm_per_rad / low)
+        doubt = max(abs(end - value) for end in ends) + DRIFT * abs(1 - value)
+        found[figure] = Factor(value, doubt)
+    return found

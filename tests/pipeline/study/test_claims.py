@@ -1,0 +1,44 @@
+"""One design, one process: what two processes that want the same design get."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from study_bench import GRID, quick, study_of
+
+from pipeline.study.evaluate import Task
+from pipeline.study.run import ledger_of, source_of
+from pipeline.study.store import Ledger
+
+OPTIMIZE = GRID.replace('"grid"', '"optimize"').replace(", steps = 3", "")
+
+
+@pytest.fixture(params=[GRID, OPTIMIZE], ids=["grid", "optimize"])
+def pair(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Ledger, Ledger, str]:
+    """Two processes' views of one study."""
+    first, second = (ledger_of(study_of(request.param), tmp_path) for _ in range(2))
+    return first, replace(second, owner="another/1/1"), request.param
+
+
+def test_the_second_to_claim_a_design_gets_nothing(pair: tuple[Ledger, Ledger, str]) -> None:
+    first, second, text = pair
+    source = source_of(study_of(text))
+    job = source.claim(first, 0)
+    assert job is not None
+    assert source.claim(second, 0) is None
+    assert len([t for t in first.by_slot()[0] if not t.state.is_finished()]) == 1
+
+
+def test_a_claim_that_died_before_it_had_values_is_given_some(tmp_path: Path) -> None:
+    study = study_of(OPTIMIZE)
+    ledger, source = ledger_of(study, tmp_path), source_of(study)
+    bare = ledger.create(0, 0, {}, {})
+    assert bare is not None
+    ledger.tell(bare.number, None)
+    job = source.again(ledger, 0, 1, ledger.by_slot()[0][0])
+    assert job is not None
+    assert set(job.values) == set(study.file.vary)
+    outcome = quick(Task({}, job.values, ()))
+    ledger.finish(job, outcome, source.objectives(outcome))
+    (row,) = ledger.rows()
+    assert row.values == job.values

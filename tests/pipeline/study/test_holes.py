@@ -1,0 +1,115 @@
+"""K corrected for bolt holes and keyway by the nominal design's solid solve, and when verify still rings."""
+
+from pathlib import Path
+
+import pytest
+from study_bench import EXAMPLES, study_of, threads
+
+from geometry.load import load_design
+from pipeline.diagnosis.specimens.designs import without_holes
+from pipeline.study.evaluate import Outcome, Task, figures_of, revolved_torsion
+from pipeline.study.holes import Factor, holes_of, of_holes
+from pipeline.study.run import ledger_of, nominal_holes, run_study
+from pipeline.study.store import Row
+from pipeline.study.verify import checked, solid_outcome
+
+Figures = tuple[dict[str, float], dict[str, float], dict[str, float]]
+HOLES = {"K_e": Factor(0.97, 0.02)}
+
+
+def test_the_figures_follow_from_the_corrected_K() -> None:
+    design = load_design(EXAMPLES / "xb1-40.toml")
+    plain, corrected = (figures_of(design, ("torsion",), h) for h in ({}, HOLES))
+    assert corrected["K_e_Nm_per_rad"] == pytest.approx(0.97 * plain["K_e_Nm_per_rad"])
+    low, high = (corrected[f"K_e_bounds_Nm_per_rad[{i}]"] for i in (0, 1))
+    assert low == pytest.approx(0.95 * plain["K_e_bounds_Nm_per_rad[0]"])
+    assert high == pytest.approx(0.99 * plain["K_e_bounds_Nm_per_rad[1]"])
+    assert corrected["K_e_holes_factor"] == 0.97
+    assert corrected["K_b_Nm_per_rad"] == plain["K_b_Nm_per_rad"]
+    both = 1 / corrected["K_e_Nm_per_rad"] + 1 / corrected["K_b_Nm_per_rad"]
+    assert 1 / corrected["K_series_Nm_per_rad"] == pytest.approx(both)
+    shaft, before = (f["backlash_arcsec.shaft"] for f in (corrected, plain))
+    assert shaft == pytest.approx(before / 0.97)
+
+
+def test_a_part_without_holes_has_no_factor_and_is_not_solved() -> None:
+    lines: list[str] = []
+    plain = without_holes(load_design(EXAMPLES / "xb1-40.toml"))
+    assert holes_of(plain, revolved_torsion, lines.append) == {}
+    assert lines == []
+
+
+STUDY = """
+design = "xb1-40.toml"
+[vary]
+"shaft.segment[0].length_mm" = { min = 3.5, max = 4.5, steps = 2 }
+[objective]
+"K_e_Nm_per_rad" = "maximize"
+[run]
+method = "grid"
+"""
+
+
+@pytest.fixture(scope="module")
+def nominal(tmp_path_factory: pytest.TempPathFactory) -> Figures:
+    """The example: figures without and with correction, and by the solid model."""
+    study = study_of(STUDY)
+    ledger = ledger_of(study, tmp_path_factory.mktemp("nominal"))
+    holes = nominal_holes(study, ledger, lambda line: None)
+    plain, corrected = (figures_of(study.design, ("torsion",), h) for h in ({}, holes))
+    tables = study.design.model_dump(mode="json", exclude_none=True)
+    solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
+    assert not solid.reason
+    return plain, corrected, dict(solid.figures)
+
+
+def agreed(fast: dict[str, float], solid: dict[str, float]) -> dict[str, bool]:
+    checks = checked(Row(0, {}, Outcome(fast)), Outcome(solid), "uniform").checks
+    return {c.key: c.agrees for c in checks}
+
+
+def test_verify_agrees_with_the_correction_and_rings_without(nominal: Figures) -> None:
+    plain, corrected, solid = nominal
+    assert all(agreed(corrected, solid).values())
+    assert not agreed(plain, solid)["K_e_Nm_per_rad"]
+
+
+def test_verify_rings_where_the_holes_do_what_the_nominal_ones_do_not(nominal: Figures) -> None:
+    """Twice the holes' effect, as larger holes would have it, lies beyond the widened bounds."""
+    _, corrected, solid = nominal
+    effect = 1 - corrected["K_e_holes_factor"]
+    worse = {k: v * (1 - 2 * effect) if k.startswith("K_e") else v for k, v in solid.items()}
+    assert not agreed(corrected, worse)["K_e_Nm_per_rad"]
+
+
+def test_the_solid_solve_is_done_once_for_all_who_share_the_study(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = study_of(STUDY)
+    monkeypatch.setattr("pipeline.study.run.holes_of", lambda *told: HOLES)
+    assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
+    monkeypatch.setattr("pipeline.study.run.holes_of", lambda *told: pytest.fail("solved again"))
+    assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
+
+
+def test_a_design_without_holes_among_others_keeps_its_K() -> None:
+    design = load_design(EXAMPLES / "xb1-40.toml")
+    holes = {"K_b": Factor(0.9, 0.02), **HOLES}
+    bare = design.model_copy(update={"flexspline": without_holes(design).flexspline})
+    plain, corrected = (figures_of(bare, ("torsion",), h) for h in ({}, holes))
+    assert corrected["K_b_Nm_per_rad"] == plain["K_b_Nm_per_rad"]
+    assert corrected["K_e_Nm_per_rad"] != plain["K_e_Nm_per_rad"]
+
+
+def test_keys_that_only_holes_have() -> None:
+    keys = ["shaft.keyway.depth_mm", "flexspline.bolt_count", "flexspline.length_mm",
+            "shaft.bolt_hole_diameter_mm"]  # fmt: skip
+    assert of_holes(keys) == (keys[0], keys[1], keys[3])
+
+
+def test_every_row_says_its_factor(tmp_path: Path) -> None:
+    study = study_of(STUDY)
+    rows = run_study(study, ledger_of(study, tmp_path), threads, lambda p: None, holes=HOLES).rows
+    built = [r for r in rows if not r.outcome.reason]
+    assert built
+    assert {r.outcome.figures["K_e_holes_factor"] for r in built} == {0.97}
