@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from pipeline.leftovers import unfinished
+from pipeline.leftovers import discard, unfinished
 
 T = TypeVar("T")
 FORMAT = 6
@@ -41,6 +41,7 @@ class Cache:
         found = self._read(path, key)
         if found is not _MISSING:
             return found, True
+        discard(path.parent, self.notice)
         value = make()
         self._write(path, key, value)
         return value, False

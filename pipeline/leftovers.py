@@ -12,6 +12,7 @@ import shutil
 import socket
 import tempfile
 import zlib
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -53,6 +54,12 @@ def clear(folder: Path) -> list[Path]:
                 _remove(entry)
                 gone.append(entry)
     return gone
+
+
+def discard(folder: Path, say: Callable[[str], None]) -> None:
+    """`clear`, and say what went."""
+    for entry in clear(folder):
+        say(f"discarded {entry.name}, left unfinished by a process that was stopped")
 
 
 def _of_host() -> str:

@@ -117,12 +117,14 @@ def begin(path: Path, out: Path | None) -> Job:
 
 
 def folder_of(path: Path, out: Path | None) -> Path:
-    """Where files go: `--out`, or NAME.out beside the design."""
+    """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes."""
     from geometry.errors import DesignError
+    from pipeline.leftovers import discard
 
     folder = out if out is not None else path.parent / f"{path.stem}.out"
     if folder.exists() and not folder.is_dir():
         raise DesignError("--out", str(folder), "is a file; name a folder")
+    discard(folder, tell)
     return folder
 
 

@@ -16,12 +16,13 @@ def own_scratch() -> Iterator[None]:
     The libraries' too. Where no temporary folder can be written to, nothing is changed: who needs one
     will say so.
     """
-    from pipeline.leftovers import clear, mark
+    from pipeline.leftovers import discard, mark
+    from results.job import tell
 
     before = tempfile.tempdir
     try:
         parent = Path(tempfile.gettempdir())
-        clear(parent)
+        discard(parent, tell)
         folder = tempfile.mkdtemp(prefix=mark(), dir=parent)
     except OSError:
         yield

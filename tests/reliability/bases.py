@@ -18,15 +18,15 @@ CUP = EXAMPLES / "xb1-40.toml"
 GIVEN = ("--Kb", 31329, "--Ke", 43339)
 ROWS = {"xb1-40-sweep": 130, "size-40-end-points": 8, "xb1-40-specimens": 6}
 """Lines kept of each measured example."""
-STUDY = f"""# A small study: neither clearance nor torque asks for a new solution.
-design = "{CUP}"
+STUDY = """# A small study: neither clearance nor torque asks for a new solution.
+design = "DESIGN"
 [vary]
-"gear.flank_clearance_um" = {{ min = 2.0, max = 4.0 }}
-"load.torque_Nm" = {{ values = [0.4, 0.5, 0.6] }}
+"gear.flank_clearance_um" = { min = 2.0, max = 4.0 }
+"load.torque_Nm" = { values = [0.4, 0.5, 0.6] }
 [objective]
 "backlash_arcsec.total" = "minimize"
 [constraint]
-"K_b_Nm_per_rad" = {{ min = 20000.0 }}
+"K_b_Nm_per_rad" = { min = 20000.0 }
 [run]
 method = "sobol"
 evaluations = 4
@@ -57,6 +57,18 @@ def hands(workers: int, scheduler: str) -> Iterator[Hands]:
         yield here
 
 
+def plain(folder: Path) -> Path:
+    """The example without holes, a body of revolution, written to `folder`."""
+    path = folder / "plain.toml"
+    path.write_text(CUP.read_text(encoding="utf-8").replace("bolt_count = 6", "bolt_count = 0"))
+    return path
+
+
+def study(folder: Path) -> str:
+    """The study's file, of a plain design in `folder`."""
+    return STUDY.replace("DESIGN", str(plain(folder)))
+
+
 def head(name: str) -> bytes:
     """The first rows of a measured example."""
     lines = (EXAMPLES / "measured" / f"{name}.csv").read_bytes().splitlines(keepends=True)
@@ -65,11 +77,11 @@ def head(name: str) -> bytes:
 
 @cache
 def base(kind: str, folder: Path) -> bytes:
-    """The good file of a kind; `folder` is where the extended model is found first."""
+    """The good file of a kind; `folder` is where the extended model is found, and the study's design lies."""
     if kind == "design":
         return CUP.read_bytes()
     if kind == "study":
-        return STUDY.encode()
+        return study(folder).encode()
     if kind == "extended model":
         out = folder / "found"
         sweep = folder / "sweep.csv"

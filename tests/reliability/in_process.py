@@ -15,7 +15,9 @@ from results.cli import app
 STATUS = {0: "answered", 1: "failed", 2: "refused"}
 SCRATCH = (".part", ".export-", ".tmp")
 """How files that are still being written are called."""
-PROGRESS = re.compile(r"\[ *[0-9.]+ s\] |warning: |\d+ of \d+ designs|\d+ designs are finished")
+PROGRESS = re.compile(
+    r"\[ *[0-9.]+ s\] |warning: |discarded |\d+ of \d+ designs|\d+ designs are finished"
+)
 """How lines begin that tell how far the work is, or what is unusual."""
 
 

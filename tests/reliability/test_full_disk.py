@@ -10,13 +10,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import bases
 import pytest
-from bases import CUP, GIVEN, STUDY, head
+from bases import CUP, GIVEN, head
 from in_process import Ended, flexspline
 from shell import run
 
-ROOT = Path(__file__).parents[2]
-PLAIN = ("bolt_count = 6", "bolt_count = 0")
 FREE_BYTES = 24_000
 """Room for result.json and one small picture, not for more."""
 
@@ -60,9 +59,7 @@ def read_only(tmp_path: Path) -> Iterator[Path]:
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A cup and shaft without holes: bodies of revolution."""
-    path = tmp_path_factory.mktemp("plain") / "plain.toml"
-    path.write_text(CUP.read_text(encoding="utf-8").replace(*PLAIN), encoding="utf-8")
-    return path
+    return bases.plain(tmp_path_factory.mktemp("plain"))
 
 
 def failed(ended: Ended, needle: str) -> None:
@@ -99,7 +96,7 @@ def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> N
     """Its database meets the full disk, in SQLite's words."""
     there: Path = request.getfixturevalue(disk)
     file = tmp_path / "study.toml"
-    file.write_text(STUDY, encoding="utf-8")
+    file.write_text(bases.study(tmp_path), encoding="utf-8")
     ended = flexspline("study", file, "--out", there / "out", folder=there)
     failed(ended, "disk is full" if disk == "full" else WHERE_IT_GOES[disk])
 

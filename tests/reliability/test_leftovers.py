@@ -10,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.cache import Cache
 from pipeline.leftovers import clear, mark, unfinished
 from results.atomic import write_bytes
+from results.job import folder_of
 from results.scratch import own_scratch
 
 GONE = "import os, sys; sys.path.insert(0, sys.argv[1]); from pipeline.leftovers import mark; print(mark())"
@@ -68,6 +70,25 @@ def test_scratch_files_lie_together_and_go_together(tmp_path: Path, monkeypatch)
         (made / "file").write_bytes(b"")
     assert list(tmp_path.iterdir()) == []
     assert tempfile.gettempdir() == str(tmp_path)
+
+
+def test_who_discards_says_so(
+    of_the_dead: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    said: list[str] = []
+    left = [tmp_path / f"{of_the_dead}scratch", tmp_path / "out" / f"{of_the_dead}half.part"]
+    entry = tmp_path / "cache" / "stage" / f"{of_the_dead}entry.part"
+    for path in (*left, entry):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"half")
+    with own_scratch():
+        folder_of(tmp_path / "design.toml", tmp_path / "out")
+    Cache(tmp_path / "cache", (), said.append).get("stage", {}, lambda: 1)
+    heard = capsys.readouterr().err
+    assert [path.name in heard for path in left] == [True, True]
+    assert entry.name in said[0]
+    assert not [path for path in (*left, entry) if path.exists()]
 
 
 def test_no_temporary_folder_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,90 @@
+"""The text of docs/reliability.md: what was tried, how often, what came of it, under fixed topics."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+FAULTS_FILE = Path(__file__).with_name("faults.md")
+TOPICS = {
+    "Designs": ("test_designs",),
+    "Files": ("test_files",),
+    "Crashes": (
+        "test_kills", "test_full_disk", "test_damaged_cache", "test_broken_mesher", "test_leftovers",
+    ),
+    "Size": ("test_size",),
+    "Numbers": ("test_numbers",),
+}  # fmt: skip
+"""Headings in the page's order, and the test modules that hand in their rows."""
+HEAD = """\
+# Reliability
+
+Written by `python3 -m pytest tests/reliability -m "long or not long" --write-reliability` from what the
+tests did; edit the tests, not this page. A row is replaced when its test has run and passed, so the parts
+can be run one by one. *Answered*: status 0 and finite figures between their bounds. *Refused*: status 2,
+one line, nothing written. *Failed*: status 1 with its reason in one line. A traceback, a hang, or a
+half-written file fails the test. Times are of one process on a machine that did other work too.
+"""
+COLUMNS = "| tried | how many | what came of it | longest |\n|---|---|---|---|"
+NAMES_ORDER = ("answered", "refused", "failed")
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One row: `tried` and `outcome` in words, how many, and the longest in seconds."""
+
+    module: str
+    tried: str
+    count: int
+    outcome: str
+    longest_s: float | None = None
+
+    def line(self) -> str:
+        longest = "" if self.longest_s is None else f"{self.longest_s:.3g} s"
+        return f"| {self.tried} | {self.count} | {self.outcome} | {longest} |"
+
+
+def counted(outcomes: Counter[str]) -> str:
+    """``12 answered, 88 refused``."""
+    return ", ".join(f"{outcomes[name]} {name}" for name in NAMES_ORDER if outcomes[name]) or "none"
+
+
+def section(topic: str, kept: Sequence[str], facts: Sequence[Fact]) -> str:
+    """A topic's heading, files and table: rows `kept` from the page, those of `facts` renewed."""
+    modules = TOPICS[topic]
+    files = ", ".join(f"[`{m}`](../tests/reliability/{m}.py)" for m in modules)
+    rows = {_tried(row): row for row in kept}
+    rows |= {f.tried: f.line() for m in modules for f in facts if f.module == m}
+    python = ".".join(platform.python_version_tuple()[:2])
+    machine = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores, Python {python}"
+    return f"## {topic}\n\n{files}; {machine}.\n\n" + "\n".join([COLUMNS, *rows.values()]) + "\n"
+
+
+def rows_of(page: str) -> dict[str, list[str]]:
+    """Rows of the tables of a page, by heading."""
+    parts = page.split("\n## ")[1:]
+    lines = {p.partition("\n")[0]: p.splitlines() for p in parts}
+    return {
+        name: [s for s in all_ if s[:2] == "| " and s not in COLUMNS]
+        for name, all_ in lines.items()
+    }
+
+
+def _tried(row: str) -> str:
+    return row.split(" | ")[0].removeprefix("| ")
+
+
+def page(before: str, facts: Sequence[Fact]) -> str:
+    """The page with the rows of these facts renewed and the others kept."""
+    kept = rows_of(before)
+    known = {f.module for f in facts}
+    body = [
+        section(topic, kept.get(topic, []), facts)
+        for topic, modules in TOPICS.items()
+        if topic in kept or known & set(modules)
+    ]
+    return "\n".join([HEAD, *body, FAULTS_FILE.read_text(encoding="utf-8")])

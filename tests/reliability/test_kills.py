@@ -1,0 +1,134 @@
+"""kill -9 at random moments: the same command then gives the right answer and says what it discarded."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import bases
+import numpy as np
+import psutil
+import pytest
+from shell import command, environment, run
+
+from pipeline.leftovers import MARK
+
+GONE_WITHIN_S = 20.0
+"""Children notice at once that their parent is gone, but may be in the middle of a library's call."""
+SAME = 1e-9
+"""Relative: the kept mesh is the same, sums of threads may take another order."""
+LATEST = 0.97
+"""Of the time of a whole run: later ones find a program that has ended."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A command, the file that holds its answer, and how its second start says what it goes on from."""
+
+    words: tuple[object, ...]
+    answer: str
+
+
+def jobs(folder: Path) -> dict[str, Job]:
+    """The three commands, of one small design and file each."""
+    plain, study = bases.plain(folder), folder / "study.toml"
+    study.write_text(bases.study(folder).replace("evaluations = 4", "evaluations = 12"))
+    sweep = folder / "sweep.csv"
+    sweep.write_bytes(bases.head("xb1-40-sweep"))
+    return {
+        "run": Job(("run", bases.CUP), "result.json"),
+        "study": Job(("study", study), "study.csv"),
+        "diagnose": Job(("diagnose", plain, sweep), "diagnosis.json"),
+    }
+
+
+def answer(path: Path) -> object:
+    """The file's figures, without seconds and places."""
+    if path.suffix == ".csv":
+        rows = [line.split(",") for line in path.read_text().splitlines()]
+        keep = [i for i, name in enumerate(rows[0]) if not name.endswith("_s")]
+        return [[row[i] for i in keep] for row in rows]
+    record = json.loads(path.read_text())
+    record.get("solver", {}).pop("wall_s", None)
+    return record
+
+
+def same(a: object, b: object, where: str = "") -> None:
+    """Equal, numbers within `SAME`."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        assert a.keys() == b.keys(), where
+        for key in a:
+            same(a[key], b[key], f"{where}.{key}")
+    elif isinstance(a, list) and isinstance(b, list):
+        assert len(a) == len(b), where
+        for i, pair in enumerate(zip(a, b, strict=True)):
+            same(*pair, f"{where}[{i}]")
+    elif isinstance(a, float) and isinstance(b, float):
+        assert a == pytest.approx(b, rel=SAME), where
+    else:
+        assert a == b, where
+
+
+def kill(job: Job, folder: Path, after_s: float) -> bool:
+    """Start, kill -9 after so long; whether it was still running. Nobody of its family may live on."""
+    with subprocess.Popen(
+        command(*job.words, "--out", folder / "out"), stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL, env=environment(folder / "cache", folder / "tmp"),
+    ) as started:  # fmt: skip
+        time.sleep(after_s)
+        family = []
+        if started.poll() is None:
+            family = psutil.Process(started.pid).children(recursive=True)
+            started.kill()
+    _, alive = psutil.wait_procs(family, GONE_WITHIN_S)
+    assert not alive, alive
+    return started.returncode == -9
+
+
+def left(folder: Path) -> set[str]:
+    """Unfinished files anywhere below."""
+    return {p.name for p in folder.rglob(f"{MARK}*")}
+
+
+def killed_and_repeated(name: str, folder: Path, kills: int, seed: int) -> tuple[int, float]:
+    """How many kills hit a running process, and the longest command after one [s]."""
+    rng = np.random.default_rng([9, seed])
+    job = jobs(folder)[name]
+    reference = folder / "reference"
+    (folder / "tmp").mkdir()
+    began = time.monotonic()
+    done = run(*job.words, "--out", reference, cache=folder / "cache of reference")
+    assert done.returncode == 0, done.stderr
+    whole = time.monotonic() - began
+    expected = answer(reference / job.answer)
+    hits, longest = 0, 0.0
+    for number in range(kills):
+        here = folder / str(number)
+        (here / "tmp").mkdir(parents=True)
+        hits += kill(job, here, float(rng.uniform(0, LATEST * whole)))
+        rubbish = left(here)
+        began = time.monotonic()
+        done = run(*job.words, "--out", here / "out", cache=here / "cache", scratch=here / "tmp")
+        longest = max(longest, time.monotonic() - began)
+        assert done.returncode == 0, done.stderr
+        same(answer(here / "out" / job.answer), expected)
+        assert not left(here)
+        for unfinished in rubbish:
+            assert unfinished in done.stderr, (unfinished, done.stderr)
+    return hits, longest
+
+
+@pytest.mark.parametrize(("name", "seed"), [("study", 1), ("diagnose", 2)])
+def test_two_kills(name: str, seed: int, tmp_path: Path) -> None:
+    killed_and_repeated(name, tmp_path, 2, seed)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "kills"), [("run", 20), ("study", 15), ("diagnose", 15)])
+def test_fifty_kills(name: str, kills: int, tmp_path: Path, fact) -> None:
+    hits, longest = killed_and_repeated(name, tmp_path, kills, 3)
+    outcome = f"{hits} hit it at work; then the right answer, nothing left"
+    fact(f"kill -9 at random moments of `{name}`", kills, outcome, longest)
