@@ -208,6 +208,16 @@ QUANTITIES: tuple[Quantity, ...] = (
         "σ_T,shaft",
         digits=3,
     ),
+    *(
+        Quantity(
+            f"{part}_{key}", f"{part}_{key}", unit, f"{name} of the {part}", f"{symbol}_{index}"
+        )
+        for part, index in (("flexspline", "b"), ("shaft", "e"))
+        for key, unit, name, symbol in (
+            ("mass_g", "g", "Mass", "m"),
+            ("length_mm", "mm", "Length", "L"),
+        )
+    ),
     Quantity("ring_thickness_mm", "ring_thickness_mm", "mm", "Rim under the teeth", "t_rim"),
     *(
         Quantity(

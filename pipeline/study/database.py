@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,8 @@ class StorageError(DesignError):
 
     def __init__(self, url: str, reason: str) -> None:
         self.url, self.cause = url, reason
-        super().__init__("run.storage", url, f"cannot be opened: {reason}")
+        shown = re.sub(r"(://[^:/@]*:)[^@]*@", r"\1***@", url)  # without its password
+        super().__init__("run.storage", shown, f"cannot be opened: {reason}")
 
 
 def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSampler) -> Ledger:

@@ -45,10 +45,13 @@ class Source(Protocol):
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is: all rows, rows of this process, its seconds, how many are wanted."""
+    """How far a study is: all rows, how many came since `seconds` ago, how many are wanted.
+
+    Rows of other processes that share the study count too: they shorten the time that is left.
+    """
 
     rows: list[Row]
-    own: int
+    fresh: int
     seconds: float
     size: int
 
@@ -66,9 +69,9 @@ def carry_out(
     finished is stored.
     """
     began = beaten = time.monotonic()
-    own = 0
     pending: dict[Future, Job] = {}
     _adopt(source, ledger)
+    before = len(ledger.rows())
     ledger.beat()
     while True:
         while len(pending) < hands.width() + source.ahead:
@@ -87,9 +90,9 @@ def carry_out(
             for future in done:
                 outcome = _outcome(future, hands)
                 ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
-                own += 1
             if done:
-                watch(Progress(ledger.rows(), own, time.monotonic() - began, source.size))
+                rows = ledger.rows()
+                watch(Progress(rows, len(rows) - before, time.monotonic() - began, source.size))
         if time.monotonic() - beaten > BEAT_S:
             beaten = time.monotonic()
             ledger.beat()

@@ -86,7 +86,7 @@ def holes_of(
             say(f"{figure} stays that of the {name} without holes: {fault}")
             continue
         K, low, high = torsion(design, name)
-        value = solid.K_Nm_per_rad / K
+        value = min(1.0, solid.K_Nm_per_rad / K)  # less material never makes a part stiffer
         ends = (solid.lower_Nm_per_rad / high, solid.upper_Nm_per_rad / low)
         doubt = max(abs(end - value) for end in ends) + DRIFT * abs(1 - value)
         found[figure] = Factor(value, doubt)

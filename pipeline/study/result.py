@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.design import Design
+from pipeline.diagnosis.specimens.designs import with_values
 from pipeline.study.load import Study
+from pipeline.study.plan import linked
 from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
 from pipeline.study.verified import Verified
@@ -22,6 +25,10 @@ class StudyResult:
     """Of a tolerance study, by figure."""
     verified: tuple[Verified, ...] = ()
     """Of the best designs, by rank."""
+
+    def design_of(self, row: Row) -> Design:
+        """The whole design of a row."""
+        return with_values(self.study.design, linked(self.study, row.values))
 
     @property
     def built(self) -> tuple[Row, ...]:

@@ -12,8 +12,12 @@ from results.report.pdf import pdf_of
 PDF, HTML = "report.pdf", "report.html"
 
 
-def reports_of(document: Document, pictures: Mapping[str, Path]) -> dict[str, bytes]:
+def reports_of(
+    document: Document, pictures: Mapping[str, Path], views: Mapping[str, bytes] | None = None
+) -> dict[str, bytes]:
     """Bytes of report.pdf and report.html by file name; the pictures, PNG files, as they are.
+
+    `views` turn in the browser (`results.renders.turntable`), by the names that the figures give.
 
     Raises
     ------
@@ -21,5 +25,5 @@ def reports_of(document: Document, pictures: Mapping[str, Path]) -> dict[str, by
     """
     return {
         PDF: pdf_of(document, pictures),
-        HTML: page_of(document, {name: png(path) for name, path in pictures.items()}),
+        HTML: page_of(document, {name: png(path) for name, path in pictures.items()}, views),
     }

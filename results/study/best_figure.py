@@ -9,10 +9,7 @@ import numpy as np
 
 from geometry.design import Design
 from geometry.meridian import meridian
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.study.plan import linked
 from pipeline.study.result import StudyResult
-from pipeline.study.store import Row
 from results.study.labels import entry
 from results.style import ACCENT, INK, MUTED, STEEL, new_figure, save_png, styled
 
@@ -22,16 +19,11 @@ if TYPE_CHECKING:
 SHOWN = 3
 
 
-def design_of(result: StudyResult, row: Row) -> Design:
-    """The whole design of a row."""
-    return with_values(result.study.design, linked(result.study, row.values))
-
-
 def write_best(path: Path, result: StudyResult) -> None:
     """Half sections of up to SHOWN designs, one below the other, to one scale."""
     best = result.best(SHOWN)
     base = _outline(result.study.design)
-    outlines = [_outline(design_of(result, r)) for r in best]
+    outlines = [_outline(result.design_of(r)) for r in best]
     everything = np.concatenate([base, *outlines])
     (r0, z0), (r1, z1) = everything.min(axis=0), everything.max(axis=0)
     tall = 6.4 * (r1 - r0) / (z1 - z0)

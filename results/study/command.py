@@ -22,6 +22,7 @@ def register(app: typer.Typer) -> None:
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
     with answered(file):
+        from pipeline.study.best import best_field
         from pipeline.study.cluster import dask_hands
         from pipeline.study.load import load_study
         from pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
@@ -49,9 +50,10 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)
         record: dict[str, Any] = summary(result)
-        pictures = write_figures(folder, result)
+        best = best_field(result, tell)
+        pictures = write_figures(folder, result, best)
         record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
-        reports = write_study_reports(folder, result, pictures)
+        reports = write_study_reports(folder, result, pictures, best)
         record["files"] += [str(p) for p in (*pictures, *reports)]
         print(as_json(record) if json else words(result, record))
 

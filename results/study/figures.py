@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pipeline.study.best import BestField
 from pipeline.study.result import StudyResult
 from pipeline.study.store import Row
 from results.study.best_figure import write_best
+from results.study.best_stress import PICTURE, write_best_stress
 from results.study.labels import axis_label, entry, lines_of
 from results.study.tolerance_figure import write_scatter
 from results.style import ACCENT, COLOUR_MAP, INK, MUTED, PALETTE, new_figure, save_png, styled
@@ -21,8 +23,8 @@ MOST_AXES = 9
 """Of parallel coordinates: beyond, the labels touch; objectives come first."""
 
 
-def write_figures(folder: Path, result: StudyResult) -> list[Path]:
-    """Every picture that the study has matter for; their paths."""
+def write_figures(folder: Path, result: StudyResult, best: BestField | None = None) -> list[Path]:
+    """Every picture that the study has matter for; their paths. `best` is drawn with its stress."""
     objectives = list(result.study.file.objective)
     written: list[Path] = []
     if len(result.built) < 2:
@@ -34,6 +36,9 @@ def write_figures(folder: Path, result: StudyResult) -> list[Path]:
         if result.pareto:
             written.append(folder / "best.png")
             write_best(written[-1], result)
+        if best:
+            written.append(folder / PICTURE)
+            write_best_stress(written[-1], best)
         written.append(folder / "parallel.png")
         write_parallel(written[-1], result)
         written.append(folder / "convergence.png")

@@ -37,7 +37,7 @@ class Watch:
 def line(study: Study, progress: Progress) -> str:
     """One line of progress."""
     done, size = len(progress.rows), progress.size
-    rate = progress.own / progress.seconds if progress.seconds > 0 else 0.0
+    rate = progress.fresh / progress.seconds if progress.seconds > 0 else 0.0
     parts = [f"{done} of {size} designs", f"{rate:.2f} per s"]
     failed = sum(bool(r.outcome.reason) for r in progress.rows)
     if failed:

@@ -10,6 +10,7 @@ from pipeline.study.store import Row
 from pipeline.study.verified import Verified
 from results.records import program_version
 from results.study.labels import entry
+from results.study.why import signed
 
 SHOWN = 5
 ALARM = "they disagree beyond their bounds; the fast model knows holes only as the nominal design's"
@@ -118,7 +119,7 @@ def _verified_words(v: Verified) -> list[str]:
         alarm = "" if c.agrees else f"  ALARM: {ALARM}"
         lines.append(
             f"    {figure.symbol} {figure.text(c.fast)} and {figure.with_unit(c.solid)} "
-            f"({c.difference_pct:+.1f} %){alarm}"
+            f"({signed(c.difference_pct, 1)} %){alarm}"
         )
     return lines
 

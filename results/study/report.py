@@ -6,11 +6,8 @@ from collections.abc import Iterable, Sequence
 from itertools import chain
 from pathlib import Path
 
-from pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
-from pipeline.study.holes import DRIFT, pierced
-from pipeline.study.mass import DENSITY_KG_M3
+from pipeline.study.best import BestField
 from pipeline.study.result import StudyResult
-from pipeline.study.scatter import Scatter
 from results.atomic import write_bytes
 from results.records import program_version
 from results.report.both import reports_of
@@ -26,8 +23,11 @@ from results.report.document import (
     Table,
 )
 from results.report.spans import Text, alarm
+from results.study.best_stress import PICTURE, VIEW, turning_best
 from results.study.labels import entry
-from results.study.why import failures, influences, limits, signed, unfollowed
+from results.study.notes import notes
+from results.study.scatter_section import scatter_section
+from results.study.why import failures, influences, limits
 
 COLUMNS = 5
 """Best designs side by side."""
@@ -37,26 +37,34 @@ METHODS = {
     "optimize": "Designs chosen by an optimiser that learns from those before.",
     "tolerance": "Scatter of uncertainty and tolerances through the whole chain (Saltelli's scheme).",
 }
-WIDTHS = {"pareto.png": 75, "best.png": 48, "convergence.png": 75, "parallel.png": 88}
+WIDTHS = {
+    "pareto.png": 75, "best.png": 48, PICTURE: 75, "convergence.png": 75, "parallel.png": 88,
+}  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design built, and the front that none beats.",
     "parallel.png": "Every design as a line over the varied dimensions and the objectives.",
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
+    PICTURE: "Design {first} on the wave generator, by the solid model.",
     "tolerance.png": "Distribution, Sobol indices, and what tighter tolerances buy.",
 }
 
 
-def write_study_reports(folder: Path, result: StudyResult, pictures: Sequence[Path]) -> list[Path]:
+def write_study_reports(
+    folder: Path, result: StudyResult, pictures: Sequence[Path], best: BestField | None = None
+) -> list[Path]:
     """Write report.pdf and report.html, each whole or not at all; their paths.
+
+    With `best` its picture turns in the browser.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
     document = study_document(result, [p.name for p in pictures])
-    made = reports_of(document, {p.stem: p for p in pictures})
+    views = turning_best(best) if best else None
+    made = reports_of(document, {p.stem: p for p in pictures}, views)
     for name, data in made.items():
         write_bytes(folder / name, data)
     return [folder / name for name in made]
@@ -70,11 +78,11 @@ def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
         *_best(result),
         *_why(result),
         *_verified(result),
-        *chain.from_iterable(_scatter(s) for s in result.scatter),
-        *(_picture(n) for n in pictures),
+        *chain.from_iterable(scatter_section(s) for s in result.scatter),
+        *(_picture(n, result) for n in pictures),
         *_failures(result),
         Heading("What holds"),
-        Bullets(tuple(_notes(result))),
+        Bullets(tuple(notes(result))),
     )
     return Document(
         title="A study of designs",
@@ -86,9 +94,11 @@ def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
     )
 
 
-def _picture(name: str) -> Block:
-    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"])
-    return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100)),))
+def _picture(name: str, result: StudyResult) -> Block:
+    first = result.pareto[0].slot if name == PICTURE else ""
+    caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first)
+    view = VIEW if name == PICTURE else ""
+    return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
 
 
 def _why(result: StudyResult) -> Iterable[Block]:
@@ -152,79 +162,3 @@ def _verified(result: StudyResult) -> Iterable[Block]:
             ),
             tuple(lines),
         )  # fmt: skip
-
-
-def _scatter(s: Scatter) -> Iterable[Block]:
-    q = entry(s.key)
-    sentence = (
-        f"{q.name}: mean {q.with_unit(s.mean)}, standard deviation {q.with_unit(s.std)}, 95 % from "
-        f"{q.range_text(s.low, s.high)} {q.unit}. The quadratic surface behind the last four columns "
-        f"misses {s.surface_rms:.2g} {q.unit} (root mean square)."
-    )
-    if s.dropped:
-        sentence += f" {s.dropped} sample blocks with a design that cannot be built are left out."
-    heads = ("Sobol, first", "Sobol, total", "× 0.75", "× 0.5", "× 0.25", "perfect")
-    yield Heading("What scatters, and what a tighter tolerance buys")
-    yield Paragraph(sentence)
-    yield Table(
-        (Column("Input", grow=1), Column("Value"), *(Column(h, "right") for h in heads)),
-        tuple(_inputs(s)),
-    )
-    yield Paragraph(
-        f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that input "
-        "alone scatters less."
-    )
-
-
-def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
-    """A line for each input, the most important first."""
-    for i in sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i]):
-        x = s.inputs[i]
-        bought = {t.factor: t.bought for t in s.tightened if t.key == x.key}
-        unit = entry(x.key)
-        spread = x.std if x.normal else x.high - x.nominal
-        kind = "s =" if x.normal else "±"
-        yield (
-            unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
-            f"{s.indices.first[i]:.2f} ± {s.indices.first_conf[i]:.2f}",
-            f"{s.indices.total[i]:.2f} ± {s.indices.total_conf[i]:.2f}",
-            *(f"{max(0.0, bought[f]):.1f}" for f in (0.75, 0.5, 0.25, 0.0)),
-        )  # fmt: skip
-
-
-def _holes(result: StudyResult) -> Iterable[str]:
-    """How K_b and K_e were corrected for holes and keyway, and what that does to their bounds."""
-    pierced_ones = pierced(result.study.design)
-    factors = {
-        k: next((r.outcome.figures[f] for r in result.built if f in r.outcome.figures), None)
-        for k, f in ((k, f"{k}_holes_factor") for k in pierced_ones)
-    }
-    used = {k: f for k, f in factors.items() if f is not None}
-    if used:
-        said = " and ".join(f"{k} by {signed(100 * (f - 1), 1)} %" for k, f in used.items())
-        yield (
-            f"Holes and keyway change {said} in the design that the study began with (one solid solve). "
-            "Every design's K is corrected by that; its bounds are widened by what both solves leave open "
-            f"and by {100 * DRIFT:g} % of the correction, and are estimates. Lobes and stresses are not "
-            "corrected."
-        )
-    if missing := [k for k in pierced_ones if k not in used]:
-        yield (
-            f"{' and '.join(missing)}: of the part without its holes or keyway, since the solid solve "
-            "that would tell their effect failed."
-        )
-    if keys := unfollowed(result.study):
-        yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
-
-
-def _notes(result: StudyResult) -> list[str]:
-    notes = [
-        f"Fast model: the axisymmetric one of the same meridian, without bolt holes and keyway; there K "
-        f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
-        f"{100 * LOBE_TOLERANCE:g} %.",
-        *_holes(result),
-        f"Mass at {DENSITY_KG_M3:g} kg/m³ (steel), since the design file has no density.",
-    ]
-    if not result.verified:
-        notes.append("No design was solved again with the solid model (run.verify = 0).")
-    return notes

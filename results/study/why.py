@@ -95,4 +95,4 @@ def _spearman(x: np.ndarray, y: np.ndarray) -> float:
 
 def signed(value: float, decimals: int = 2) -> str:
     """With its sign, a true minus."""
-    return f"{value:+.{decimals}f}".replace("-", "\N{MINUS SIGN}")
+    return f"{value:+z.{decimals}f}".replace("-", "\N{MINUS SIGN}")

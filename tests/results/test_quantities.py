@@ -19,6 +19,7 @@ CONTRACT = json.loads("""
 """)
 SUFFIXES = {
     "N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s", "mm": "_mm", "%": "_pct",
+    "g": "_g",
 }  # fmt: skip
 
 

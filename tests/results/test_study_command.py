@@ -55,6 +55,9 @@ def test_a_grid_on_one_and_on_three_processes(tmp_path: Path) -> None:
     text = "".join(p.extract_text() for p in PdfReader(tmp_path / "1" / "report.pdf").pages)
     assert "4 of 6 designs were built and solved" in text
     assert "#panic(1) $x$ cup" in text  # as its letters
+    assert "best_stress.png" in {Path(name).name for name in said["files"]}
+    assert f"Design {said['best'][0]['design']} on the wave generator" in text
+    assert "3-D view" in (tmp_path / "1" / "report.html").read_text()
 
     again = CliRunner().invoke(
         app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]

@@ -3,6 +3,7 @@
 import pytest
 from study_bench import GRID, study_of
 
+from pipeline.study.database import StorageError
 from pipeline.study.load import StudyError
 
 
@@ -34,3 +35,9 @@ def test_refused(old: str, new: str, key: str, said: str) -> None:
     assert key in line
     assert said in line
     assert "\n" not in line
+
+
+def test_a_database_that_cannot_be_opened_is_named_without_its_password() -> None:
+    line = str(StorageError("postgresql://me:secret@host:5432/studies", "no route to host"))
+    assert "postgresql://me:***@host:5432/studies" in line
+    assert "secret" not in line

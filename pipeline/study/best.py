@@ -1,0 +1,45 @@
+"""The best design of a study on the wave generator, by the solid model: what its picture shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fea.types import SolidField
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from pipeline.rim import wave_generator_amplitude, wave_generator_field
+from pipeline.storage import cache_folder
+from pipeline.study.evaluate import OUR_ERRORS
+from pipeline.study.result import StudyResult
+
+
+@dataclass(frozen=True)
+class BestField:
+    """The ellipse's field of one design, and the w0 [mm] that it is for."""
+
+    slot: int
+    field: SolidField
+    w0_mm: float
+
+
+def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | None:
+    """Of the first design on the front; None without a best, or where it cannot be solved (`say`)."""
+    if result.scatter or not result.pareto:
+        return None
+    row = result.pareto[0]
+    design = result.design_of(row)
+    solver = design.solver.model_copy(update={"model": "auto"})
+    shop = Workshop(
+        design.model_copy(update={"solver": solver}),
+        Cache(cache_folder(), CACHED_TYPES, lambda line: None),
+        Progress(),
+    )
+    try:
+        field = wave_generator_field(shop.part("flexspline"))
+    except OUR_ERRORS as fault:
+        say(f"no picture of design {row.slot} on the wave generator: {fault}")
+        return None
+    return BestField(row.slot, field, wave_generator_amplitude(design))

@@ -1,0 +1,34 @@
+"""The line that a study shows while it runs."""
+
+import tomllib
+from pathlib import Path
+
+from pipeline.study.drive import Progress
+from pipeline.study.evaluate import Outcome
+from pipeline.study.load import study_from
+from pipeline.study.store import Row
+from results.study.progress import line
+
+WALL = "flexspline.wall_thickness_mm"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ values = [0.38, 0.4, 0.42] }}
+[objective]
+"K_b_Nm_per_rad" = "maximize"
+[run]
+method = "grid"
+"""
+
+
+def test_rate_best_and_time_left() -> None:
+    """Four rows, two of them in these 4 s, six to go: half a design per second."""
+    study = study_from(tomllib.loads(STUDY), Path(__file__).parents[2] / "examples", "test")
+    figures = ({"K_b_Nm_per_rad": 30e3}, {"K_b_Nm_per_rad": 31e3}, {"K_b_Nm_per_rad": 29e3})
+    rows = [Row(i, {WALL: 0.4}, Outcome(f)) for i, f in enumerate(figures)]
+    rows.append(Row(3, {WALL: 0.9}, Outcome(reason="too thick")))
+    said = line(study, Progress(rows, 2, 4.0, 10)).replace("\N{NARROW NO-BREAK SPACE}", " ")
+    assert said.split(" · ") == [
+        "4 of 10 designs", "0.50 per s", "1 cannot be built or solved", "best 31 000 N·m/rad",
+        "12 s left",
+    ]  # fmt: skip
