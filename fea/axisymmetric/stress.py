@@ -6,7 +6,7 @@ nearer to them than one wall thickness do not count (the contract's rule). Fille
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import cos, pi, sin
 
@@ -89,12 +89,20 @@ def ellipse_stress(
     ------
     MeshingError, HarmonicError, StressError, ToleranceError
     """
+    *_, last = ellipse_refinements(outline, material, w0_mm, wall_mm, tolerance)
+    return last
+
+
+def ellipse_refinements(
+    outline: Meridian, material: Elastic, w0_mm: float, wall_mm: float, tolerance: float
+) -> Iterator[RevolvedField]:
+    """What `ellipse_stress` finds on each of its meshes, the last one within the tolerance."""
 
     def solve(model: HarmonicModel) -> Amplitudes:
         fixed = [Fixed(model.on("seat"), RADIAL, w0_mm), *model.held("mount")]
         return model.solve(Wave(2), fixed, np.zeros(3 * model.space.count))
 
-    return _converged(outline, material, Wave(2), solve, wall_mm, tolerance)
+    return _refinements(outline, material, Wave(2), solve, wall_mm, tolerance)
 
 
 def torsion_stress(
@@ -119,18 +127,19 @@ def torsion_stress(
             unit.values * angle, unit.twice_energy * angle**2, 0.0, unit.residual, unit.unknowns
         )
 
-    return _converged(outline, material, Wave(0, torsion=True), solve, wall_mm, tolerance)
+    *_, last = _refinements(outline, material, Wave(0, torsion=True), solve, wall_mm, tolerance)
+    return last
 
 
-def _converged(
+def _refinements(
     outline: Meridian,
     material: Elastic,
     wave: Wave,
     solve: Callable[[HarmonicModel], Amplitudes],
     wall_mm: float,
     tolerance: float,
-) -> RevolvedField:
-    """Refine where the energy is wrong, and where a stress that counts is."""
+) -> Iterator[RevolvedField]:
+    """Refine where the energy is wrong, and where a stress that counts is, until neither is."""
     mesh = triangulate(outline)
     while (coarse := coarse_at_clearance(mesh, wall_mm)).any():
         mesh = refined(mesh, coarse)
@@ -145,8 +154,9 @@ def _converged(
             StressLevel(len(mesh.triangles), solved.unknowns, peak.mises_MPa, energy_error)
         )
         change = _change(levels)
+        yield _field(model, wave, solved, found, peak, change, wall_mm, levels)
         if change < tolerance and energy_error < tolerance:
-            return _field(model, wave, solved, found, peak, change, wall_mm, levels)
+            return
         if len(mesh.triangles) > MOST_TRIANGLES:
             raise ToleranceError(tolerance, change, len(mesh.triangles))
         wrong = peak.counted & (found.misfit > LOCAL * tolerance * peak.mises_MPa)

@@ -9,6 +9,7 @@ import numpy as np
 
 from geometry.design import Design
 from pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
+from pipeline.live import left_out
 from pipeline.rim import wave_generator_amplitude
 from results.figures.budget import SOURCES, TERMS
 from results.figures.torque_angle import REACH, band
@@ -47,6 +48,17 @@ def message(design: Design, found: Found) -> Message:
     }
 
 
+def agreement(design: Design) -> str:
+    """How these figures stand to those of the command line."""
+    left = left_out(design)
+    if left:
+        words = ("keyway" if "keyway" in part else "holes" for part in left)
+        return f"Equals `flexspline stiffness` but for {' and '.join(dict.fromkeys(words))}"
+    if design.solver.model == "solid":
+        return "Equals `flexspline stiffness`, there the solid model, within the bounds"
+    return "Equals `flexspline stiffness` to seven digits"
+
+
 def lobed(design: Design) -> bool:
     """Whether the lobes' K_b enters the sum."""
     return design.solver.load_case == "lobes"
@@ -80,11 +92,11 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
         return _waiting(key)
     r, z = float(np.hypot(*figures[f"{name}_at_mm"][:2])), figures[f"{name}_at_mm"][2]
     row = figure(key, figures[key]) | {"at": f"at r = {r:.2f}, z = {z:.2f} mm"}
+    row["rough"] = bool(figures.get(f"{name}_rough"))
     own = design.shaft_material if name == "shaft_torque_peak" else design.material.flexspline
     if own.fatigue_limit_MPa is not None:
         share = figures[key] / own.fatigue_limit_MPa
-        limit = f"the fatigue limit, {own.fatigue_limit_MPa:g} MPa"
-        row |= {"limit": f"{100 * share:.3g} % of {limit}", "over": share > 1}
+        row |= {"limit": f"{100 * share:.3g} % of {own.fatigue_limit_MPa:g}", "over": share > 1}
     return row
 
 

@@ -11,7 +11,7 @@ from aiohttp import web
 from geometry.errors import DesignError
 from pipeline.live import View
 from results.studio.fields import received
-from results.studio.jobs import KINDS, Job, Kind
+from results.studio.jobs import KINDS, Done, Job, Kind
 from results.studio.results import told
 from results.studio.tab import Tab, Workers
 
@@ -24,7 +24,7 @@ class Desk:
         self.tab = Tab(workers, self._send)
         self.measured = b""
         self._jobs: dict[Kind, Job] = {}
-        self._running: set[asyncio.Task[None]] = set()
+        self._tasks: dict[Kind, asyncio.Task[None]] = {}
 
     async def open(self) -> None:
         self.tab.open()
@@ -35,7 +35,7 @@ class Desk:
         await self.tab.close()
         for job in self._jobs.values():
             job.stop()
-        await asyncio.gather(*self._running, return_exceptions=True)
+        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
         for job in self._jobs.values():
             job.close()
 
@@ -59,33 +59,36 @@ class Desk:
         return None if job is None else job.read(name)
 
     def _start(self, kind: Kind, tables: dict[str, Any]) -> None:
-        old = self._jobs.pop(kind, None)
+        old, before = self._jobs.get(kind), self._tasks.get(kind)
 
         async def say(line: str) -> None:
-            await self._send({"is": "progress", "kind": kind, "line": line})
+            if self._jobs[kind] is job:  # one that was replaced ends in silence
+                await self._send({"is": "progress", "kind": kind, "line": line})
 
         job = Job(kind, say)
         self._jobs[kind] = job
-        task = asyncio.create_task(self._run(job, old, tables))
-        self._running.add(task)
-        task.add_done_callback(self._running.discard)
 
-    async def _run(self, job: Job, old: Job | None, tables: dict[str, Any]) -> None:
-        if old is not None:
-            old.close()
+        async def after() -> None:
+            if old is not None and before is not None:
+                old.stop()
+                await asyncio.wait({before})
+                old.close()
+            await self._run(job, tables)
+
+        self._tasks[kind] = asyncio.create_task(after())
+
+    async def _run(self, job: Job, tables: dict[str, Any]) -> None:
         try:
             design = received(tables)
         except DesignError as fault:
-            await self._send(
-                {"is": "ended", "kind": job.kind, "state": "failed", "text": str(fault)}
-            )
-            return
-        ended = await job.run(design, self.measured if job.kind == "diagnose" else b"")
-        answer = (
-            told(job.kind, design, ended.text) if ended.state == "done" else {"text": ended.text}
-        )
-        await self._send({"is": "ended", "kind": job.kind, "state": ended.state,
-                          "files": ended.files, **answer})  # fmt: skip
+            ended, answer = Done("failed", str(fault)), {"text": str(fault)}
+        else:
+            ended = await job.run(design, self.measured if job.kind == "diagnose" else b"")
+            done = ended.state == "done"
+            answer = told(job.kind, design, ended.text) if done else {"text": ended.text}
+        if self._jobs[job.kind] is job:
+            await self._send({"is": "ended", "kind": job.kind, "state": ended.state,
+                              "files": ended.files, **answer})  # fmt: skip
 
     async def _send(self, note: dict[str, Any] | bytes) -> None:
         """To the tab, unless it is gone."""

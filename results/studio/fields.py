@@ -75,7 +75,13 @@ def _group(title: str, location: Location, table: Tables | None, kind: str) -> I
         _entry((*location, key), node_at((*location, key), kind), table.get(key), scale)
         for key in node_at(location, kind).get("properties", {})
     ]
-    yield {"title": title, "at": list(location), "entries": [e for e in entries if e]}
+    entries = sorted((e for e in entries if e), key=_after_dimensions)
+    yield {"title": title, "at": list(location), "entries": entries}
+
+
+def _after_dimensions(entry: Tables) -> int:
+    """Dimensions in the file's order first, then bolts, then choices; names stay in front."""
+    return 2 if entry["kind"] == "choice" else int(str(entry["at"][-1]).startswith("bolt_"))
 
 
 def _entry(location: Location, node: Node, value: Any, scale: float) -> Tables | None:

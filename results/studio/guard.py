@@ -65,7 +65,9 @@ class Guard:
             if given is not None and request.path == "/":
                 # the token leaves the address bar and the history at once
                 moved = web.HTTPFound("/", headers=HEADERS)
-                moved.set_cookie(COOKIE, given, httponly=True, samesite="Strict", path="/")
+                moved.set_cookie(
+                    _cookie(request), given, httponly=True, samesite="Strict", path="/"
+                )
                 raise moved
             return await handler(request)
 
@@ -80,10 +82,15 @@ class Guard:
         if origin is not None and urlsplit(origin).netloc.lower() != request.host.lower():
             return "requests from other sites are refused"
         if self.token:
-            given = request.query.get("token") or request.cookies.get(COOKIE, "")
+            given = request.query.get("token") or request.cookies.get(_cookie(request), "")
             if not hmac.compare_digest(given.encode(), self.token.encode()):
                 return "give the token: open the address that flexspline studio printed"
         return ""
+
+
+def _cookie(request: web.Request) -> str:
+    """Browsers keep one jar for all ports of a host; two studios need two names in it."""
+    return f"{COOKIE}-{request.url.port}"
 
 
 def _has_port(host: str) -> bool:

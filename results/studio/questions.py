@@ -5,10 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
+from fea.axisymmetric.stress import RevolvedField
 from geometry.design import Design
 from geometry.errors import ComputationError, DesignError
 from geometry.load import design_from
-from pipeline.live import Bounded, RimCase, View, field, profile, revolved, rim, torsion
+from pipeline.live import (
+    Bounded,
+    RimCase,
+    View,
+    field,
+    first_field,
+    profile,
+    revolved,
+    rim,
+    torsion,
+)
 from results.studio.shape import field_message, profile_message
 from results.studio.worker import Fault
 
@@ -20,6 +31,8 @@ PEAK_KEYS: dict[View, str] = {
     "shaft_torque": "shaft_torque_peak",
 }
 """result.json's name of the peak that a view shows."""
+FIRST = "first field wave_generator"
+"""The stress on the wave generator before any refinement; its `PEAK_rough` says so."""
 CHORDS_PER_WALL = 40
 """Arcs of a shape without stress are drawn with chords no farther off than wall/40."""
 
@@ -55,15 +68,23 @@ def _stiffness(name: str, found: Bounded) -> Found:
 
 def _field(view: View) -> Callable[[Design], Found]:
     def ask(design: Design) -> Found:
-        solved = field(design, view)
-        name = PEAK_KEYS[view]
-        return {
-            f"{name}_mises_MPa": solved.peak.mises_MPa,
-            f"{name}_at_mm": list(solved.peak.at_mm),
-            "picture": field_message(view, solved),
-        }
+        return _solved(view, field(design, view), rough=False)
 
     return ask
+
+
+def _first(design: Design) -> Found:
+    return _solved("wave_generator", first_field(design), rough=True)
+
+
+def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
+    name = PEAK_KEYS[view]
+    return {
+        f"{name}_mises_MPa": solved.peak.mises_MPa,
+        f"{name}_at_mm": list(solved.peak.at_mm),
+        f"{name}_rough": rough,
+        "picture": field_message(view, solved),
+    }
 
 
 def _profile(view: View) -> Callable[[Design], Found]:
@@ -76,6 +97,7 @@ def _profile(view: View) -> Callable[[Design], Found]:
 
 _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     "torsion": _torsion,
+    FIRST: _first,
     **{case: _rim(case) for case in RIM_CASES},
     **{f"field {view}": _field(view) for view in VIEWS},
     **{f"profile {view}": _profile(view) for view in VIEWS},

@@ -17,19 +17,21 @@ from geometry.errors import DesignError
 from geometry.sanity import warnings
 from pipeline.bearing_play import BearingPlayDomainError
 from pipeline.live import left_out
-from results.studio.answer import message
+from results.studio.answer import agreement, message
 from results.studio.fields import received
-from results.studio.questions import RIM_CASES, VIEWS
+from results.studio.questions import FIRST, PEAK_KEYS, RIM_CASES, VIEWS
 from results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
-STILL_S = 0.25
-"""The slow questions wait until the hand has rested so long: they would only delay each other."""
+STILL_S = 0.35
+"""The slow questions wait until the hand has rested so long: they would only delay the others."""
+QUICK = ("torsion", "K_b_lobes")
+ROUGH = f"{PEAK_KEYS['wave_generator']}_rough"
 
 
 @dataclass(frozen=True)
 class Workers:
-    """Quick: K_b and K_e. Picture: shape and stress. Slow: lobes and the other peaks."""
+    """Quick: K_b, K_e and K_b at the lobes. Picture: shape and stress. Slow: all the rest."""
 
     quick: Worker
     picture: Worker
@@ -73,8 +75,8 @@ class Tab:
         """Start the lanes."""
         w = self._workers
         for event, worker, still, plan in (
-            (self._news[0], w.quick, 0.0, lambda view: ["torsion"]),
-            (self._news[1], w.picture, 0.0, lambda view: [f"profile {view}", f"field {view}"]),
+            (self._news[0], w.quick, 0.0, lambda view: QUICK),
+            (self._news[1], w.picture, 0.0, _picture),
             (self._news[2], w.slow, STILL_S, _slow),
         ):
             lane = self._lane(event, worker, still, plan)
@@ -100,7 +102,8 @@ class Tab:
         for event in self._news:
             event.set()
         await self._send({"is": "taken", "number": number, "left_out": left_out(design),
-                          "warnings": list(warnings(design)), **first})  # fmt: skip
+                          "agreement": agreement(design), "warnings": list(warnings(design)),
+                          **first})  # fmt: skip
 
     async def _lane(
         self,
@@ -125,7 +128,8 @@ class Tab:
                 found = await worker.ask(question, wanted.tables)
                 if self._wanted is not wanted:
                     break
-                await self._tell(wanted, question, found)
+                if question != FIRST or ROUGH not in wanted.found:  # the exact one may be there
+                    await self._tell(wanted, question, found)
 
     async def _tell(self, wanted: Wanted, question: str, found: Any) -> None:
         if isinstance(found, Fault):
@@ -148,9 +152,14 @@ class Tab:
         await self._send({"is": "answer", "number": wanted.number, "done": question, **shown})
 
 
+def _picture(view: str) -> list[str]:
+    """The stress on the wave generator is wanted at once whatever is in view; exact only after."""
+    mine = f"field {view}"
+    return [f"profile {view}", *([FIRST, mine] if view == "wave_generator" else [mine, FIRST])]
+
+
 def _slow(view: str) -> list[str]:
-    """Lobes before peaks; the peak of the view itself comes with its picture."""
-    others = [f"field {v}" for v in VIEWS if v != view]
-    first = ["field wave_generator"] if view != "wave_generator" else []
-    cases = list(RIM_CASES)
-    return [cases[0], *first, *cases[1:], *(q for q in others if q not in first)]
+    """Peaks before the other rim cases; the peak of the view itself comes with its picture."""
+    peaks = [f"field {v}" for v in VIEWS if v != view]
+    peaks.sort(key=lambda question: question != "field wave_generator")
+    return [*peaks, *(case for case in RIM_CASES if case not in QUICK)]

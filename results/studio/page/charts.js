@@ -52,12 +52,14 @@ function dot(colour) {
 }
 
 const W = 400;
-const H = 138;
+const LOW = 126;
+const HIGH = 218; // where the window has room
 const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
 
 // θ(T): two elastic branches, the gap between them, one standard deviation as a band.
-export function chartLine(line, budget, looks, pinned) {
+export function chartLine(line, budget, looks, pinned, tall) {
   const { torque_Nm: torque, angle_arcsec: angle, spread_arcsec: spread, load_Nm: load, gap_arcsec: gap } = line;
+  const H = tall && innerWidth >= 1600 && innerHeight >= 960 ? HIGH : LOW;
   const reach = Math.max(torque.at(-1), pinned ? pinned.torque_Nm.at(-1) : 0);
   const top = Math.max(...angle.map((a, i) => a + spread[i]), ...(pinned ? pinned.angle_arcsec : [])) * 1.06;
   const x = (t) => EDGE.left + ((t / reach + 1) / 2) * (W - EDGE.left - EDGE.right);

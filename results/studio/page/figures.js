@@ -20,6 +20,7 @@ export class Figures {
     Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set() });
     this.stiffness = el("section", {});
     this.work = el("section", { id: "solid" });
+    this.agreement = el("p", { id: "agreement", class: "limit" });
     this.peaks = el("section", { class: "peaks" });
     this.backlash = el("section", {});
     root.append(this.stiffness, this.work, this.peaks, this.backlash);
@@ -59,7 +60,7 @@ export class Figures {
     );
     this.peaks.replaceChildren(
       this.heading("Peak von Mises stress", unit(this.now.peaks)),
-      el("table", {}, this.head("place"), el("tbody", {}, ...this.now.peaks.map((row) => this.row(row, "peaks")))),
+      el("table", {}, this.head("of fatigue limit"), el("tbody", {}, ...this.now.peaks.map((row) => this.row(row, "peaks")))),
     );
     const busy = this.fresh.has("backlash") ? "" : "stale";
     this.backlash.className = busy;
@@ -69,7 +70,7 @@ export class Figures {
       this.backlash.append(
         chartBudget(now, this.looks, this.pinned?.budget, this.solidFresh() ? this.solid.budget : null),
         this.heading("Output angle, wave generator locked", "arcsec over N·m"),
-        chartLine(this.now.line, now, this.looks, this.pinned?.line),
+        chartLine(this.now.line, now, this.looks, this.pinned?.line, !this.narrow),
       );
     }
   }
@@ -93,14 +94,14 @@ export class Figures {
 
   row(row, part) {
     const busy = row.text !== undefined && this.fresh.has(row.key) ? "" : "stale";
-    const side = part === "peaks" ? row.at?.replace("at ", "") : row.bounds;
-    const value = el("td", { class: "value" }, row.text ?? "…");
+    const value = el("td", { class: `value ${row.rough ? "rough" : ""}` }, row.text ? `${row.rough ? "≈\u2009" : ""}${row.text}` : "…");
     value.dataset.value = row.value ?? "";
     const cells = [el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name), value];
     const below = (cell, text) => text && cell.append(el("br"), el("span", { class: "limit" }, text));
+    const side = row.bounds ?? row.limit;
     if (this.narrow) below(value, side);
     else cells.push(el("td", { class: "side", title: row.half_pct }, side ?? ""));
-    below(cells.at(this.narrow ? 1 : -1), row.limit);
+    below(cells[1], row.at);
     if (this.solid) cells.push(this.solidCell(row, part));
     if (this.pinned) cells.push(this.pinnedCell(row, part));
     const line = el("tr", { class: busy, "data-key": row.key }, ...cells);

@@ -120,6 +120,7 @@ export class Form {
     place.textContent = text;
     place.hidden = false;
     row?.box.classList.add("bad");
+    if (row) row.box.closest("details").open = true;
   }
 
   clear() {

@@ -48,5 +48,5 @@ export async function ask(path, body, type) {
   const isJson = (reply.headers.get("Content-Type") || "").startsWith("application/json");
   const value = isJson ? await reply.json() : await reply.text();
   if (reply.ok) return value;
-  throw Object.assign(new Error(isJson ? value.text : value.trim()), { key: isJson ? value.key : "" });
+  throw Object.assign(new Error(isJson ? value.text : value.trim()), { key: isJson ? value.key : "", status: reply.status });
 }

@@ -41,7 +41,10 @@ const measured = new Measured(document.getElementById("measured"), {
   upload: (file) => ask(`measured/${link.tab}`, file, "text/csv"), start: startWork, stop: stopWork, address });
 works.diagnose = measured.work;
 const pins = new Pins({ figures, changed: () => { keep(); figures.draw(); } });
-figures.work.append(works.solid.button, works.solid.line);
+figures.work.append(works.solid.button, works.solid.line, figures.agreement);
+for (const kind of ["step", "report"]) {
+  document.getElementById("made").append(el("span", {}, el("b", {}, works[kind].words), works[kind].line));
+}
 figures.root.append(pins.list);
 
 document.getElementById("tools").append(
@@ -49,9 +52,9 @@ document.getElementById("tools").append(
   el("button", { id: "new-hat", onclick: () => open("open?kind=hat", "") }, "New hat"),
   el("button", { id: "load", onclick: () => pick(".toml", load) }, "Open"),
   el("button", { id: "save", onclick: save }, "Save"),
-  works.step.button, works.step.line,
+  works.step.button,
   el("button", { id: "png", onclick: async () => download(await stage.png(state.good.name), `${stem()}.png`, "image/png") }, "PNG"),
-  works.report.button, works.report.line, pins.button);
+  works.report.button, pins.button);
 for (const id of ["design", "measured"]) {
   document.getElementById(`tab-${id}`).addEventListener("click", () => {
     for (const other of ["design", "measured"]) {
@@ -73,9 +76,10 @@ let lostOnce = false;
 adopt(opened);
 const link = new Link({
   opened: () => { if (lostOnce) say("Connected again.", 3000); send(); },
-  lost: () => {
+  lost: async () => {
     lostOnce = true;
     say("Connection lost. Trying again; the design in this tab is kept.");
+    ask("start").catch(({ status, message }) => status === 403 && say(`Refused: ${message}.`));
     figures.stale();
     for (const work of Object.values(works)) work.lost();
   },
@@ -107,7 +111,7 @@ function heard(note) {
   if (note.number !== state.number) return;
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
-    stage.working(false);
+    stage.working(false, note.is === "fault" ? "shown: the last design that can be built" : "");
   }
   if (note.is === "taken") {
     form.clear();
@@ -116,6 +120,7 @@ function heard(note) {
     keep();
     document.title = `${state.good.name} · flexspline studio`;
     stage.say(note.left_out, note.warnings, note.w0_mm);
+    figures.agreement.replaceChildren(...note.agreement.split("`").map((text, i) => (i % 2 ? el("code", {}, text) : text)));
     works.solid.words = note.left_out.length ? "Solve with holes (solid model)" : "Solve with the solid model";
     if (!works.solid.running) works.solid.button.textContent = works.solid.words;
     stage.working(true);
@@ -194,5 +199,5 @@ function finished(kind, note, line) {
 function whatIsOld() {
   const moved = (kind) => works[kind].design && differences(works[kind].design, state.tables).length > 0;
   if (figures.solid) figures.solid.old = moved("solid");
-  measured.old(moved("diagnose"));
+  measured.old(Boolean(moved("diagnose")));
 }

@@ -5,6 +5,24 @@ import { Work } from "./work.js";
 
 const LARGEST_MB = 20;
 
+const KINDS = [
+  ["Torque sweep", "torque_Nm, angle_arcsec", "unit, cycle, time_s, temperature_C, input_angle_deg",
+    "friction, hardening, clearance, drift, wear, creep, lag, errors of position"],
+  ["End points", "unit, torque_Nm, angle_plus_arcsec, angle_minus_arcsec", "", "which units lie beyond the prediction, and what could explain it"],
+  ["Specimens", "specimen, stiffness_Nm_per_rad", "stiffness_std_Nm_per_rad, part, any design key",
+    "material, a dimension off its drawing, where load enters"],
+];
+
+function guide() {
+  const names = (text) => text.split(", ").flatMap((name, i) => [i ? ", " : "", name.includes(" ") ? name : el("code", {}, name)]);
+  const heads = ["Measurement", "Columns", "If there", "Can show"];
+  return el("section", { id: "guide" }, el("h3", {}, "What the columns say"),
+    el("table", { class: "causes" }, el("thead", {}, el("tr", {}, ...heads.map((head) => el("th", {}, head)))),
+      el("tbody", {}, ...KINDS.map(([kind, needed, optional, shows]) => el("tr", {}, el("td", {}, kind),
+        el("td", {}, ...names(needed)), el("td", {}, ...(optional ? names(optional) : [])), el("td", {}, shows))))),
+    el("p", { class: "limit" }, "Other units by suffix: _Nmm, _arcmin, _deg, _mrad, _rad, _K, _min, _h. Lines beginning with # are comments."));
+}
+
 export class Measured {
   // upload(file): sends the bytes; start, stop as for any work; address(name): of a file that was made.
   constructor(root, { upload, start, stop, address }) {
@@ -18,7 +36,7 @@ export class Measured {
       el("p", { class: "limit" }, `Torque sweep, end points or specimens; at most ${LARGEST_MB} MB. Compared with the design on the left.`),
       el("p", {}, this.name, " ", this.work.button, " ", this.work.line));
     this.fault = el("p", { class: "fault", role: "alert", hidden: true, id: "measured-fault" });
-    this.findings = el("div", { id: "findings" });
+    this.findings = el("div", { id: "findings" }, guide());
     root.append(zone, this.fault, this.findings);
     for (const name of ["dragover", "dragleave", "drop"]) {
       zone.addEventListener(name, (event) => {

@@ -10,6 +10,7 @@ const CASES = {
   shaft_torque: "Shaft under torque",
 };
 const TICKS = 4;
+const PATIENCE_MS = 400; // so long may colours of the design before stay: no flicker while a slider moves
 
 export class Stage {
   constructor(looks, { view, chosen }) {
@@ -41,7 +42,15 @@ export class Stage {
   take(buffer, number, newest) {
     const shape = unpacked(buffer);
     if (shape.view !== this.view || number !== newest) return;
-    if (shape.is === "profile" && this.shown?.view === shape.view && this.shown.is === "field" && this.same(shape)) return;
+    clearTimeout(this.waiting);
+    const outline = shape.is === "profile" ? shape.places.join() : this.outline;
+    const known = outline === this.outline;
+    this.outline = outline;
+    if (shape.is === "field" || this.shown?.view !== shape.view) return this.put(shape, number);
+    if (!known) this.waiting = setTimeout(() => this.put(shape, number), PATIENCE_MS);
+  }
+
+  put(shape, number) {
     this.shown = shape;
     this.canvas.show(shape);
     this.working(shape.is === "profile");
@@ -49,23 +58,12 @@ export class Stage {
     this.root().dataset.shown = `${shape.is} ${shape.view} ${number}`;
   }
 
-  // Whether a bare outline has the extent of what is shown: then its colours are not thrown away for it.
-  same(profile) {
-    const size = (shape) => this.extent(shape).map((x) => x.toPrecision(5)).join();
-    return size(profile) === size(this.shown) && this.outline === (this.outline = profile.places.join());
-  }
-
-  extent({ places }) {
-    const r = places.filter((_, i) => i % 2 === 0);
-    return [Math.max(...r), Math.min(...r)];
-  }
-
   root() {
     return document.getElementById("stage");
   }
 
-  working(on) {
-    this.busy.textContent = on ? "computing the stress…" : "";
+  working(on, instead = "") {
+    this.busy.textContent = on ? "computing the stress…" : instead;
   }
 
   drawScale() {

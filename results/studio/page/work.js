@@ -25,7 +25,7 @@ export class Work {
   }
 
   progress(text) {
-    if (this.running) this.line.textContent = text;
+    if (this.running) this.line.textContent = this.said(text.replace(/^\[\s*/, "["));
   }
 
   ended(note) {

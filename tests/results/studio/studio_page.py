@@ -108,7 +108,7 @@ class Page:
     def complete(self) -> None:
         """Wait until everything does, the picture too."""
         self.quick()
-        self.at("#answers tr.stale").first.wait_for(state="detached")
+        self.at("#answers :is(tr.stale, td.rough)").first.wait_for(state="detached")
         self.at('#stage[data-shown^="field"]').wait_for()
 
     def value(self, key: str) -> float:
@@ -122,4 +122,4 @@ class Page:
         """Type a value; every figure is stale from then on until its answer comes."""
         number = self.at("#stage").get_attribute("data-number")
         self.field(key).fill(text)
-        self.at(f'#stage:not([data-number="{number}"])').wait_for()
+        self.at(f'#stage:not([data-number="{number}"])').wait_for(state="attached")
