@@ -12,9 +12,10 @@ from in_process import flexspline
 from mutations import MUTATIONS, mutated
 from reliability_page import counted
 
-LONGEST_S = 30.0
-"""Of one file: the good ones take up to a second; megabytes of one line are read, not pondered."""
-STRUCTURAL = ("truncation", "deep nesting, long lines and keys")
+HANG_S = 300.0
+"""Files that stay good take up to 15 s each on a machine at rest, refused ones less than one."""
+FILES = 1008
+"""126 of each mutation, 21 of each with each kind of file."""
 
 
 @dataclass(frozen=True)
@@ -55,23 +56,25 @@ def tried(seed: int, sources: Path, folder: Path) -> Tried:
 
 def try_all(seeds: range, sources: Path, folder: Path) -> list[Tried]:
     found = [tried(seed, sources, folder) for seed in seeds]
-    assert max(t.seconds for t in found) < LONGEST_S, max(found, key=lambda t: t.seconds)
+    assert max(t.seconds for t in found) < HANG_S, max(found, key=lambda t: t.seconds)
     # a failure is what a file may ask for and not get: a database that is not there, a long study
-    for t in found:
-        assert t.word != "failed" or t.kind in ("study", "extended model", "design"), t
+    assert {t.kind for t in found if t.word == "failed"} <= {"study"}, found
     return found
 
 
-def test_ninety_six_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    found = try_all(range(96), tmp_path_factory.mktemp("sources"), here)
+def test_forty_eight_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    found = try_all(range(48), tmp_path_factory.mktemp("sources"), here)
     words = Counter(t.word for t in found)
-    assert words["refused"] > 48
+    assert words["refused"] > 24
     assert words["failed"] < 5
 
 
 @pytest.mark.long
-def test_a_thousand_files(here: Path, tmp_path_factory: pytest.TempPathFactory, fact) -> None:
-    found = try_all(range(1008), tmp_path_factory.mktemp("sources"), here)
-    for mutation in MUTATIONS:
-        own = [t for t in found if t.mutation == mutation]
-        fact(mutation, len(own), counted(Counter(t.word for t in own)), max(t.seconds for t in own))
+@pytest.mark.parametrize("number", range(len(MUTATIONS)))
+def test_a_thousand_files(
+    number: int, here: Path, tmp_path_factory: pytest.TempPathFactory, fact
+) -> None:
+    seeds = range(number, FILES, len(MUTATIONS))
+    found = try_all(seeds, tmp_path_factory.mktemp("sources"), here)
+    outcome = counted(Counter(t.word for t in found))
+    fact(found[0].mutation, len(found), outcome, max(t.seconds for t in found))
