@@ -20,6 +20,8 @@ GONE_WITHIN_S = 20.0
 """Children notice at once that their parent is gone, but may be in the middle of a library's call."""
 SAME = 1e-9
 """Relative: the kept mesh is the same, sums of threads may take another order."""
+KILLS = 5
+"""In a round; ten rounds."""
 LATEST = 0.97
 """Of the time of a whole run: later ones find a program that has ended."""
 
@@ -125,9 +127,14 @@ def test_two_kills(tmp_path: Path) -> None:
     killed_and_repeated("diagnose", tmp_path, 2, 2)
 
 
+BLOCKS = [("run", i) for i in range(4)] + [
+    (name, i) for i in range(3) for name in ("study", "diagnose")
+]
+
+
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "kills"), [("run", 20), ("study", 15), ("diagnose", 15)])
-def test_fifty_kills(name: str, kills: int, tmp_path: Path, fact) -> None:
-    hits, longest = killed_and_repeated(name, tmp_path, kills, 3)
+@pytest.mark.parametrize(("name", "block"), BLOCKS)
+def test_fifty_kills(name: str, block: int, tmp_path: Path, fact) -> None:
+    hits, longest = killed_and_repeated(name, tmp_path, KILLS, 10 + block)
     outcome = f"{hits} hit it at work; then the right answer, nothing left"
-    fact(f"kill -9 at random moments of `{name}`", kills, outcome, longest)
+    fact(f"kill -9 at random moments of `{name}`, round {block + 1}", KILLS, outcome, longest)
