@@ -4,6 +4,9 @@ K is the least energy over all fields with the given rotation, so its derivative
 is that of the energy with the field held (the field is its own adjoint). The mesh follows the outline,
 nodal rotations ψ = u_θ/r stay, and the energy's difference over a small step is dK. Source: Haug, Choi,
 Komkov, Design Sensitivity Analysis of Structural Systems (1986), ch. 3, for compliance.
+
+Where a dimension gives the outline new corners (a bore that becomes a step) no mesh can follow. There the
+same derivative is taken over the free surface: a layer of thickness t there adds its energy, dK = ∫ Gγ² t dA.
 """
 
 from __future__ import annotations
@@ -21,9 +24,12 @@ from fea.axisymmetric.recovery import recovered
 from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
 from fea.axisymmetric.triangulate import triangulate
 from fea.types import NMM_PER_NM, Elastic
-from geometry.outline import Meridian
+from geometry.errors import ComputationError
+from geometry.outline import SAME, Meridian
 
 BULK = 0.6
+LAYER_POINTS = 16
+"""On each edge: a layer may end within it."""
 TWIST = Wave(0, torsion=True)
 
 
@@ -71,15 +77,65 @@ def moved_stiffness(found: Twist, outline: Meridian) -> float:
 
     Raises
     ------
-    ValueError : the outline has another number of segments.
+    HeldSurfaceError : the outline has new corners, and a surface that is held or turned moves.
     """
     if len(outline.segments) != len(found.mesh.outline.segments):
-        raise ValueError(f"{len(outline.segments)} segments do not follow the solved outline's")
+        return found.K_Nm_per_rad + layer_stiffness(found, outline)
     model = HarmonicModel(_moved(found.mesh, outline), found.material)
     values = np.zeros((model.space.count, 3))
     values[:, TANGENTIAL] = found.rotation * model.space.places[:, 0]
     u = values.ravel()
     return float(u @ (model.stiffness(TWIST) @ u)) / NMM_PER_NM
+
+
+class HeldSurfaceError(ComputationError):
+    """No slope over the free surface: a patch moves by `by_mm` where the outline gets new corners."""
+
+    def __init__(self, patch: str, by_mm: float) -> None:
+        self.patch, self.by_mm = patch, by_mm
+        super().__init__(f"the outline gets new corners and its {patch} moves")
+
+
+def layer_stiffness(found: Twist, outline: Meridian) -> float:
+    """What the thin layers between the solved and another outline add to K [N·m/rad], to first order.
+
+    On a free surface only the strain along it is left, γ = r ∂ψ/∂s; dA = 2πr ds.
+
+    Raises
+    ------
+    HeldSurfaceError : a patch moves; its share is no matter of the energy alone.
+    """
+    mesh = found.mesh
+    space = HarmonicModel(mesh, found.material).space
+    ends = space.places[space.rim[:, :2]]
+    along = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    outward = np.column_stack([along[:, 1], -along[:, 0]]) / length[:, None]
+    added = 0.0
+    for t in (np.arange(LAYER_POINTS) + 0.5) / LAYER_POINTS:
+        at = ends[:, 0] + t * along
+        exact = _nearest(mesh.outline, at)  # the mesh's edges are chords of its arcs
+        thickness = ((_nearest(outline, exact) - exact) * outward).sum(axis=1)
+        _check_patches(mesh, thickness)
+        slopes = np.array([4 * t - 3, 4 * t - 1, 4 - 8 * t])  # of the edge's shape functions
+        strain = at[:, 0] * (found.rotation[space.rim] @ slopes) / length
+        shear = found.material.mu * strain**2
+        added += float((shear * thickness * 2 * np.pi * at[:, 0] * length).sum()) / LAYER_POINTS
+    return added / NMM_PER_NM
+
+
+def _nearest(outline: Meridian, at: np.ndarray) -> np.ndarray:
+    """The outline's nearest points to points (n, 2)."""
+    found = np.stack([s.nearest(at) for s in outline.segments])
+    closest = np.linalg.norm(found - at, axis=2).argmin(axis=0)
+    return found[closest, np.arange(len(at))]
+
+
+def _check_patches(mesh: MeridianMesh, thickness: np.ndarray) -> None:
+    for index, segment in enumerate(mesh.outline.segments):
+        moves = np.abs(thickness[mesh.edge_segment == index])
+        if segment.patch and moves.size and moves.max() > SAME:
+            raise HeldSurfaceError(segment.patch, float(moves.max()))
 
 
 def _moved(mesh: MeridianMesh, outline: Meridian) -> MeridianMesh:

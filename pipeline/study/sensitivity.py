@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fea.axisymmetric.shape_slope import moved_stiffness, twist
+from fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
 from fea.axisymmetric.torsion import torsional_stiffness
 from fea.types import Elastic
 from geometry.design import Design
@@ -19,10 +19,11 @@ from geometry.meridian import meridian
 from pipeline.backlash import ARCSEC_PER_RAD
 from pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
 from pipeline.parts import DRIVEN
-from pipeline.study.evaluate import with_equivalent_ring
+from pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
 
 HELD_STEP = 1e-4
 """Of the dimension: the energy's difference is smooth, so only rounding limits the step."""
+WIDER = 10
 SOLVED_STEP = 0.04
 """Of the dimension: K is known to half of K_TOLERANCE only, and its difference must stand above that."""
 K_TOLERANCE = 3e-4
@@ -37,9 +38,9 @@ class Slope:
 
     Attributes
     ----------
-    held : dK/dp from the energy with the field held [N·m/rad per mm]; None where the outline changes
-        its corners within the step.
-    solved : dK/dp from differences of K solved anew; None where there is no room on both sides.
+    held : dK/dp from the energy with the field held [N·m/rad per mm].
+    solved : dK/dp from differences of K solved anew.
+    why : why one of them is None, else "".
     solved_error : what the bounds of K and the extrapolation leave open of it.
     K_Nm_per_rad : of the part, hole-free.
     backlash_arcsec_per_mm : d(wind-up of the part between −T_L and +T_L)/dp.
@@ -53,6 +54,7 @@ class Slope:
     solved_error: float
     K_Nm_per_rad: float
     backlash_arcsec_per_mm: float
+    why: str = ""
 
     @property
     def best(self) -> float:
@@ -97,39 +99,64 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
         slopes = []
         for key, p in lengths(plain, part).items():
             say(f"dK/dp of {key}")
-            held = _central(
-                lambda v, part=part, solved=solved: moved_stiffness(  # type: ignore[misc]
-                    solved, meridian(with_values(plain, v), part)
-                ),
-                key, p, HELD_STEP,
-            )  # fmt: skip
-            again, error = _richardson(K, key, p, here)
+
+            def moved(v: dict[str, float], part: str = part, solved: Twist = solved) -> float:
+                return moved_stiffness(solved, meridian(with_values(plain, v), part))
+
+            held, why = None, ""
+            try:
+                held = _held(moved, key, p)
+            except OUR_ERRORS as fault:
+                why = str(fault)
+            again, error, no_room = _richardson(K, key, p, here)
+            if held is None and again is None:
+                say(f"no dK/dp of {key}: {why}")
+                continue
             best = held if held is not None else (again or 0.0)
             windup = -2 * design.load.torque_Nm / here**2 * best * ARCSEC_PER_RAD
-            slopes.append(Slope(key, part, p, held, again, error, here, windup))
+            why = why or no_room
+            slopes.append(Slope(key, part, p, held, again, error, here, windup, why))
         found += sorted(slopes, key=lambda s: -abs(s.elasticity))
     return tuple(found)
 
 
-def _central(
-    K: Callable[[dict[str, float]], float], key: str, p: float, share: float
-) -> float | None:
+def _held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
+    """A difference over a step so small that one side does where the other cannot be built.
+
+    Raises
+    ------
+    DesignError, ComputationError : neither side can, by a wider step either.
+    """
+    for share in (HELD_STEP, WIDER * HELD_STEP):  # a new step in the outline has a least height
+        h, ends = share * p, []
+        for side in (h, -h):
+            try:
+                ends.append((side, K({key: p + side})))
+            except DesignError as fault:
+                refused = fault
+        if ends:
+            (far, high), (near, low) = ends[0], ends[1] if len(ends) > 1 else (0.0, K({}))
+            return (high - low) / (far - near)
+    raise refused
+
+
+def _central(K: Callable[[dict[str, float]], float], key: str, p: float, share: float) -> float:
     h = share * p
-    try:
-        return (K({key: p + h}) - K({key: p - h})) / (2 * h)
-    except (DesignError, ValueError):
-        return None
+    return (K({key: p + h}) - K({key: p - h})) / (2 * h)
 
 
 def _richardson(
     K: Callable[[dict[str, float]], float], key: str, p: float, here: float
-) -> tuple[float | None, float]:
-    """Central differences over h and h/2, extrapolated to h = 0; and what may be wrong with them."""
-    share = SOLVED_STEP
+) -> tuple[float | None, float, str]:
+    """Central differences over h and h/2, extrapolated to h = 0; what may be wrong with them, and why
+    there are none."""
+    share, why = SOLVED_STEP, ""
     for _ in range(TRIES):
-        wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
-        if wide is not None and close is not None:
-            noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
-            return (4 * close - wide) / 3, noise + abs(close - wide) / 3
-        share *= NARROWER
-    return None, 0.0
+        try:
+            wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
+        except OUR_ERRORS as fault:
+            share, why = share * NARROWER, str(fault)
+            continue
+        noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
+        return (4 * close - wide) / 3, noise + abs(close - wide) / 3, ""
+    return None, 0.0, why

@@ -28,6 +28,8 @@ def _entry(s: Slope) -> dict[str, Any]:
         found["difference_error_Nm_per_rad_per_mm"] = s.solved_error
     if s.agree is not None:
         found["agree"] = s.agree
+    if s.why:
+        found["one_way_because"] = s.why
     return found | {
         "pct_per_pct": s.elasticity,
         "backlash_arcsec_per_mm": s.backlash_arcsec_per_mm,
@@ -48,7 +50,7 @@ def lines(slopes: Sequence[Slope]) -> list[str]:
     for s in slopes:
         held = "-" if s.held is None else f"{s.held:.1f}"
         solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
-        word = {True: "", False: "  DISAGREE", None: "  one way only"}[s.agree]
+        word = {True: "", False: "  DISAGREE", None: f"  one way only: {s.why}"}[s.agree]
         out.append(
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
             f"{s.backlash_arcsec_per_mm:10.3f}{word}"

@@ -5,20 +5,31 @@ from itertools import groupby
 import pytest
 from study_bench import EXAMPLES
 
+from fea.axisymmetric.shape_slope import (
+    HeldSurfaceError,
+    Twist,
+    layer_stiffness,
+    moved_stiffness,
+    twist,
+)
+from fea.types import Elastic
+from geometry.design import Design
+from geometry.errors import DesignError
 from geometry.load import load_design
-from pipeline.study.sensitivity import sensitivities
+from geometry.meridian import meridian
+from pipeline.diagnosis.specimens.designs import with_values, without_holes
+from pipeline.study.sensitivity import _held, sensitivities
 
 
 @pytest.mark.parametrize("name", ["xb1-40", "hat-25"])
 def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     """K is proportional to the cube of all lengths together, so Σ p·dK/dp = 3K (Euler)."""
     slopes = sensitivities(load_design(EXAMPLES / f"{name}.toml"), lambda line: None)
-    assert [s.key for s in slopes if s.agree is False] == []
-    assert sum(s.agree is True for s in slopes) >= 12
+    assert [(s.key, s.why) for s in slopes if s.agree is not True] == []
     for part, own in groupby(slopes, lambda s: s.part):
         total = sum(s.elasticity for s in own)
-        # the solved field's K is up to 0.1 % high and its slopes with it; one-way ones know 1 % of K
-        assert total == pytest.approx(3.0, abs=0.03), part
+        # the solved field's K is up to 0.1 % high and its slopes with it
+        assert total == pytest.approx(3.0, abs=0.01), part
 
 
 def test_the_windup_falls_where_the_stiffness_rises() -> None:
@@ -27,3 +38,54 @@ def test_the_windup_falls_where_the_stiffness_rises() -> None:
         assert s.best * s.backlash_arcsec_per_mm <= 0
     wall = next(s for s in slopes if s.key == "flexspline.wall_thickness_mm")
     assert wall.best > 0
+
+
+@pytest.fixture(scope="module")
+def shaft() -> tuple[Design, Twist]:
+    """The example's shaft without holes, whose bore is one line, turned."""
+    plain = without_holes(load_design(EXAMPLES / "xb1-40.toml"))
+    material = Elastic.of(plain.shaft_material)
+    return plain, twist(meridian(plain, "shaft"), material, "grip", 1e-3)
+
+
+BORES = "shaft.segment[0].inner_diameter_mm", "shaft.segment[1].inner_diameter_mm"
+
+
+def test_a_layer_adds_what_a_mesh_that_follows_adds(shaft: tuple[Design, Twist]) -> None:
+    """Both bores at once keep the corners: volume and surface give one derivative."""
+    design, solved = shaft
+    wider = meridian(with_values(design, dict.fromkeys(BORES, 6.01)), "shaft")
+    followed = moved_stiffness(solved, wider) - solved.K_Nm_per_rad
+    # the surface takes the strain of an energy that is known to 1e-3, thus to its root, 3 %
+    assert layer_stiffness(solved, wider) == pytest.approx(followed, rel=0.03)
+
+
+def test_layers_of_each_bore_add_up(shaft: tuple[Design, Twist]) -> None:
+    """Each alone is a step; edges cut by the step's place count by points, of which each has 16."""
+    design, solved = shaft
+    one, two, both = (
+        layer_stiffness(solved, meridian(with_values(design, dict.fromkeys(keys, 6.01)), "shaft"))
+        for keys in (BORES[:1], BORES[1:], BORES)
+    )
+    assert one + two == pytest.approx(both, rel=0.02)
+
+
+def test_a_surface_that_is_turned_has_no_layer(shaft: tuple[Design, Twist]) -> None:
+    design, solved = shaft
+    thicker = with_values(design, {"shaft.segment[1].outer_diameter_mm": 18.01})
+    with pytest.raises(HeldSurfaceError) as caught:
+        layer_stiffness(solved, meridian(thicker, "shaft"))
+    assert caught.value.patch == "grip"
+    assert caught.value.by_mm == pytest.approx(0.005)
+
+
+@pytest.mark.parametrize("barred", [(), (1,), (-1,)])
+def test_one_side_does_where_the_other_cannot_be_built(barred: tuple[int, ...]) -> None:
+    def K(values: dict[str, float]) -> float:
+        p = values.get("p", 2.0)
+        if (p > 2.0 and 1 in barred) or (p < 2.0 and -1 in barred):
+            raise DesignError("p", p, "does not fit")
+        return p**3
+
+    # one-sided: off by half the second derivative times the step, 6 · 2e-4
+    assert _held(K, "p", 2.0) == pytest.approx(12.0, abs=2e-3)
