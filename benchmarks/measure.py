@@ -18,6 +18,12 @@ MEMORY_LIMIT = 16 * 2**30
 TIME_LIMIT_S = 600.0
 
 
+def cpu() -> str:
+    """The processor's name (Linux)."""
+    with open("/proc/cpuinfo", encoding="utf-8") as info:
+        return next((line.split(":")[1].strip() for line in info if "model name" in line), "")
+
+
 def run(
     command: Sequence[str],
     folder: Path,

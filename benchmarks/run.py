@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from cases import ACCURACIES_PCT, CASES, ROOT
-from measure import repeated
+from measure import cpu, repeated
 from page import page
 from programs import Peer, Setting, ours, peers, stiffness_command
 from references import references
@@ -125,13 +125,11 @@ def timed(
 
 
 def machine(peers_python: str) -> dict[str, Any]:
-    with open("/proc/cpuinfo", encoding="utf-8") as info:
-        cpu = next((line.split(":")[1].strip() for line in info if "model name" in line), "")
     code = "import ngsolve; print(ngsolve.__version__)"
     ngsolve = subprocess.run([peers_python, "-c", code], capture_output=True, text=True, check=True)
     ccx = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False)
     return {
-        "cpu": cpu, "cores": os.cpu_count(), "memory_GB": round(memory_GB(), 1),
+        "cpu": cpu(), "cores": os.cpu_count(), "memory_GB": round(memory_GB(), 1),
         "system": platform.platform(), "python": platform.python_version(),
         "flexspline": version("flexspline"), "NGSolve": ngsolve.stdout.split()[-1],
         "CalculiX": ccx.stdout.split()[-1], "numpy": version("numpy"), "scipy": version("scipy"),

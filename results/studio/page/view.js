@@ -10,7 +10,7 @@ export class View {
   constructor(root, looks) {
     this.root = root;
     this.options = { open: false, deformed: true };
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
     this.renderer.setPixelRatio(window.devicePixelRatio);
     root.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
