@@ -14,7 +14,6 @@ from PIL import Image
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 SCALE = 1.25
-COLOURS = 192
 
 
 def main() -> None:
@@ -29,8 +28,7 @@ def main() -> None:
         page.tab.wait_for_timeout(1000)
         shot = Image.open(io.BytesIO(page.tab.screenshot())).convert("RGB")
         page.close()
-    small = shot.quantize(COLOURS, dither=Image.Dither.NONE)
-    small.save(HERE / "xb1-40-studio.png", optimize=True)
+    shot.save(HERE / "xb1-40-studio.png", optimize=True)
 
 
 if __name__ == "__main__":
