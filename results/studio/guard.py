@@ -79,13 +79,26 @@ class Guard:
         if not self.token and host.lower() not in LOCAL_NAMES:
             return "this server answers to the names of its own machine only"
         origin = request.headers.get("Origin")
-        if origin is not None and urlsplit(origin).netloc.lower() != request.host.lower():
+        if origin is not None and _netloc(origin) != request.host.lower():
             return "requests from other sites are refused"
         if self.token:
             given = request.query.get("token") or request.cookies.get(_cookie(request), "")
-            if not hmac.compare_digest(given.encode(), self.token.encode()):
+            if not hmac.compare_digest(_bytes(given), _bytes(self.token)):
                 return "give the token: open the address that flexspline studio printed"
         return ""
+
+
+def _netloc(origin: str) -> str | None:
+    """Host and port in lower case; None of what is no address."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None
+
+
+def _bytes(text: str) -> bytes:
+    """As it came, whatever its encoding."""
+    return text.encode("utf-8", "surrogateescape")
 
 
 def _cookie(request: web.Request) -> str:

@@ -71,6 +71,8 @@ def test_without_the_token_nothing_is_served() -> None:
             assert (await client.get(path)).status == 403, path
         for path in ("/open", "/text", "/measured/a"):
             assert (await client.post(path, data=b"")).status == 403, path
+        for cookie in ("flexspline-studio=right", f"flexspline-studio-{client.port}=\udcff"):
+            assert (await client.get("/", headers={"Cookie": cookie})).status == 403, cookie
         with pytest.raises(WSServerHandshakeError) as refused:
             await client.ws_connect("/live")
         assert refused.value.status == 403
@@ -79,6 +81,7 @@ def test_without_the_token_nothing_is_served() -> None:
         cookie = moved.headers["Set-Cookie"]
         assert "HttpOnly" in cookie
         assert "SameSite=Strict" in cookie
+        assert cookie.startswith(f"flexspline-studio-{client.port}=")  # one jar for all ports
         headers = {"Cookie": cookie.partition(";")[0]}
         assert (await client.get("/start", headers=headers)).status == 200
         async with client.ws_connect("/live", headers=headers) as socket:
@@ -96,6 +99,7 @@ def test_other_sites_and_foreign_names_are_refused() -> None:
             {"Origin": "http://evil.example"},
             {"Origin": f"http://127.0.0.1:{client.port + 1}"},
             {"Origin": "null"},
+            {"Origin": "http://["},
         ):
             assert (await client.get("/start", headers=headers)).status == 403, headers
             with pytest.raises(WSServerHandshakeError):

@@ -116,6 +116,26 @@ def test_measured_data_are_diagnosed(page: Page, tmp_path: Path) -> None:
     page.at("#findings.stale").wait_for()
 
 
+DROP = """([zone, name, text]) => {
+  const data = new DataTransfer();
+  data.items.add(new File([text], name, { type: "text/csv" }));
+  document.querySelector(zone).dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true }));
+}"""
+
+
+def test_a_file_dropped_while_another_is_weighed_takes_its_place(page: Page) -> None:
+    page.quick()
+    page.at("#tab-measured").click()
+    sweep = END_POINTS.with_name("xb1-40-sweep.csv")
+    page.tab.evaluate(DROP, ["#drop", sweep.name, sweep.read_text(encoding="utf-8")])
+    page.at("#work-diagnose.running").wait_for()
+    page.tab.evaluate(DROP, ["#drop", "short <i>.csv", "torque_Nm,angle_arcsec\n0.1,1\n0.2,x\n"])
+    page.at("#progress-diagnose.fault:has-text('short <i>.csv:3')").wait_for()
+    page.tab.wait_for_timeout(1000)  # the first one's end would come within
+    assert page.at("#verdict").count() == 0
+    assert page.at("#guide").is_visible()
+
+
 def test_a_file_too_large_is_refused(page: Page, tmp_path: Path) -> None:
     large = tmp_path / "large.csv"
     with large.open("wb") as out:
