@@ -14,6 +14,10 @@ from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
 from pipeline.study.verified import Verified
 
+USUAL_FIGURES = (
+    "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total",
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class StudyResult:
@@ -29,6 +33,23 @@ class StudyResult:
     def design_of(self, row: Row) -> Design:
         """The whole design of a row."""
         return with_values(self.study.design, linked(self.study, row.values))
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Figures to look at: the objectives, or where there are none the usual ones."""
+        wanted = tuple(self.study.file.objective) or USUAL_FIGURES
+        return tuple(k for k in wanted if all(k in r.outcome.figures for r in self.built))
+
+    @property
+    def nearest(self) -> Row | None:
+        """The row with figures that oversteps the constraints least, by shares of their limits."""
+        limits = self.study.file.constraint
+
+        def overstep(row: Row) -> float:
+            figures = row.outcome.figures
+            return sum(max(0.0, x.excess(figures[k])) / x.size for k, x in limits.items())
+
+        return min(self.built, key=overstep, default=None)
 
     @property
     def built(self) -> tuple[Row, ...]:

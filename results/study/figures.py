@@ -39,8 +39,10 @@ def write_figures(folder: Path, result: StudyResult, best: BestField | None = No
         if best:
             written.append(folder / PICTURE)
             write_best_stress(written[-1], best)
+    if result.shown and not result.scatter:
         written.append(folder / "parallel.png")
         write_parallel(written[-1], result)
+    if objectives and not result.scatter:
         written.append(folder / "convergence.png")
         write_convergence(written[-1], result)
     for i, scatter in enumerate(result.scatter):
@@ -91,15 +93,15 @@ def write_pareto(path: Path, result: StudyResult) -> None:
 
 
 def write_parallel(path: Path, result: StudyResult) -> None:
-    """A line per design over the varied keys and the objectives, coloured by the first objective."""
+    """A line per design over the varied keys and the figures shown, coloured by the first of these."""
     import matplotlib as mpl
     from matplotlib.collections import LineCollection
 
-    objectives = list(result.study.file.objective)
-    keys = list(result.built[0].values)[: max(1, MOST_AXES - len(objectives))]
+    shown = list(result.shown)
+    keys = list(result.built[0].values)[: max(1, MOST_AXES - len(shown))]
     columns = [np.array([r.values[k] for r in result.built]) for k in keys]
-    columns += [_values(result.built, k) for k in objectives]
-    names = keys + objectives
+    columns += [_values(result.built, k) for k in shown]
+    names = keys + shown
     low = [float(c.min()) for c in columns]
     high = [float(c.max()) for c in columns]
     scaled = np.column_stack(
@@ -130,10 +132,11 @@ def write_parallel(path: Path, result: StudyResult) -> None:
         axes.set_xlim(-0.3, len(names) - 0.7)
         axes.set_ylim(-0.02, 1.02)
         axes.axis("off")
-        shown = entry(objectives[0])
+        first = entry(shown[0]).mathtext
         figure.text(
             0.08, 0.955,
-            f"red: the best; colour: {shown.mathtext} from low (dark) to high (bright); grey: not allowed",
+            f"{'red: the best; ' if best else ''}colour: {first} from low (dark) to high (bright)"
+            f"{'; grey: not allowed' if off.any() else ''}",
             fontsize=9.5, color=INK,
         )  # fmt: skip
         save_png(figure, path)

@@ -34,7 +34,7 @@ def _holes(result: StudyResult) -> Iterable[str]:
     }
     used = {k: f for k, f in factors.items() if f is not None}
     if used:
-        said = " and ".join(f"{k} by {signed(100 * (f - 1), 1)} %" for k, f in used.items())
+        said = " and ".join(f"{k} by {_percent(100 * (f - 1))}" for k, f in used.items())
         yield (
             f"Holes and keyway change {said} in the design that the study began with (one solid solve). "
             "Every design's K is corrected by that; its bounds are widened by what both solves leave open "
@@ -48,3 +48,7 @@ def _holes(result: StudyResult) -> Iterable[str]:
         )
     if keys := unfollowed(result.study):
         yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
+
+
+def _percent(value: float) -> str:
+    return f"{signed(value, 1)} %" if abs(value) >= 0.05 else "less than 0.05 %"

@@ -10,10 +10,9 @@ from pipeline.study.store import Row
 from pipeline.study.verified import Verified
 from results.records import program_version
 from results.study.labels import entry
-from results.study.why import signed
+from results.study.why import disagreement, misses, signed
 
 SHOWN = 5
-ALARM = "they disagree beyond their bounds; the fast model knows holes only as the nominal design's"
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
@@ -103,6 +102,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
             for k in file.objective
         )
         lines.append(f"  design {row.slot}: {values}: {figures}")
+    lines += [f"  {line}" for line in misses(result)]
     for v in result.verified:
         lines += _verified_words(v)
     for s in result.scatter:
@@ -116,7 +116,7 @@ def _verified_words(v: Verified) -> list[str]:
     lines = [f"  design {v.slot}, fast and solid model:"]
     for c in v.checks:
         figure = entry(c.key)
-        alarm = "" if c.agrees else f"  ALARM: {ALARM}"
+        alarm = "" if c.agrees else f"  ALARM: {disagreement(c)}"
         lines.append(
             f"    {figure.symbol} {figure.text(c.fast)} and {figure.with_unit(c.solid)} "
             f"({signed(c.difference_pct, 1)} %){alarm}"
@@ -135,8 +135,8 @@ def _scatter_words(s: Scatter) -> list[str]:
         x = s.inputs[i]
         half = next(t for t in s.tightened if t.key == x.key and t.factor == 0.5)
         lines.append(
-            f"    {entry(x.key).name}: Sobol index {s.indices.first[i]:.2f} ± "
-            f"{s.indices.first_conf[i]:.2f}, total {s.indices.total[i]:.2f} ± "
-            f"{s.indices.total_conf[i]:.2f}; half its scatter buys {half.bought:.2f} {figure.unit}"
+            f"    {entry(x.key).name}: Sobol index {s.indices.first[i]:z.2f} ± "
+            f"{s.indices.first_conf[i]:.2f}, total {s.indices.total[i]:z.2f} ± "
+            f"{s.indices.total_conf[i]:.2f}; half its scatter buys {max(0.0, half.bought):.2f} {figure.unit}"
         )
     return lines

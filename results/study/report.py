@@ -22,12 +22,12 @@ from results.report.document import (
     Pictures,
     Table,
 )
-from results.report.spans import Text, alarm
+from results.report.spans import Text, alarm, plain
 from results.study.best_stress import PICTURE, VIEW, turning_best
 from results.study.labels import entry
 from results.study.notes import notes
 from results.study.scatter_section import scatter_section
-from results.study.why import failures, influences, limits
+from results.study.why import disagreement, failures, influences, limits, misses
 
 COLUMNS = 5
 """Best designs side by side."""
@@ -43,7 +43,7 @@ WIDTHS = {
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design built, and the front that none beats.",
-    "parallel.png": "Every design as a line over the varied dimensions and the objectives.",
+    "parallel.png": "Every design as a line over the varied dimensions and its figures.",
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
     PICTURE: "Design {first} on the wave generator, by the solid model.",
@@ -102,8 +102,11 @@ def _picture(name: str, result: StudyResult) -> Block:
 
 
 def _why(result: StudyResult) -> Iterable[Block]:
+    if missed := tuple(misses(result)):
+        yield Heading("No design keeps to every constraint")
+        yield Bullets(missed)
     if why := (*influences(result), *limits(result)):
-        yield Heading("Why they win")
+        yield Heading("Why they win" if result.pareto else "What moves what")
         yield Bullets(why)
 
 
@@ -162,3 +165,6 @@ def _verified(result: StudyResult) -> Iterable[Block]:
             ),
             tuple(lines),
         )  # fmt: skip
+    wrong = (c for v in result.verified for c in v.checks if not c.agrees)
+    if reasons := tuple(dict.fromkeys(map(disagreement, wrong))):
+        yield Bullets(tuple((*alarm("ALARM"), *plain(f": {why}.")) for why in reasons))

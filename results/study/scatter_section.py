@@ -42,7 +42,7 @@ def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
         kind = "s =" if x.normal else "±"
         yield (
             unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
-            f"{s.indices.first[i]:.2f} ± {s.indices.first_conf[i]:.2f}",
-            f"{s.indices.total[i]:.2f} ± {s.indices.total_conf[i]:.2f}",
+            f"{s.indices.first[i]:z.2f} ± {s.indices.first_conf[i]:.2f}",
+            f"{s.indices.total[i]:z.2f} ± {s.indices.total_conf[i]:.2f}",
             *(f"{max(0.0, bought[f]):.1f}" for f in (0.75, 0.5, 0.25, 0.0)),
         )  # fmt: skip

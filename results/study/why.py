@@ -9,6 +9,7 @@ import numpy as np
 from pipeline.study.holes import of_holes
 from pipeline.study.load import Study
 from pipeline.study.result import StudyResult
+from pipeline.study.verified import STRESS_SHARE, Check
 from results.study.labels import entry
 
 STRONG = 0.3
@@ -25,7 +26,7 @@ def influences(result: StudyResult) -> list[str]:
     if len(rows) < FEWEST:
         return []
     said = []
-    for key in result.study.file.objective:
+    for key in result.shown:
         y = np.array([r.outcome.figures[key] for r in rows])
         found = []
         for varied in result.study.file.vary:
@@ -40,6 +41,24 @@ def influences(result: StudyResult) -> list[str]:
         ]
         title = entry(key).name
         said.append(f"{title} {', '.join(strong) if strong else 'follows no single dimension'}.")
+    return said
+
+
+def misses(result: StudyResult) -> list[str]:
+    """Where no design keeps to every constraint: how many keep to each, and the nearest one."""
+    row = result.nearest
+    if row is None or result.feasible:
+        return []
+    said = []
+    for key, limit in result.study.file.constraint.items():
+        q = entry(key)
+        kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
+        ends = ((limit.min, "at least"), (limit.max, "at most"))
+        asked = " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
+        said.append(
+            f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
+            f"constraints, design {row.slot}, has {q.with_unit(row.outcome.figures[key])}."
+        )
     return said
 
 
@@ -67,6 +86,16 @@ def limits(result: StudyResult) -> list[str]:
                 f"Design {best.slot} is held by the constraint on {q.name} ({q.with_unit(value)})."
             )
     return said
+
+
+def disagreement(check: Check) -> str:
+    """Why the fast and the solid model may differ by more than they should."""
+    if check.fast_bounds and check.solid_bounds:
+        return "they disagree beyond their bounds; the fast model knows holes only as the nominal design's"
+    return (
+        f"they differ by more than {100 * STRESS_SHARE:g} %; without bounds of either: the fast model's "
+        "mesh is the finer one, holes near the peak are in the solid one alone"
+    )
 
 
 def unfollowed(study: Study) -> str:

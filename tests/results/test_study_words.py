@@ -1,0 +1,76 @@
+"""What a study's report says when models disagree, and when no design is allowed."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pipeline.study.evaluate import Outcome
+from pipeline.study.load import study_from
+from pipeline.study.result import StudyResult
+from pipeline.study.store import Row
+from pipeline.study.verified import Check, Verified
+from results.report.pdf import pdf_of
+from results.study.report import study_document
+from results.study.why import disagreement, influences, misses
+
+WALL = "flexspline.wall_thickness_mm"
+K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ min = 0.3, max = 0.5 }}
+[objective]
+"{K}" = "maximize"
+[constraint]
+"{STRESS}" = {{ max = 300.0 }}
+"{TOTAL}" = {{ max = 90.0 }}
+[run]
+method = "sobol"
+"""
+
+
+def result_of(text: str = STUDY) -> StudyResult:
+    """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
+    study = study_from(tomllib.loads(text), Path(__file__).parents[2] / "examples", "test")
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i}))
+        for i in range(10)
+    )  # fmt: skip
+    return StudyResult(study, rows)
+
+
+def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
+    stress, total = misses(result_of())
+    assert "0 of 10 designs keep to at most 300" in stress
+    assert "design 0, has 310" in stress
+    assert "6 of 10 designs keep to at most 90.0" in total  # 85, 86, …, 90
+
+
+def test_where_something_is_allowed_nothing_is_missed() -> None:
+    assert misses(result_of(STUDY.replace("300.0", "310.0"))) == []
+
+
+def test_without_an_objective_the_usual_figures_are_followed() -> None:
+    said = influences(result_of(STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")))
+    assert [s.split(",")[0] for s in said] == [
+        "Flexspline stiffness", "Peak von Mises stress", "Backlash",
+    ]  # fmt: skip
+    assert all("rises with wall thickness (rank correlation +1.00)" in s for s in said)
+
+
+@pytest.mark.parametrize(
+    ("check", "said"),
+    [
+        (Check(K, 100.0, (99.0, 101.0), 90.0, (89.0, 91.0)), "beyond their bounds"),
+        (Check(STRESS, 500.0, None, 600.0, None), "by more than 5 %"),
+    ],
+)
+def test_an_alarm_says_what_may_be_behind_it(check: Check, said: str) -> None:
+    assert not check.agrees
+    assert said in disagreement(check)
+    result = replace(result_of(), verified=(Verified(0, (check,)),))
+    document = study_document(result, ())
+    assert said in str(document.payload())
+    assert pdf_of(document, {}).startswith(b"%PDF")
