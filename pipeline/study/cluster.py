@@ -45,6 +45,28 @@ class Hands:
         return self.executor.submit(function, *arguments)
 
 
+def check_scheduler(address: str) -> None:
+    """See that a scheduler answers, before anything is written.
+
+    Raises
+    ------
+    StudyError : nobody does.
+    """
+    with _client_of(address):
+        pass
+
+
+def _client_of(address: str) -> Any:
+    import distributed
+
+    Client: Any = distributed.Client  # untyped in a typed package
+    try:
+        return Client(address, timeout=CONNECT_S)
+    except (OSError, ValueError, TimeoutError) as fault:
+        reason = f"no Dask scheduler answers there ({fault})"
+        raise StudyError("run.scheduler", address, reason) from fault
+
+
 @contextmanager
 def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
     """Local worker processes, one thread each, or a running cluster's workers.
@@ -74,12 +96,7 @@ def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
     }
     with dask.config.set(settings):
         if scheduler:
-            try:
-                client = Client(scheduler, timeout=CONNECT_S)
-            except (OSError, ValueError, TimeoutError) as fault:
-                reason = f"no Dask scheduler answers there ({fault})"
-                raise StudyError("run.scheduler", scheduler, reason) from fault
-            with client:
+            with _client_of(scheduler) as client:
                 yield Hands(
                     client.get_executor(pure=False, retries=0),
                     lambda: max(1, sum(client.nthreads().values())),

@@ -23,7 +23,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
     with answered(file):
         from pipeline.study.best import best_field
-        from pipeline.study.cluster import dask_hands
+        from pipeline.study.cluster import check_scheduler, dask_hands
         from pipeline.study.load import load_study
         from pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
         from results.records import as_json
@@ -38,6 +38,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         folder = folder_of(file, out)
         run = asked.file.run
         source_of(asked)  # refuse before anything is written
+        if run.scheduler and not folder.exists():
+            check_scheduler(run.scheduler)
         ledger = ledger_of(asked, folder)
         if keys := unfollowed(asked):
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")

@@ -99,12 +99,16 @@ def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
+        ("workers = {workers}", 'scheduler = "tcp://127.0.0.1:1"', "no Dask scheduler answers"),
         ('method = "grid"', 'method = "magic"', "run.method"),
         ("min = 0.36", "min = 0.9", "below max"),
         ('"K_b_Nm_per_rad" =', '"K_b_Nm_per_radian" =', "did you mean K_b_Nm_per_rad?"),
     ],
 )
-def test_a_wrong_study_leaves_nothing(old: str, new: str, said: str, tmp_path: Path) -> None:
+def test_a_wrong_study_leaves_nothing(
+    old: str, new: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pipeline.study.cluster.CONNECT_S", 1.0)
     out = tmp_path / "out"
     done = CliRunner().invoke(
         app, ["study", str(written(tmp_path, text=STUDY.replace(old, new))), "--out", str(out)]
