@@ -75,8 +75,8 @@ def _group(title: str, location: Location, table: Tables | None, kind: str) -> I
         _entry((*location, key), node_at((*location, key), kind), table.get(key), scale)
         for key in node_at(location, kind).get("properties", {})
     ]
-    entries = sorted((e for e in entries if e), key=_after_dimensions)
-    yield {"title": title, "at": list(location), "entries": entries}
+    known = [e for e in entries if e]
+    yield {"title": title, "at": list(location), "entries": sorted(known, key=_after_dimensions)}
 
 
 def _after_dimensions(entry: Tables) -> int:

@@ -1,6 +1,6 @@
 // Two small charts from the same numbers and in the same colours as the report's.
 
-import { el, grouped, svg } from "./dom.js";
+import { el, grouped, signed, svg } from "./dom.js";
 
 // The four terms end to end, the total with one standard deviation.
 export function chartBudget(budget, looks, pinned, solid) {
@@ -22,13 +22,12 @@ export function chartBudget(budget, looks, pinned, solid) {
     const other = pinned?.rows.find((entry) => entry.key === row.key);
     const solved = solid?.rows.find((entry) => entry.key === row.key);
     const change = other ? row.value - other.value : null;
-    const plus = change > 0 ? "+" : "";
     return el("tr", { "data-key": row.key },
       el("td", { class: "sym" }, swatch ? dot(row.colour) : null), el("td", { class: "what" }, row.name.replace(", total", "")),
       withValue(row),
       el("td", { class: "share" }, swatch ? `${Math.round((100 * row.value) / total)} %` : `± ${rows.std.text} (1σ)`),
       solid ? el("td", { class: "value solid" }, solved?.text ?? "") : null,
-      pinned ? el("td", { class: "delta" }, change === null ? "" : `${plus}${grouped(change, row.decimals)}`) : null);
+      pinned ? el("td", { class: "delta" }, change === null ? "" : signed(change, row.decimals)) : null);
   };
   const doubt = budget.sources.map(([name, text]) => `${name} ${text}`).join(", ");
   return el("div", { class: "budget" }, bar,

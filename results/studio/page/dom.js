@@ -33,6 +33,11 @@ export function grouped(value, decimals) {
   return sign + spaced + (rest ? `.${rest}` : "");
 }
 
+// A difference, with its sign unless it prints as 0.
+export function signed(change, decimals) {
+  return (change > 0 && Number(change.toFixed(decimals)) > 0 ? "+" : "") + grouped(change, decimals);
+}
+
 export function download(data, name, type) {
   const address = URL.createObjectURL(new Blob([data], { type }));
   el("a", { href: address, download: name }).click();

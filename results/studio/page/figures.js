@@ -1,7 +1,7 @@
 // The right side: stiffnesses, peaks and the backlash sum; what a pinned design and the solid model say.
 
 import { chartBudget, chartLine } from "./charts.js";
-import { el, grouped, symbol } from "./dom.js";
+import { el, signed, symbol } from "./dom.js";
 
 const SHORT = {
   K_b_Nm_per_rad: "flexspline, even torque",
@@ -53,6 +53,7 @@ export class Figures {
   draw() {
     if (!this.now) return;
     this.root.classList.toggle("narrow", this.narrow);
+    this.root.classList.toggle("crowded", Boolean(this.solid && this.pinned));
     const unit = (rows) => rows.find((row) => row.unit)?.unit ?? "";
     this.stiffness.replaceChildren(
       this.heading("Stiffness", unit(this.now.stiffness)),
@@ -124,9 +125,7 @@ export class Figures {
     const other = this.pinned[part].find((entry) => entry.key === row.key);
     if (other?.value === undefined || row.value === undefined) return el("td", {});
     const change = row.value - other.value;
-    const percent = grouped((100 * change) / other.value, 1);
-    const plus = change > 0 ? "+" : "";
-    return el("td", { class: "delta" }, `${plus}${grouped(change, row.decimals)}`, el("br"),
-      el("span", { class: "limit" }, `${plus}${percent} %`));
+    return el("td", { class: "delta" }, signed(change, row.decimals), el("br"),
+      el("span", { class: "limit" }, `${signed((100 * change) / other.value, 1)} %`));
   }
 }

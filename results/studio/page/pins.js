@@ -31,7 +31,7 @@ export class Pins {
     if (!state.pinned) return;
     const found = differences(state.pinned.tables, state.good);
     if (!found.length) this.figures.pinned = state.pinned.answer = structuredClone(this.figures.now);
-    const text = (value) => (value === undefined ? "absent" : typeof value === "object" ? "a table" : String(value));
+    const text = (value) => (value === undefined ? "absent" : typeof value === "object" ? Object.values(value).join(", ") : String(value));
     this.list.replaceChildren(el("h2", {}, `Pinned: ${state.pinned.tables.name}`),
       found.length ? el("table", {}, el("tbody", {}, ...found.map(({ key, before, after }) =>
         el("tr", {}, el("td", {}, key), el("td", { class: "value" }, text(before)), el("td", {}, "→"), el("td", { class: "value" }, text(after))))))

@@ -16,20 +16,32 @@ export class Work {
     this.button.textContent = "Stop";
     this.button.classList.add("running");
     this.line.className = "progress";
-    this.line.textContent = "starting…";
+    this.text = "starting…";
+    this.began = Date.now();
+    clearInterval(this.clock);
+    this.clock = setInterval(() => this.tell(), 1000);
+    this.tell();
   }
 
   halt() {
-    this.line.textContent = "stopping…";
+    this.text = "stopping…";
+    this.tell();
     this.stop(this.kind);
   }
 
   progress(text) {
-    if (this.running) this.line.textContent = this.said(text.replace(/^\[\s*/, "["));
+    this.text = this.said(text.replace(/^\[[^\]]*\]\s*/, ""));
+    this.tell();
+  }
+
+  // The command's own stamps stand still between its lines; this clock does not.
+  tell() {
+    if (this.running) this.line.textContent = `${Math.round((Date.now() - this.began) / 1000)} s · ${this.text}`;
   }
 
   ended(note) {
     this.running = false;
+    clearInterval(this.clock);
     this.button.textContent = this.words;
     this.button.classList.remove("running");
     this.line.className = note.state === "failed" ? "progress fault" : "progress";
