@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
-from fea.solid.sizing import Grading
+from fea.solid.sizing import Grading, refuse_beyond
 from geometry.design import Design
 
 CHORD_PER_ENVELOPE = 1.5
@@ -15,7 +15,12 @@ layer of long elements, not a part full of short ones."""
 
 
 def first_spec(design: Design, part: str) -> MeshSpec:
-    """The first, coarse mesh; `solver.edge_length_mm` fixes its largest edge."""
+    """The first, coarse mesh; `solver.edge_length_mm` fixes its largest edge.
+
+    Raises
+    ------
+    SolidError : that edge asks for more points on a radian of the part's outside than any mesh may have.
+    """
     if part == "shaft":
         segments = design.shaft.segment
         wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
@@ -31,6 +36,8 @@ def first_spec(design: Design, part: str) -> MeshSpec:
         near, envelope = min(wall, far / 2, outer / 50), wall / 20
     if design.solver.edge_length_mm is not None:
         far = design.solver.edge_length_mm
+        length = design.shaft.length if part == "shaft" else design.flexspline.length_mm
+        refuse_beyond(outer * length / far**2, far)  # before CAD makes chords as fine
         near = min(near, far)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(

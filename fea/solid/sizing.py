@@ -6,7 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.solid.errors import SolidError
 from fea.solid.tetwild import Background
+
+MOST_POINTS = 500_000
+"""Of a grid of the wanted edge length in the part's box: the mesher would take hours."""
 
 
 @dataclass(frozen=True)
@@ -22,6 +26,15 @@ class Grading:
         return Grading(self.near * factor, self.far * factor, self.growth)
 
 
+def refuse_beyond(points: float, edge_mm: float) -> None:
+    """Raise SolidError where edges of this length ask for more than MOST_POINTS."""
+    if points > MOST_POINTS:
+        raise SolidError(
+            f"edges of {edge_mm:.3g} mm ask for a mesh of some {points:.2g} points, at most"
+            f" {MOST_POINTS}: raise solver.edge_length_mm"
+        )
+
+
 def graded_background(
     edges: np.ndarray, box: tuple[np.ndarray, np.ndarray], grading: Grading
 ) -> Background | None:
@@ -31,13 +44,18 @@ def graded_background(
     ----------
     edges : (k, 3) points along the edges, in meshing space [mm].
     box : lower and upper corner (3,) of the part in meshing space.
+
+    Raises
+    ------
+    SolidError : MOST_POINTS are too few for such short edges.
     """
     from scipy.spatial import Delaunay, cKDTree
 
-    if not len(edges) or grading.near >= grading.far:
-        return None
     low, high = box[0] - grading.far, box[1] + grading.far
     counts = np.maximum(2, np.ceil((high - low) / grading.far).astype(int) + 1)
+    refuse_beyond(float(np.prod(counts, dtype=float)), grading.far)
+    if not len(edges) or grading.near >= grading.far:
+        return None
     grid = np.stack(
         np.meshgrid(
             *(np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)),

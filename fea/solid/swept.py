@@ -80,7 +80,7 @@ def _prisms(
     rest = _graded(triangulate(own), _critical_points(outline), grading)
     if column is None:
         angles = np.linspace(0, sector, ceil(sector / LARGEST_STEP) + 1)
-        _refuse_beyond_memory(rest, angles)
+        _refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
     else:
         plan = _plan(column, sector, grading.far)
@@ -88,7 +88,7 @@ def _prisms(
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)
         angles[[0, -1]] = 0.0, sector
-        _refuse_beyond_memory(rest, angles)
+        _refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
         above, more = extruded(plan, column, rest, seam, len(polar))
         polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
@@ -97,12 +97,12 @@ def _prisms(
     return polar[used], compact.reshape(found.shape)
 
 
-def _refuse_beyond_memory(rest: MeridianMesh, angles: np.ndarray) -> None:
+def _refuse_beyond_memory(prisms: int) -> None:
     """The column, which has fewer elements than the rest, is not counted."""
-    elements = 3 * len(rest.triangles) * (len(angles) - 1)
+    elements = 3 * prisms
     if elements > MOST_ELEMENTS:
         raise SolidError(
-            f"the mesh would have {elements} elements, at most {MOST_ELEMENTS}:"
+            f"the mesh would have {elements} elements or more, at most {MOST_ELEMENTS}:"
             " raise solver.tolerance_pct or solver.edge_length_mm"
         )
 
@@ -149,6 +149,7 @@ def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> Me
         large = longest > wanted(corner.mean(axis=1))
         if not large.any():
             return mesh
+        _refuse_beyond_memory(len(mesh.triangles))  # before it has them all
         mesh = refined(mesh, large)
     raise MeshQualityError(
         f"{int(large.sum())} triangles of the meridian cannot be made fine enough"

@@ -54,7 +54,9 @@ def answer(path: Path) -> object:
         keep = [i for i, name in enumerate(rows[0]) if not name.endswith("_s")]
         return [[row[i] for i in keep] for row in rows]
     record = json.loads(path.read_text())
-    record.get("solver", {}).pop("wall_s", None)
+    for key in ("wall_s", "stage_s"):
+        record.get("solver", {}).pop(key, None)
+    record.pop("stage_s", None)
     return record
 
 
