@@ -98,7 +98,7 @@ def as_before(share):
 
 
 def ready(page):
-    page.wait_for_selector("html[data-views=ready]", state="attached", timeout=20_000)
+    page.wait_for_selector("html[data-views=ready]", state="attached", timeout=60_000)
 
 
 def test_views_turn_offline(browser, report):

@@ -23,8 +23,10 @@ def studio_browser() -> Iterator[Browser]:
 @pytest.fixture(scope="module")
 def studio(studio_browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A studio of a cup without holes, so that the fast model leaves nothing out."""
-    with running(write_design(tmp_path_factory.mktemp("studio") / "design.toml")) as server:
+    folder = tmp_path_factory.mktemp("studio")
+    with running(write_design(folder / "design.toml"), temporary=folder) as server:
         yield server
+    assert [path.name for path in folder.iterdir()] == ["design.toml"]  # jobs leave no folder
 
 
 @pytest.fixture

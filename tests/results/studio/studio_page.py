@@ -31,6 +31,7 @@ class Server:
 
     process: subprocess.Popen[str]
     url: str
+    temporary: Path | None = None
 
     @property
     def port(self) -> int:
@@ -45,20 +46,21 @@ class Server:
         return self.process.wait(timeout=30)
 
 
-def start(design: Path, *options: str) -> Server:
-    """Start it, and wait for the address that it prints."""
+def start(design: Path, *options: str, temporary: Path | None = None) -> Server:
+    """Start it, and wait for the address that it prints; `temporary`: where its jobs work."""
+    ours = {} if temporary is None else {"TMPDIR": str(temporary)}
     process = subprocess.Popen(
         [sys.executable, "-m", "results.cli", "studio", str(design), "--no-browser", *options],
-        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=dict(os.environ),
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=os.environ | ours,
     )  # fmt: skip
     line = process.stdout.readline()
     assert line.startswith("flexspline studio: http://"), line
-    return Server(process, line.split()[-1])
+    return Server(process, line.split()[-1], temporary)
 
 
 @contextmanager
-def running(design: Path, *options: str) -> Iterator[Server]:
-    server = start(design, *options)
+def running(design: Path, *options: str, temporary: Path | None = None) -> Iterator[Server]:
+    server = start(design, *options, temporary=temporary)
     try:
         yield server
     finally:

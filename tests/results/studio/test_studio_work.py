@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
-from studio_page import Page, running, start, write_design
+from studio_page import Page, Server, running, start, write_design
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -49,31 +49,31 @@ def test_picture_and_step_are_handed_over(page: Page) -> None:
         assert data.startswith(b"ISO-10303-21;")
 
 
-def commands_running() -> list[int]:
-    """Processes that work in a folder of the studio's (Linux)."""
+def commands_running(studio: Server) -> list[int]:
+    """Processes that work in a folder of this studio's (Linux)."""
     found = []
     for entry in Path("/proc").iterdir():
         try:
             where = os.readlink(entry / "cwd") if entry.name.isdigit() else ""
         except OSError:
             continue
-        if Path(where).name.startswith("flexspline-studio-"):
+        if where and studio.temporary and Path(where).is_relative_to(studio.temporary):
             found.append(int(entry.name))
     return found
 
 
-def test_a_solid_solve_shows_its_progress_and_stops(page: Page) -> None:
+def test_a_solid_solve_shows_its_progress_and_stops(page: Page, studio: Server) -> None:
     page.quick()
     page.set("solver.tolerance_pct", "0.011")  # minutes of work, were it not stopped
     page.at("#work-solid").click()
     page.at("#progress-solid:has-text('mesh of the flexspline')").wait_for()
     if Path("/proc").is_dir():
-        assert commands_running()
+        assert commands_running(studio)
     assert page.at("#work-solid").inner_text() == "Stop"
     page.at("#work-solid").click()
     page.at("#progress-solid:has-text('stopped')").wait_for()
     assert page.at("#work-solid").inner_text() != "Stop"
-    assert commands_running() == []
+    assert commands_running(studio) == []
 
 
 def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(page: Page) -> None:
@@ -169,7 +169,7 @@ def test_a_server_killed_and_started_again_is_found(
         first.end(kill=True)
 
 
-def test_a_closed_tab_leaves_nothing_running(opened: Callable[..., Page]) -> None:
+def test_a_closed_tab_leaves_nothing_running(opened: Callable[..., Page], studio: Server) -> None:
     page = opened()
     page.quick()
     page.set("solver.tolerance_pct", "0.011")
@@ -177,9 +177,9 @@ def test_a_closed_tab_leaves_nothing_running(opened: Callable[..., Page]) -> Non
     page.at("#progress-solid:has-text('mesh of')").wait_for()
     page.close()
     ends = time.monotonic() + 15
-    while commands_running() and time.monotonic() < ends:
+    while commands_running(studio) and time.monotonic() < ends:
         time.sleep(0.2)
-    assert commands_running() == []
+    assert commands_running(studio) == []
 
 
 @pytest.mark.long
