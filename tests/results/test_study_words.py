@@ -12,8 +12,9 @@ from pipeline.study.result import StudyResult
 from pipeline.study.store import Row
 from pipeline.study.verified import Check, Verified
 from results.report.pdf import pdf_of
+from results.study.notes import notes
 from results.study.report import study_document
-from results.study.why import disagreement, influences, misses
+from results.study.why import disagreement, influences, misses, unfollowed
 
 WALL = "flexspline.wall_thickness_mm"
 K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
@@ -74,3 +75,23 @@ def test_an_alarm_says_what_may_be_behind_it(check: Check, said: str) -> None:
     document = study_document(result, ())
     assert said in str(document.payload())
     assert pdf_of(document, {}).startswith(b"%PDF")
+
+
+def test_the_report_says_how_holes_entered() -> None:
+    """The example has holes in both parts; a factor that no row has was not found."""
+    result = result_of()
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, "K_e_holes_factor": 0.97}))
+        for r in result.rows
+    )
+    with_factor = " ".join(notes(replace(result, rows=rows)))
+    assert "change K_e by −3.0 %" in with_factor
+    assert "K_b: of the part without its holes" in with_factor
+    assert "K_b and K_e: of the part without its holes" in " ".join(notes(result))
+
+
+def test_keys_of_holes_are_named_as_not_followed() -> None:
+    key = "flexspline.bolt_hole_diameter_mm"
+    text = STUDY.replace("[objective]", f'"{key}" = {{ values = [2.5, 3.0] }}\n[objective]')
+    assert unfollowed(result_of(text).study) == key
+    assert f"{key}: the fast model does not follow" in " ".join(notes(result_of(text)))
