@@ -137,19 +137,19 @@ class Tab:
                               "key": found.key, "text": found.message})  # fmt: skip
             return
         picture = found.pop("picture", None)
-        if picture is not None:
+        if found:
+            wanted.found |= found
+            await self._send({"number": wanted.number, "done": question, **_said(wanted)})
+        if picture is not None:  # after the figures: to draw it takes the browser longer
             await self._send({"is": "picture", "number": wanted.number})  # whose the bytes are
             await self._send(picture)
-        if not found:
-            return
-        wanted.found |= found
-        try:
-            shown = message(wanted.design, wanted.found)
-        except BearingPlayDomainError as fault:
-            await self._send({"is": "fault", "number": wanted.number,
-                              "key": "bearing.radial_clearance_um", "text": str(fault)})  # fmt: skip
-            return
-        await self._send({"is": "answer", "number": wanted.number, "done": question, **shown})
+
+
+def _said(wanted: Wanted) -> dict[str, Any]:
+    try:
+        return {"is": "answer", **message(wanted.design, wanted.found)}
+    except BearingPlayDomainError as fault:
+        return {"is": "fault", "key": "bearing.radial_clearance_um", "text": str(fault)}
 
 
 def _picture(view: str) -> list[str]:
