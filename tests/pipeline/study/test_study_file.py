@@ -1,10 +1,14 @@
 """A wrong study file is refused with one line: key, value, what works."""
 
+from typing import get_args
+
 import pytest
-from study_bench import GRID, study_of
+from study_bench import EXAMPLES, GRID, study_of
 
 from pipeline.study.database import StorageError
+from pipeline.study.figures import SIZES
 from pipeline.study.load import StudyError
+from pipeline.study.schema import WORDS, Method
 
 
 @pytest.mark.parametrize(
@@ -41,3 +45,15 @@ def test_a_database_that_cannot_be_opened_is_named_without_its_password() -> Non
     line = str(StorageError("postgresql://me:secret@host:5432/studies", "no route to host"))
     assert "postgresql://me:***@host:5432/studies" in line
     assert "secret" not in line
+
+
+def test_the_page_names_every_key_and_method() -> None:
+    text = (EXAMPLES.parent / "docs" / "studies.md").read_text(encoding="utf-8")
+    for key in WORDS:
+        table, _, rest = key.partition(".")
+        name = key if table == "run" else rest.rpartition(".")[2].strip("*") or table
+        assert name in text, key
+    for method in get_args(Method):
+        assert f'`"{method}"`' in text
+    for key in SIZES:
+        assert f"`{key}`" in text
