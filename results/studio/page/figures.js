@@ -4,10 +4,10 @@ import { chartBudget, chartLine } from "./charts.js";
 import { el, signed, symbol } from "./dom.js";
 
 const SHORT = {
-  K_b_Nm_per_rad: "flexspline, even torque",
-  K_b_lobes_Nm_per_rad: "torque at the two lobes",
-  K_b_lobes_contact_Nm_per_rad: "lobes, rim may lift off",
-  K_b_lobes_unsupported_Nm_per_rad: "lobes, rim unsupported",
+  K_b_Nm_per_rad: "flexspline, uniform",
+  K_b_lobes_Nm_per_rad: "load at two lobes",
+  K_b_lobes_contact_Nm_per_rad: "lobes, rim may lift",
+  K_b_lobes_unsupported_Nm_per_rad: "lobes, rim free",
   K_e_Nm_per_rad: "output shaft",
   K_series_Nm_per_rad: "both in series",
   wave_generator_peak_mises_MPa: "wave generator",

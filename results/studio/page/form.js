@@ -120,7 +120,9 @@ export class Form {
     place.textContent = text;
     place.hidden = false;
     row?.box.classList.add("bad");
-    if (row) row.box.closest("details").open = true;
+    if (!row) return;
+    row.box.closest("details").open = true;
+    if (row.box.contains(document.activeElement)) place.scrollIntoView({ block: "nearest" });
   }
 
   clear() {

@@ -111,7 +111,7 @@ function heard(note) {
   if (note.number !== state.number) return;
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
-    stage.working(false, note.is === "fault" ? "shown: the last design that can be built" : "");
+    stage.working(false, note.is === "fault" ? `${note.text}. Shown: the last design that can be built.` : "");
   }
   if (note.is === "taken") {
     form.clear();

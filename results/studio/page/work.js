@@ -13,7 +13,7 @@ export class Work {
   begin() {
     if (!this.start(this.kind)) return;
     this.running = true;
-    this.button.textContent = "Stop";
+    this.button.textContent = this.kind === "solid" || this.kind === "diagnose" ? "Stop" : `Stop ${this.words}`;
     this.button.classList.add("running");
     this.line.className = "progress";
     this.text = "starting…";
