@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 POLL_S = 1.0
 """How long to wait for a result before looking after the rest."""
+WATCH_S = 0.5
+"""Rows are read anew for it: a hundredth of a second for a thousand."""
 
 
 class Source(Protocol):
@@ -65,13 +67,19 @@ def carry_out(
 ) -> list[Row]:
     """Evaluate until every design has a row, whoever made it; the rows by slot.
 
-    `watch` hears of every finished design. An error that is not ours ends the study: what is
-    finished is stored.
+    `watch` hears of finished designs at most every WATCH_S, of the last, and of what other
+    processes do while it waits for them. An error that is not ours ends the study: what is finished is stored.
     """
-    began = beaten = time.monotonic()
+    began = beaten = watched = time.monotonic()
     pending: dict[Future, Job] = {}
     _adopt(source, ledger)
     before = len(ledger.rows())
+
+    def tell() -> list[Row]:
+        rows = ledger.rows()
+        watch(Progress(rows, len(rows) - before, time.monotonic() - began, source.size))
+        return rows
+
     ledger.beat()
     while True:
         while len(pending) < hands.width() + source.ahead:
@@ -80,7 +88,7 @@ def carry_out(
                 break
             pending[hands.submit(evaluate, source.task(job.values))] = job
         if not pending:
-            rows = ledger.rows()
+            rows = tell()
             if len(rows) >= source.size:
                 return rows
             time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
@@ -90,9 +98,9 @@ def carry_out(
             for future in done:
                 outcome = _outcome(future, hands)
                 ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
-            if done:
-                rows = ledger.rows()
-                watch(Progress(rows, len(rows) - before, time.monotonic() - began, source.size))
+            if done and time.monotonic() - watched > WATCH_S:
+                watched = time.monotonic()
+                tell()
         if time.monotonic() - beaten > BEAT_S:
             beaten = time.monotonic()
             ledger.beat()

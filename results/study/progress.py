@@ -25,7 +25,7 @@ class Watch:
     def __call__(self, progress: Progress) -> None:
         finished = len(progress.rows) >= progress.size
         terminal = sys.stderr.isatty()
-        if time.monotonic() - self.last < (0.2 if terminal else EVERY_S) and not finished:
+        if time.monotonic() - self.last < (0 if terminal else EVERY_S) and not finished:
             return
         self.last = time.monotonic()
         text = line(self.study, progress)
