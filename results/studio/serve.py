@@ -8,6 +8,7 @@ import logging
 import signal
 import webbrowser
 from pathlib import Path
+from threading import Thread
 
 from aiohttp import web
 
@@ -56,7 +57,8 @@ async def _serve(studio: Studio, host: str, port: int, browser: bool) -> None:
         print(f"flexspline studio: {address}", flush=True)
         tell("stop with Ctrl-C")
         if browser:
-            webbrowser.open(address)
+            # a browser in the terminal does not return before it is left
+            Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         ended = asyncio.Event()
         for number in (signal.SIGINT, signal.SIGTERM):
             asyncio.get_running_loop().add_signal_handler(number, ended.set)

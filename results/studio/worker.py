@@ -51,9 +51,13 @@ class Worker:
         )
         before = {key: os.environ.get(key) for key in _ONE_THREAD}
         os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))  # several workers share few cores
+        heard = signal.signal(
+            signal.SIGINT, signal.SIG_IGN
+        )  # Ctrl-C is for the server, which ends them
         try:
             process.start()
         finally:
+            signal.signal(signal.SIGINT, heard)
             for key, value in before.items():
                 if value is None:
                     os.environ.pop(key)
@@ -103,7 +107,6 @@ def _exchange(pipe: Connection, question: str, tables: Mapping[str, Any]) -> Any
 
 def _serve(pipe: Connection, niceness: int) -> None:
     """The process: load everything, then answer until the other end closes."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server, which ends us
     os.nice(niceness)
     from results.studio.questions import answer
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 import tomllib
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -201,3 +204,17 @@ def test_wrong_options_are_one_line(options: list[str]) -> None:
     )  # fmt: skip
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("after_s", [0.0, 0.2])
+def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-m", "results.cli", "studio", "--no-browser"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    ) as studio:  # fmt: skip
+        assert studio.stdout is not None
+        studio.stdout.readline()  # its workers are starting
+        time.sleep(after_s)
+        os.killpg(studio.pid, signal.SIGINT)  # as a terminal does: to all of them
+        _, said = studio.communicate(timeout=60)
+    assert (studio.returncode, said) == (0, "stop with Ctrl-C\n")
