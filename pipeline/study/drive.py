@@ -67,8 +67,8 @@ def carry_out(
 ) -> list[Row]:
     """Evaluate until every design has a row, whoever made it; the rows by slot.
 
-    `watch` hears of finished designs at most every WATCH_S, of the last, and of what other
-    processes do while it waits for them. An error that is not ours ends the study: what is finished is stored.
+    `watch` hears of finished designs at most every WATCH_S, of what other processes do while it
+    waits for them, and of the end. An error that is not ours ends the study: what is finished is stored.
     """
     began = beaten = watched = time.monotonic()
     pending: dict[Future, Job] = {}

@@ -21,13 +21,15 @@ class Watch:
 
     study: Study
     last: float = field(default=-1e9)
+    ended: bool = False
 
     def __call__(self, progress: Progress) -> None:
         finished = len(progress.rows) >= progress.size
         terminal = sys.stderr.isatty()
-        if time.monotonic() - self.last < (0 if terminal else EVERY_S) and not finished:
+        early = time.monotonic() - self.last < (0 if terminal else EVERY_S)
+        if self.ended or (early and not finished):
             return
-        self.last = time.monotonic()
+        self.last, self.ended = time.monotonic(), finished
         text = line(self.study, progress)
         end = "\n" if finished or not terminal else ""
         start = "\r\x1b[K" if terminal else ""

@@ -3,11 +3,13 @@
 import tomllib
 from pathlib import Path
 
+import pytest
+
 from pipeline.study.drive import Progress
 from pipeline.study.evaluate import Outcome
 from pipeline.study.load import study_from
 from pipeline.study.store import Row
-from results.study.progress import line
+from results.study.progress import Watch, line
 
 WALL = "flexspline.wall_thickness_mm"
 STUDY = f"""
@@ -19,6 +21,15 @@ design = "xb1-40.toml"
 [run]
 method = "grid"
 """
+
+
+def test_the_end_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
+    study = study_from(tomllib.loads(STUDY), Path(__file__).parents[2] / "examples", "test")
+    watch = Watch(study)
+    row = Row(0, {WALL: 0.4}, Outcome({"K_b_Nm_per_rad": 30e3}))
+    for _ in range(2):
+        watch(Progress([row], 1, 4.0, 1))
+    assert capsys.readouterr().err.count("1 of 1 designs") == 1
 
 
 def test_rate_best_and_time_left() -> None:
