@@ -24,7 +24,7 @@ from geometry.load import design_from
 from pipeline.study.evaluate import Task, evaluate
 
 FAST, FAST_BLOCK = 2000, 500
-SOLID = {"swept": (160, 20), "meshed": (40, 4)}
+SOLID = {"swept": (160, 5), "meshed": (40, 4)}
 """How many designs of each sort, and how many in a block."""
 SORTS = {
     "swept": "their prisms swept from the meridian",
@@ -164,5 +164,5 @@ def test_two_hundred_solid_designs(
     found = solid(sort, first, first + SOLID[sort][1], tmp_path)
     # a mesh that passes no check or finds no end is said, never a wrong answer; rare where none is asked for
     failed = [t for t in found if t.word == "failed"]
-    assert len(failed) <= (len(found) // 20 if sort == "swept" else len(found) / 2), failed
+    assert len(failed) <= (0 if sort == "swept" else len(found) / 2), failed
     told(fact, f"random designs that load, {SORTS[sort]}, from number {first}, solid model", found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,7 +83,8 @@ def kill(job: Job, folder: Path, after_s: float) -> bool:
         command(*job.words, "--out", folder / "out"), stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL, env=environment(folder / "cache", folder / "tmp"),
     ) as started:  # fmt: skip
-        time.sleep(after_s)
+        with suppress(subprocess.TimeoutExpired):
+            started.wait(after_s)
         family = []
         if started.poll() is None:
             family = psutil.Process(started.pid).children(recursive=True)
