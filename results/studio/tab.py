@@ -126,10 +126,13 @@ class Tab:
                     pass
             for question in plan(wanted.view):
                 found = await worker.ask(question, wanted.tables)
-                if self._wanted is not wanted:
+                late = self._wanted is not wanted
+                if late and (isinstance(found, Fault) or question.startswith("profile")):
                     break
                 if question != FIRST or ROUGH not in wanted.found:  # the exact one may be there
                     await self._tell(wanted, question, found)
+                if late:  # told all the same: while a hand moves, every answer comes late
+                    break
 
     async def _tell(self, wanted: Wanted, question: str, found: Any) -> None:
         if isinstance(found, Fault):

@@ -17,7 +17,7 @@ const SHORT = {
 
 export class Figures {
   constructor(root, looks) {
-    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set() });
+    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set(), numbers: {} });
     this.stiffness = el("section", {});
     this.work = el("section", { id: "solid" });
     this.agreement = el("p", { id: "agreement", class: "limit" });
@@ -26,22 +26,24 @@ export class Figures {
     root.append(this.stiffness, this.work, this.peaks, this.backlash);
   }
 
-  // A newer answer keeps the older figures, marked, until their own turn comes.
-  show(answer, complete) {
+  // What an answer does not hold keeps its older figures, marked. One that is not of the design as it
+  // stands (`current`) is shown where nothing newer is, and marked too.
+  show(answer, current) {
     const merged = { ...this.now, ...answer };
-    this.fresh = new Set();
+    const newer = (key) => answer.number >= (this.numbers[key] ?? 0);
+    const taken = (key) => (this.numbers[key] = answer.number);
+    if (current) this.fresh = new Set(answer.budget ? ["backlash"] : []);
     for (const part of ["stiffness", "peaks"]) {
       merged[part] = answer[part].map((row, i) => {
-        if (row.text !== undefined) {
-          this.fresh.add(row.key);
-          return row;
-        }
-        return this.now?.[part][i] ?? row;
+        if (row.text === undefined || !newer(row.key)) return this.now?.[part][i] ?? row;
+        taken(row.key);
+        if (current) this.fresh.add(row.key);
+        return row;
       });
     }
-    if (answer.budget) this.fresh.add("backlash");
+    if (answer.budget && newer("backlash")) taken("backlash");
+    else if (this.now) Object.assign(merged, { budget: this.now.budget, line: this.now.line });
     this.now = merged;
-    this.complete = complete;
     this.draw();
   }
 

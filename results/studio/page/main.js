@@ -84,7 +84,7 @@ const link = new Link({
     for (const work of Object.values(works)) work.lost();
   },
   note: heard,
-  bytes: (buffer) => stage.take(buffer, coming, state.number),
+  bytes: (buffer) => stage.take(buffer, coming),
 });
 
 function adopt({ tables, form: groups }) {
@@ -108,6 +108,8 @@ function heard(note) {
   if (note.is === "progress") works[note.kind].progress(note.line);
   if (note.is === "ended") works[note.kind].ended(note);
   if (note.is === "refused") say(note.text);
+  // of a moment ago: while a slider moves, better than figures that stand still
+  if (note.is === "answer" && note.number < state.number) figures.show(note, false);
   if (note.number !== state.number) return;
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
@@ -126,7 +128,7 @@ function heard(note) {
     stage.working(true);
   }
   if (note.is === "taken" || note.is === "answer") {
-    figures.show(note);
+    figures.show(note, true);
     pins.compare();
   }
 }

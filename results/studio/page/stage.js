@@ -15,6 +15,7 @@ const PATIENCE_MS = 400; // so long may colours of the design before stay: no fl
 export class Stage {
   constructor(looks, { view, chosen }) {
     this.looks = looks;
+    this.number = 0;
     this.view = view;
     this.canvas = new View(document.getElementById("canvas"), looks);
     this.scale = document.getElementById("scale");
@@ -38,10 +39,10 @@ export class Stage {
       this.busy = el("span", { class: "busy", id: "busy" }));
   }
 
-  // Bytes that belong to design `number`; those of another view or an older design are not shown.
-  take(buffer, number, newest) {
+  // Bytes that belong to design `number`; those of another view or older than what is shown are left.
+  take(buffer, number) {
     const shape = unpacked(buffer);
-    if (shape.view !== this.view || number !== newest) return;
+    if (shape.view !== this.view || number < this.number) return;
     clearTimeout(this.waiting);
     const outline = shape.is === "profile" ? shape.places.join() : this.outline;
     const known = outline === this.outline;
@@ -52,6 +53,7 @@ export class Stage {
 
   put(shape, number) {
     this.shown = shape;
+    this.number = number;
     this.canvas.show(shape);
     this.working(shape.is === "profile");
     this.drawScale();

@@ -54,6 +54,35 @@ def test_a_slider_moves_and_the_figures_follow(page: Page) -> None:
     assert page.value("backlash_arcsec.shaft") == pytest.approx(2 / shaft * 206264.806, rel=1e-6)
 
 
+DRAG = """async (key) => {
+  const slider = document.querySelector(`.row[data-key="${key}"] input[type=range]`);
+  const figures = new Set(), pictures = new Set();
+  for (let i = 0; i < 60; i++) {
+    slider.value = String(0.3 + 0.003 * i);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    await new Promise((done) => setTimeout(done, 50));
+    figures.add(document.querySelector('#answers tr[data-key="K_b_Nm_per_rad"] td.value').textContent);
+    pictures.add(document.getElementById("stage").dataset.shown);
+  }
+  return [figures.size, pictures.size];
+}"""
+
+
+def test_figures_and_picture_move_while_a_slider_does(page: Page) -> None:
+    page.complete()
+    figures, pictures = page.tab.evaluate(DRAG, WALL)
+    # an answer that waited for the hand to rest would show two: before and after
+    assert figures >= 4
+    assert pictures >= 3
+    page.complete()
+    wall, last = page.field(WALL).input_value(), page.value("K_b_Nm_per_rad")
+    page.set(WALL, "0.4")
+    page.quick()
+    page.set(WALL, wall)
+    page.complete()
+    assert page.value("K_b_Nm_per_rad") == last  # whatever came late, the last design's stays
+
+
 def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> None:
     page.set(WALL, "0.43")
     page.set("material.flexspline.youngs_modulus_GPa", "201.5")
