@@ -77,11 +77,19 @@ def solid_stiffness(
         if half <= tolerance:
             answer = _stiffness(levels, estimate, c, symmetry)
             return SolidStiffness(answer, tuple(meshes), model, solved)
-        spec = _finer(spec, float(np.clip(AIM * tolerance / half, *NEAR_STEP)))
+        spec = _finer(spec, near_step(tolerance, half))
     raise SolidError(
         f"K is known to ± {half:.2%} after {MAX_LEVELS} meshes, wanted {tolerance:.2%}:"
         " raise solver.tolerance_pct"
     )
+
+
+def near_step(tolerance: float, half: float) -> float:
+    """Next over last edge length at the singular edges, for bounds ± `half` where `tolerance` is wanted.
+
+    Three digits: threads add in another order, and the rounding of `half` must not ask for another mesh.
+    """
+    return round(float(np.clip(AIM * tolerance / half, *NEAR_STEP)), 3)
 
 
 def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:

@@ -10,6 +10,8 @@ import bases
 import pytest
 from shell import run
 
+from fea.solid.stiffness import near_step
+
 SAME = 1e-9
 """Relative, on the same mesh: threads add in another order, and the conditioning (1e6) magnifies 1e-16."""
 KEPT_STAGE = "mesh"
@@ -57,6 +59,11 @@ def check_threads(design: Path, folder: Path) -> float:
 
 def test_threads_of_a_body_of_revolution(tmp_path: Path) -> None:
     check_threads(bases.plain(tmp_path), tmp_path)
+
+
+def test_rounding_asks_for_no_other_mesh() -> None:
+    """A part that fTetWild meshes in two steps was meshed anew on two threads: K moved by its bounds."""
+    assert near_step(0.005, 0.0081) == near_step(0.005, 0.0081 * (1 + 1e-12))
 
 
 @pytest.mark.long
