@@ -150,4 +150,4 @@ def test_constant_torque_is_too_little_but_no_error(torque: list[str], tmp_path:
     assert done.exit_code == 0, done.stderr
     assert '"verdict": "insufficient"' in done.stdout
     out = tmp_path / "out"
-    assert {p.name for p in out.iterdir()} == {"diagnosis.json", "report.pdf"}
+    assert {p.name for p in out.iterdir()} == {"diagnosis.json", "report.pdf", "report.html"}
