@@ -98,7 +98,8 @@ def damaged(design: Path, cache: Path, where: Path, rounds: int) -> int:
     for number in range(rounds):
         damage = DAMAGES[number % len(DAMAGES)]
         entries = sorted(p for p in cache.rglob("*.npz") if p.is_file())
-        hit = rng.choice(len(entries), int(rng.integers(1, 4)), replace=False)
+        most = min(3, len(entries) - 1)  # one stays whole, to be copied from
+        hit = rng.choice(len(entries), int(rng.integers(1, most + 1)), replace=False)
         for i in hit:
             others = [p for k, p in enumerate(entries) if k not in hit]
             damage(entries[i], rng, others)
