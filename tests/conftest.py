@@ -24,9 +24,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
-    """A page is written by the process that ran the tests: one, whatever `-n` says."""
+    """Where pytest-xdist is there, the whole suite runs two files at a time unless `-n` says otherwise.
+
+    A page is written by the process that ran the tests: one, whatever `-n` says.
+    """
+    if not config.pluginmanager.hasplugin("xdist") or hasattr(config, "workerinput"):
+        return
+    option = config.option
     if any(config.getoption(name, default=False) for name in WRITERS):
-        config.option.numprocesses = 0
+        option.numprocesses = 0
+    elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
+        option.numprocesses, option.dist = 2, "loadfile"
 
 
 def pytest_configure(config: pytest.Config) -> None:
