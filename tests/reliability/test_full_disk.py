@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import bases
@@ -20,40 +21,35 @@ FREE_BYTES = 24_000
 """Room for result.json and one small picture, not for more."""
 
 
-def mounted(folder: Path, *options: str) -> bool:
-    """Whether a small file system could be put there."""
+@contextmanager
+def disk(folder: Path, *options: str) -> Iterator[Path]:
+    """A small file system at `folder` while the context lasts; skips where none can be mounted."""
     if sys.platform != "linux" or os.geteuid() != 0 or shutil.which("mount") is None:
-        return False
+        pytest.skip("mounting a file system takes root on Linux")
+    folder.mkdir()
     command = ["mount", "-t", "tmpfs", *options, "tmpfs", str(folder)]
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
-
-
-@pytest.fixture
-def full(tmp_path: Path) -> Iterator[Path]:
-    """A folder on a disk with a few kilobytes left."""
-    folder = tmp_path / "full"
-    folder.mkdir()
-    if not mounted(folder, "-o", "size=128k"):
-        pytest.skip("mounting a small file system takes root on Linux")
-    try:
-        there = os.statvfs(folder)
-        (folder / "others").write_bytes(b"x" * (there.f_bavail * there.f_frsize - FREE_BYTES))
-        yield folder
-    finally:
-        subprocess.run(["umount", "-l", str(folder)], check=True)
-
-
-@pytest.fixture
-def read_only(tmp_path: Path) -> Iterator[Path]:
-    """A folder on a disk that is mounted read-only, which binds root too."""
-    folder = tmp_path / "read only"
-    folder.mkdir()
-    if not mounted(folder, "-o", "ro,size=64k"):
+    if subprocess.run(command, capture_output=True, check=False).returncode != 0:
         pytest.skip("mounting a file system takes root on Linux")
     try:
         yield folder
     finally:
         subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@pytest.fixture
+def full(tmp_path: Path) -> Iterator[Path]:
+    """A folder on a disk with a few kilobytes left."""
+    with disk(tmp_path / "full", "-o", "size=128k") as folder:
+        there = os.statvfs(folder)
+        (folder / "others").write_bytes(b"x" * (there.f_bavail * there.f_frsize - FREE_BYTES))
+        yield folder
+
+
+@pytest.fixture
+def read_only(tmp_path: Path) -> Iterator[Path]:
+    """A folder on a disk that is mounted read-only, which binds root too."""
+    with disk(tmp_path / "read only", "-o", "ro,size=64k") as folder:
+        yield folder
 
 
 @pytest.fixture(scope="module")
