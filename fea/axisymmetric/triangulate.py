@@ -25,6 +25,9 @@ SMALLEST_ANGLE = pi / 180 * 24
 ROUNDS = 300
 MOST_POINTS = 20_000
 """An outline without crossings needs a few hundred; one that crosses itself has no end."""
+FLAT = 1e-9
+"""A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
+the hull, between points of one straight segment, turned either way."""
 TOUCH = 1e-7
 """Relative slack of circle tests: cocircular points of right-angled outlines count as outside."""
 
@@ -98,11 +101,12 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Delaunay triangles (m, 3) on the outline's left, counter-clockwise.
 
     Boundary edges cut the triangulation into regions; a region lies inside if a triangle of it has
-    a boundary edge running in the outline's direction.
+    a boundary edge running in the outline's direction. One that is flat has no such direction.
     """
     whole = Delaunay(points)
     triangles, across = whole.simplices.astype(np.int64), whole.neighbors
-    flipped = signed_areas(points, triangles) < 0
+    area = signed_areas(points, triangles)
+    flipped = area < 0
     triangles[flipped] = triangles[flipped][:, ::-1]
     across[flipped] = across[flipped][:, ::-1]
     n = len(points)
@@ -112,7 +116,10 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     own, corner = np.nonzero((across >= 0) & ~forward & ~backward)
     links = coo_matrix((np.ones(len(own)), (own, across[own, corner])), shape=2 * (len(side),))
     _, region = connected_components(links, directed=False)
-    return triangles[np.isin(region, region[forward.any(axis=1)])]
+    corner = points[triangles]
+    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+    inside = forward.any(axis=1) & (np.abs(area) > FLAT * longest**2)
+    return triangles[np.isin(region, region[inside])]
 
 
 def _improvements(

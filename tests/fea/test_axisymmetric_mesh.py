@@ -95,3 +95,18 @@ def test_crossing_outline_is_refused():
     )
     with pytest.raises(MeshingError):
         triangulate(bow)
+
+
+def test_rectangles_turned_by_any_angle_are_filled():
+    """Points of a straight edge at an angle lie on it to rounding only: flat triangles on the hull."""
+    rng = np.random.default_rng(1)
+    for turn in rng.uniform(0, 2 * pi, 100):
+        width, height = rng.uniform(1, 5), rng.uniform(5, 60)
+        x, y = np.array([(0, 0), (width, 0), (width, height), (0, height)], float).T
+        c, s = np.cos(turn), np.sin(turn)
+        corner = [tuple(p) for p in np.column_stack([100 + c * x - s * y, 100 + s * x + c * y])]
+        outline = Meridian(tuple(Segment(corner[k - 1], corner[k]) for k in range(4)))
+        mesh = triangulate(outline)
+        area = signed_areas(mesh.points, mesh.triangles)
+        assert area.sum() == pytest.approx(width * height, rel=1e-9)
+        assert angles(mesh.points, mesh.triangles).min() > SMALLEST_ANGLE - 1e-9
