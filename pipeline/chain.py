@@ -17,14 +17,14 @@ from pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
 from pipeline.rim import (
     STRESS_TOLERANCE,
     RimAnswers,
-    SolidRim,
+    SolidLobes,
     rim_answers,
-    sharp_edges,
     wave_generator_field,
-)  # fmt: skip
+)
+from pipeline.rim_stress import sharp_edges
 
 CACHED_TYPES: tuple[type, ...] = (
-    EquivalentRing, MeshLevel, MeshedPart, RimAnswers, SolidField, SolidRim, Stiffness, StressPeak,
+    EquivalentRing, MeshLevel, MeshedPart, RimAnswers, SolidField, SolidLobes, Stiffness, StressPeak,
     TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""

@@ -26,7 +26,7 @@ from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from geometry.outline import Meridian
 from pipeline.diagnosis.specimens.designs import without_holes
 from pipeline.parts import DRIVEN
-from pipeline.rim import STRESS_TOLERANCE, wave_generator_amplitude
+from pipeline.rim import STRESS_TOLERANCE
 from pipeline.study.evaluate import with_equivalent_ring
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
@@ -108,7 +108,7 @@ def first_field(design: Design) -> RevolvedField:
 
 
 def _on_wave_generator(design: Design, unit: RevolvedField) -> RevolvedField:
-    w0 = wave_generator_amplitude(design)
+    w0 = design.gear.centre_distance_mm
     return _loaded(unit, design.material.flexspline.youngs_modulus_GPa * w0, w0)
 
 

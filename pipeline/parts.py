@@ -13,7 +13,7 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import can_be_swept, swept_edges, swept_mesh
+from fea.solid.swept import Finer, can_be_swept, swept_edges, swept_mesh
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Elastic, Stiffness, TetMesh
 from geometry.design import Design
@@ -27,7 +27,7 @@ from pipeline.progress import Progress
 
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 RIM_ELEMENTS = 40_000
-"""About 180 000 unknowns and 5 s for each of the three cases on the rim."""
+"""About 180 000 unknowns and 5 s for each of the two lobe cases."""
 EDGE_POINTS_PER_WALL = 8
 """Sharp edges are sampled this finely for the stress rule: its distance is one wall thickness."""
 
@@ -44,7 +44,7 @@ class MeshedPart:
 class TwistedPart:
     """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
 
-    `rim` is the finest of its meshes that, unfolded for the rim's cases, keeps within RIM_ELEMENTS.
+    `rim` is the finest of its meshes that, unfolded for the lobe cases, keeps within RIM_ELEMENTS.
     """
 
     stiffness: Stiffness
@@ -124,10 +124,6 @@ class PartModel:
     def _edge_spacing(self) -> float:
         return self.shop.design.flexspline.wall_thickness_mm / EDGE_POINTS_PER_WALL
 
-    @property
-    def _swept_edges(self) -> np.ndarray:
-        return swept_edges(self.shop.design, self.name, self.sector.degrees, self._edge_spacing)
-
     @cached_property
     def _surface(self) -> TaggedSurface:
         spec = first_spec(self.shop.design, self.name)
@@ -140,15 +136,23 @@ class PartModel:
                 self._edge_spacing,
             )
 
+    def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
+        """The sector's mesh swept from the meridian; None for a part that only a mesher can mesh."""
+        design, degrees = self.shop.design, self.sector.degrees
+        mesh = swept_mesh(design, self.name, degrees, spec, finer)
+        if mesh is None:
+            return None
+        return MeshedPart(mesh, swept_edges(design, self.name, degrees, self._edge_spacing))
+
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """The sector's mesh to a specification: swept where that works, else by fTetWild."""
 
         def make() -> MeshedPart:
             if can_be_swept(self.shop.design, self.name):
                 with self.shop.progress.stage(f"mesh of the {self.name}"):
-                    swept = swept_mesh(self.shop.design, self.name, self.sector.degrees, spec)
+                    swept = self.swept(spec)
                 if swept is not None:
-                    return MeshedPart(swept, self._swept_edges)
+                    return swept
                 self.shop.progress.note("  the swept mesh fails a check: fTetWild instead")
             surface = self._surface
             with self.shop.progress.stage(f"mesh of the {self.name}"):

@@ -16,7 +16,6 @@ from pipeline.cache import Cache
 from pipeline.chain import RunResult
 from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from pipeline.parts import Workshop
-from pipeline.rim import wave_generator_amplitude
 from results.atomic import write_bytes
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
@@ -43,7 +42,7 @@ def write_pictures(
 def turning_views(shop: Workshop, result: RunResult) -> dict[str, bytes]:
     """The stress pictures as views that turn in a browser, by the pictures' names."""
     design, fields = result.design, result.fields
-    torque_Nm, w0 = design.load.torque_Nm, wave_generator_amplitude(design)
+    torque_Nm, w0 = design.load.torque_Nm, design.gear.centre_distance_mm
 
     def stress(part: str) -> Callable[[Path], None]:
         def draw(path: Path) -> None:
@@ -98,7 +97,7 @@ def _pictures(
 ) -> list[tuple[str, Mapping[str, Any], Callable[[Path], None]]]:
     design, found, fields = result.design, result.stiffnesses, result.fields
     torque = {"torque_Nm": design.load.torque_Nm, "wall": design.flexspline.wall_thickness_mm}
-    w0 = wave_generator_amplitude(design)
+    w0 = design.gear.centre_distance_mm
     sums = {"backlash": asdict(result.backlash), **torque}
     added = None if extended is None else asdict(extended)
     K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad

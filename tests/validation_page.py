@@ -11,6 +11,7 @@ TOPICS = {
     "Fourier harmonics on the meridian": (
         "test_axisymmetric_harmonics",
         "test_axisymmetric_against_solid",
+        "test_peak_on_the_ellipse",
     ),
     "The rim on the wave generator": ("test_contact_on_the_seat",),
     "Stress on the meridian": ("test_axisymmetric_stress",),

@@ -9,6 +9,7 @@ same design gives the same mesh.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import ceil, radians
 
 import numpy as np
@@ -41,7 +42,26 @@ MOST_ELEMENTS = 500_000
 """2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
 
 
-def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> TetMesh | None:
+@dataclass(frozen=True)
+class Finer:
+    """What a stress that varies about the axis asks of a mesh, beyond the grading.
+
+    Attributes
+    ----------
+    step_rad : the largest step about the axis.
+    places : points (r, z) of the meridian [mm].
+    within_mm, edge_mm : edges of the meridian are at most so long, so near to one of the places.
+    """
+
+    step_rad: float
+    places: tuple[tuple[float, float], ...]
+    within_mm: float
+    edge_mm: float
+
+
+def swept_mesh(
+    design: Design, part: str, sector_deg: float, spec: MeshSpec, finer: Finer | None = None
+) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
     A keyway, a part that reaches the axis, and holes that are not in a plain column need a mesher.
@@ -57,7 +77,7 @@ def swept_mesh(design: Design, part: str, sector_deg: float, spec: MeshSpec) -> 
     outline = meridian(design, part)
     column = column_of(design, part, outline)
     try:
-        polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading)
+        polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading, finer)
         return _curved(design, part, outline, column, sector_deg, polar, tets)
     except (MeshQualityError, MeshingError):
         return None
@@ -73,17 +93,19 @@ def can_be_swept(design: Design, part: str) -> bool:
 
 
 def _prisms(
-    outline: Meridian, column: Column | None, sector: float, grading: Grading
+    outline: Meridian, column: Column | None, sector: float, grading: Grading, finer: Finer | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Corners (n, 3) as (r, φ, z) and tetrahedra (m, 4), positive."""
     own = outline if column is None else column.rest(outline)
-    rest = _graded(triangulate(own), _critical_points(outline), grading)
+    rest = _graded(triangulate(own), _critical_points(outline), grading, finer)
+    step = LARGEST_STEP if finer is None else finer.step_rad
     if column is None:
-        angles = np.linspace(0, sector, ceil(sector / LARGEST_STEP) + 1)
+        angles = np.linspace(0, sector, ceil(sector / step) + 1)
         _refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
     else:
-        plan = _plan(column, sector, grading.far)
+        far = grading.far if finer is None else min(grading.far, step * column.interface)
+        plan = _plan(column, sector, far)
         seam = along(plan, INTERFACE)
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)
@@ -120,12 +142,20 @@ def _critical_points(outline: Meridian) -> np.ndarray:
     return np.array(found)
 
 
-def _graded(mesh: MeridianMesh, critical: np.ndarray, grading: Grading) -> MeridianMesh:
-    """Triangles halved until no edge is longer than the grading asks for."""
+def _graded(
+    mesh: MeridianMesh, critical: np.ndarray, grading: Grading, finer: Finer | None
+) -> MeridianMesh:
+    """Triangles halved until no edge is longer than the grading asks for, and `finer`."""
+
+    def from_(places: np.ndarray, points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points[:, None] - places, axis=2).min(axis=1)
 
     def wanted(points: np.ndarray) -> np.ndarray:
-        away = np.linalg.norm(points[:, None] - critical, axis=2).min(axis=1)
-        return np.minimum(grading.far, grading.near + grading.growth * away)
+        edge = np.minimum(grading.far, grading.near + grading.growth * from_(critical, points))
+        if finer is None:
+            return edge
+        beyond = np.maximum(0.0, from_(np.array(finer.places), points) - finer.within_mm)
+        return np.minimum(edge, finer.edge_mm + grading.growth * beyond)
 
     return _sized(mesh, wanted)
 

@@ -10,7 +10,7 @@ from pipeline.cache import Cache
 from pipeline.chain import CACHED_TYPES
 from pipeline.parts import Workshop
 from pipeline.progress import Progress
-from pipeline.rim import wave_generator_amplitude, wave_generator_field
+from pipeline.rim import wave_generator_field
 from pipeline.storage import cache_folder
 from pipeline.study.evaluate import OUR_ERRORS
 from pipeline.study.result import StudyResult
@@ -42,4 +42,4 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     except OUR_ERRORS as fault:
         say(f"no picture of design {row.slot} on the wave generator: {fault}")
         return None
-    return BestField(row.slot, field, wave_generator_amplitude(design))
+    return BestField(row.slot, field, design.gear.centre_distance_mm)

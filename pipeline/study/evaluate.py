@@ -31,7 +31,6 @@ from pipeline.cache import Cache
 from pipeline.diagnosis.specimens.designs import with_values, without_holes
 from pipeline.parts import DRIVEN, Workshop
 from pipeline.progress import Progress
-from pipeline.rim import wave_generator_amplitude
 from pipeline.storage import cache_folder
 from pipeline.study.figures import SIZES, Solve
 from pipeline.study.holes import Holes, with_holes
@@ -99,7 +98,7 @@ def figures_of(
     if "contact" in solves:
         found |= _stiffness("K_b_lobes_contact", _contact(f, nu), E)
     if "ellipse" in solves:
-        w0 = wave_generator_amplitude(plain)
+        w0 = plain.gear.centre_distance_mm
         found["wave_generator_peak_mises_MPa"] = _ellipse(f, nu, wall) * w0 * E
     if "torque" in solves:
         torque, shaft_nu = design.load.torque_Nm, plain.shaft_material.poissons_ratio

@@ -10,7 +10,6 @@ import numpy as np
 from geometry.design import Design
 from pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
 from pipeline.live import left_out
-from pipeline.rim import wave_generator_amplitude
 from results.figures.budget import SOURCES, TERMS
 from results.figures.torque_angle import REACH, band
 from results.quantities import quantity
@@ -43,7 +42,7 @@ def message(design: Design, found: Found) -> Message:
     return {
         "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
-        "w0_mm": wave_generator_amplitude(design),
+        "w0_mm": design.gear.centre_distance_mm,
         **shown,
     }
 

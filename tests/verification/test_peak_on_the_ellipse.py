@@ -1,0 +1,47 @@
+"""The solid model's peak stress on the ellipse, as the program meshes for it, against Fourier harmonics.
+
+The meridian's solution is refined until its peak stays within 0.5 %; the solid's is a quarter in
+tetrahedra of one mesh. Without holes both describe the same body.
+"""
+
+from __future__ import annotations
+
+from math import dist, hypot
+from pathlib import Path
+
+import pytest
+from hole_free import hole_free
+
+from fea.axisymmetric.stress import ellipse_stress
+from geometry.meridian import meridian
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from pipeline.rim_stress import REACH_WALLS, solid_ellipse
+
+CASES = {
+    "cup": ("xb1-40.toml", {}),
+    "hat of 36.5 mm": ("hat-25.toml", {"length_mm": 36.5}),
+    "hat": ("hat-25.toml", {}),
+    "cup, wall of 0.2 mm": ("xb1-40.toml", {"wall_thickness_mm": 0.2}),
+}
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(c, marks=[pytest.mark.long] * (i > 1)) for i, c in enumerate(CASES)]
+)
+def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
+    file, changes = CASES[case]
+    design = hole_free(file, "flexspline", changes)
+    part = Workshop(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
+    w0, wall = design.gear.centre_distance_mm, design.flexspline.wall_thickness_mm
+    exact = ellipse_stress(meridian(design, "flexspline"), part.material, w0, wall, 0.005)
+    peak = solid_ellipse(part).peak
+    figures = (exact.peak.mises_MPa, peak.mises_MPa, "MPa")
+    record(f"{case.capitalize()} on the ellipse, peak of the solid model", "meridian", *figures)
+    # steps of 5° leave 2²·step²/12 = 0.25 % (slope of parabolas for cos 2φ at their ends), the lattice of
+    # the stress rule a place up to 0.04 walls beside the peak, half-wall edges the rest: 0.8 % seen
+    assert peak.mises_MPa == pytest.approx(exact.peak.mises_MPa, rel=0.015)
+    x, y, z = peak.at_mm
+    assert dist((hypot(x, y), z), exact.peak_rz) < REACH_WALLS * wall
