@@ -104,15 +104,17 @@ def _in_plane(p: tuple[float, ...]) -> cq.Vector:
     return cq.Vector(p[0], 0.0, p[1])
 
 
-def partition_faces(solid: cq.Solid, outline: Meridian, sector_deg: float) -> list[cq.Face]:
-    """The cuts through the material at patch edges, as faces trimmed to the solid."""
+def partition_faces(
+    solid: cq.Solid, outline: Meridian, sector_deg: float, reach_mm: float
+) -> list[cq.Face]:
+    """The cuts at patch edges, as far as `reach_mm` into the material, as faces trimmed to the solid."""
     import cadquery as cq
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
     from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 
     axis = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
     faces: list[cq.Face] = []
-    for cut in outline.cuts:
+    for cut in outline.cuts_within(reach_mm):
         swept = BRepPrimAPI_MakeRevol(_edge(cut).wrapped, axis, radians(sector_deg)).Shape()
         faces += cq.Shape.cast(swept).intersect(solid).Faces()
     return faces

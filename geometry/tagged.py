@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,9 +63,16 @@ class TaggedSurface:
 
 
 def tagged_surface(
-    design: Design, part: str, sector_deg: float, chord_error: float, edge_spacing: float
+    design: Design,
+    part: str,
+    sector_deg: float,
+    chord_error: float,
+    edge_spacing: float,
+    cut_reach: float = inf,
 ) -> TaggedSurface:
     """Tessellate the CAD solid within `chord_error` [mm] and name its faces.
+
+    Points along its edges are `edge_spacing` [mm] apart; cuts end `cut_reach` [mm] from patch edges.
 
     Raises
     ------
@@ -97,7 +105,7 @@ def tagged_surface(
     )
     faces, surface_of = faces[solid_faces], surface_of[solid_faces]
     _check_watertight(vertices, faces, part)
-    cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg), chord_error)
+    cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg, cut_reach), chord_error)
     sharp, critical = _sharp_edges(solid, face_surface, surfaces, edge_spacing)
     return TaggedSurface(
         vertices=vertices,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.swept import Finer, can_be_swept, swept_edges, swept_mesh
@@ -20,7 +20,7 @@ from geometry.design import Design
 from geometry.errors import DesignError
 from geometry.meridian import meridian
 from geometry.symmetry import Sector, sector_of
-from geometry.tagged import TaggedSurface, tagged_surface
+from geometry.tagged import TaggedSurface
 from pipeline.cache import Cache
 from pipeline.drawn_teeth import ring_of, with_plain_ring
 from pipeline.progress import Progress
@@ -126,14 +126,9 @@ class PartModel:
 
     @cached_property
     def _surface(self) -> TaggedSurface:
-        spec = first_spec(self.shop.design, self.name)
         with self.shop.progress.stage(f"CAD of the {self.name}"):
-            return tagged_surface(
-                self.shop.design,
-                self.name,
-                self.sector.degrees,
-                CHORD_PER_ENVELOPE * spec.envelope,
-                self._edge_spacing,
+            return surface_to_mesh(
+                self.shop.design, self.name, self.sector.degrees, self._edge_spacing
             )
 
     def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:

@@ -5,10 +5,15 @@ from __future__ import annotations
 from fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from fea.solid.sizing import Grading, refuse_beyond
 from geometry.design import Design
+from geometry.tagged import TaggedSurface, tagged_surface
 
 CHORD_PER_ENVELOPE = 1.5
 """Chord error of the tessellation over the mesher's envelope: the nodes are put back onto the exact
 surfaces afterwards, so neither limits accuracy, and coarse chords mesh faster."""
+CUT_EDGES = 2.0
+"""How far cuts reach from patch edges, in the first mesh's smallest edges. Beside the middle of a wide cut
+the winding number is 1/2, where fTetWild's filter, an approximation, takes an element for outside: cuts
+across thick walls became cracks."""
 FINEST_SHARE = 20
 """The largest edge is at least this share of the outer radius: a wall of a hundredth of it needs one
 layer of long elements, not a part full of short ones."""
@@ -47,3 +52,19 @@ def first_spec(design: Design, part: str) -> MeshSpec:
         # half the outer radius: elements twice as long around the tube, fair ones at the bolts
         unrolled_radius=0.0 if on_axis else outer / 2,
     )
+
+
+def surface_to_mesh(
+    design: Design, part: str, sector_deg: float, edge_spacing: float
+) -> TaggedSurface:
+    """The part's sector as `first_spec` and meshes refined from it need it: chords, and cuts' reach.
+
+    Points along its edges are `edge_spacing` [mm] apart.
+
+    Raises
+    ------
+    GeometryError : as `tagged_surface`. SolidError : as `first_spec`.
+    """
+    spec = first_spec(design, part)
+    chord_error, reach = CHORD_PER_ENVELOPE * spec.envelope, CUT_EDGES * spec.grading.near
+    return tagged_surface(design, part, sector_deg, chord_error, edge_spacing, reach)

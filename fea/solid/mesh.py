@@ -28,7 +28,9 @@ ENVELOPES_PER_EDGE = 6
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element
 in ten thousand below it, with ten times the true stress at its nodes."""
-RETRIES = (1.0, 0.95, 0.9)
+RETRIES = ((1.0, True), (0.95, True), (0.9, False))
+"""Edge lengths of the attempts at a mesh, and whether they may be in unrolled space: a keyway's planes are
+bent there."""
 FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 """Outward faces of a positively oriented tetrahedron; face i is opposite corner i."""
 
@@ -56,13 +58,14 @@ def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     MesherError : from the mesher.
     MeshQualityError : a patch or the volume is not the CAD's, or an element is inverted.
     """
-    for factor in RETRIES:
+    for factor, unrolled in RETRIES:
+        radius = spec.unrolled_radius if unrolled else 0.0
+        grading = spec.grading.scaled(factor)
         try:
-            return _mesh_once(surface, replace(spec, grading=spec.grading.scaled(factor)))
-        except MeshQualityError:
-            if factor == RETRIES[-1]:
-                raise
-    raise AssertionError("unreachable")
+            return _mesh_once(surface, replace(spec, grading=grading, unrolled_radius=radius))
+        except MeshQualityError as fault:
+            last = fault
+    raise last
 
 
 def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
@@ -161,12 +164,18 @@ def _quadratic(
 def _in_planes(
     points: np.ndarray, faces: np.ndarray, facet_surface: np.ndarray, surface: TaggedSurface
 ) -> np.ndarray:
-    """Nodes of the symmetry planes put into them, whatever else may be undone later."""
+    """Nodes of the symmetry planes put into them, whatever else may be undone later.
+
+    Nodes of both planes go onto the axis: put into one plane and then the other they leave the first.
+    """
     out = points.copy()
+    in_planes = np.zeros(len(points), int)
     for plane in sector_planes(surface.sector_deg):
         mine = [i for i, s in enumerate(surface.surfaces) if s.patch == plane.patch]
         nodes = np.unique(faces[np.isin(facet_surface, mine)])
         out[nodes] = plane.project(out[nodes])
+        in_planes[nodes] += 1
+    out[in_planes == 2, :2] = 0.0
     return out
 
 

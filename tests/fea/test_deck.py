@@ -16,13 +16,12 @@ from structured import sector_mesh
 
 from fea.solid.cases import Model, torsion
 from fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
-from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.elements import NODES
 from fea.solid.mesh import mesh_surface
 from fea.types import Elastic, TetMesh
 from geometry.load import load_design
 from geometry.symmetry import sector_of
-from geometry.tagged import tagged_surface
 
 CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 STEEL = Elastic(206e3, 0.3)
@@ -156,9 +155,7 @@ def wedge(part: str) -> tuple[TetMesh, Elastic]:
     design = load_design(CUP)
     spec = first_spec(design, part)
     degrees = sector_of(design, part, "torsion").degrees
-    surface = tagged_surface(
-        design, part, degrees, CHORD_PER_ENVELOPE * spec.envelope, edge_spacing=0.1
-    )
+    surface = surface_to_mesh(design, part, degrees, edge_spacing=0.1)
     return mesh_surface(surface, spec), Elastic.of(design.material.flexspline)
 
 

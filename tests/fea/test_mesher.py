@@ -10,31 +10,32 @@ import numpy as np
 import pytest
 
 from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from fea.solid.errors import MesherError, MeshQualityError
-from fea.solid.mesh import JACOBIAN_RATIO, _check, mesh_surface
+from fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, mesh_surface
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.tetwild import TetwildSettings, tetrahedralize
 from fea.types import Elastic, TetMesh
 from geometry.design import Design
 from geometry.load import design_from
 from geometry.meridian import meridian
+from geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_planes
 from geometry.symmetry import sector_of
-from geometry.tagged import TaggedSurface, tagged_surface
+from geometry.tagged import TaggedSurface
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 
 
-def design(holes: int) -> Design:
+def design(holes: int, **changes) -> Design:
     data = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
-    data["flexspline"]["bolt_count"] = holes
+    data["flexspline"] |= {"bolt_count": holes} | changes
     return design_from(data)
 
 
 def surface_of(given: Design, part: str) -> TaggedSurface:
-    spec, sector = first_spec(given, part), sector_of(given, part, "torsion")
-    return tagged_surface(given, part, sector.degrees, CHORD_PER_ENVELOPE * spec.envelope, 0.1)
+    degrees = sector_of(given, part, "torsion").degrees
+    return surface_to_mesh(given, part, degrees, edge_spacing=0.1)
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +81,41 @@ def test_mesh_agrees_with_the_cad(shaft) -> None:
         assert area == pytest.approx(surface.patch_areas[patch], rel=1e-3)
     assert jacobian_ratio(mesh.nodes, mesh.cells).min() >= JACOBIAN_RATIO
     assert np.array_equal(np.unique(mesh.cells), np.arange(len(mesh.nodes)))  # no orphans
+
+
+def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
+    """A cup closed at the axis, so that only the mesher can mesh it; it left a crack there every time."""
+    given = design(
+        0, inner_diameter_mm=20.4, wall_thickness_mm=1.13, ring_thickness_mm=1.77, length_mm=16.1,
+        ring_width_mm=7.9, ring_offset_mm=2.4, diaphragm_thickness_mm=3.0, boss_diameter_mm=15.0,
+        bore_diameter_mm=0.0, boss_thickness_mm=5.3, inner_fillet_mm=0.9, outer_fillet_mm=1.2,
+    )  # fmt: skip
+    surface = surface_of(given, "flexspline")
+    mesh = mesh_surface(surface, first_spec(given, "flexspline"))
+    whole = meridian(given, "flexspline")
+    share = mesh.sector_deg / 360
+    # a crack took 1.5 %
+    volume = element_volumes(mesh.nodes, mesh.cells).sum()
+    assert volume == pytest.approx(whole.volume * share, rel=1e-3)
+    assert facet_areas(mesh.nodes, mesh.on("mesh")).sum() == pytest.approx(
+        whole.patch_area("mesh") * share, rel=5e-3
+    )
+
+
+def test_nodes_of_both_symmetry_planes_go_onto_the_axis() -> None:
+    """Of a sector below 180°: put into the second plane they left the first, by up to half their radius."""
+    given = design(0)
+    surface = surface_of(given, "flexspline")
+    start, end = (
+        next(i for i, s in enumerate(surface.surfaces) if s.patch == name)
+        for name in (SYMMETRY_START, SYMMETRY_END)
+    )
+    points = np.array([[0.03, 0.01, 0], [2.0, 0.1, 0], [1.7, 1.1, 0], [0.02, 0.02, 1.0]])
+    faces = np.array([[0, 1, 3], [0, 3, 2]])
+    moved = _in_planes(points, faces, np.array([start, end]), surface)
+    assert np.abs(moved[[0, 3], :2]).max() == 0
+    for plane, nodes in zip(sector_planes(surface.sector_deg), ([0, 1, 3], [0, 2, 3]), strict=True):
+        assert plane.project(moved[nodes]) == pytest.approx(moved[nodes], abs=1e-12)
 
 
 def test_a_wrong_patch_is_refused(shaft) -> None:

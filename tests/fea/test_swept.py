@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.cases import Model, torsion
 from fea.solid.column import column_of
-from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from fea.solid.errors import SolidError
 from fea.solid.mesh import mesh_surface
@@ -234,9 +234,7 @@ def test_six_holes_are_as_stiff_as_on_the_meshers_mesh() -> None:
     design = design_of("xb1-40.toml", "flexspline", {})
     material = Elastic.of(design.material.flexspline)
     first = first_spec(design, "flexspline")
-    surface = tagged_surface(
-        design, "flexspline", 30.0, CHORD_PER_ENVELOPE * first.envelope, edge_spacing=0.1
-    )
+    surface = surface_to_mesh(design, "flexspline", 30.0, edge_spacing=0.1)
     fine = replace(first, grading=Grading(0.14, 1.7, 1.0))
     K = []
     for mesh in (swept(design, "flexspline", 0.3), mesh_surface(surface, fine)):

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.defaults import CHORD_PER_ENVELOPE, first_spec
+from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.swept import swept_mesh
@@ -22,7 +22,6 @@ from geometry.design import Design
 from geometry.load import design_from
 from geometry.meridian import meridian
 from geometry.symmetry import sector_of
-from geometry.tagged import tagged_surface
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
@@ -109,9 +108,7 @@ def mesher(design: Design, part: str, kind: str) -> Callable[[MeshSpec], TetMesh
             return mesh
 
         return swept
-    surface = tagged_surface(
-        design, part, degrees, CHORD_PER_ENVELOPE * first.envelope, edge_spacing=0.1
-    )
+    surface = surface_to_mesh(design, part, degrees, edge_spacing=0.1)
     return lambda spec: mesh_surface(surface, spec)
 
 
