@@ -78,5 +78,5 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         "deviation."
     )
     line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture("budget", terms + extended, 88))
-    yield from shown(content, roomy, Picture("torque_angle", line, 84))
+    yield from shown(content, roomy, Picture("budget", terms + extended, 80))
+    yield from shown(content, roomy, Picture("torque_angle", line, 74))

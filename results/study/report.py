@@ -22,7 +22,7 @@ from results.report.document import (
     Pictures,
     Table,
 )
-from results.report.spans import Text, alarm, plain
+from results.report.spans import Text, alarm, plain, worded
 from results.study.best_stress import PICTURE, VIEW, turning_best
 from results.study.labels import entry
 from results.study.notes import notes
@@ -82,7 +82,7 @@ def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
         *(_picture(n, result) for n in pictures),
         *_failures(result),
         Heading("What holds"),
-        Bullets(tuple(notes(result))),
+        Bullets(tuple(map(worded, notes(result)))),
     )
     return Document(
         title="A study of designs",
