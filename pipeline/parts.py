@@ -13,7 +13,8 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import Finer, can_be_swept, swept_edges, swept_mesh
+from fea.solid.swept import can_be_swept, swept_edges, swept_mesh
+from fea.solid.swept_sizing import Finer
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Elastic, Stiffness, TetMesh
 from geometry.design import Design

@@ -11,7 +11,8 @@ from fea.solid.cases import Model, ellipse
 from fea.solid.defaults import first_spec
 from fea.solid.errors import SolidError
 from fea.solid.peak import SharpEdges, stress_field
-from fea.solid.swept import Finer, can_be_swept
+from fea.solid.swept import can_be_swept
+from fea.solid.swept_sizing import Finer
 from fea.solid.unfold import unfolded
 from fea.types import SolidField
 from geometry.errors import ComputationError
@@ -28,9 +29,10 @@ edges of a wall leave 1 to 2 % (docs/decisions.md)."""
 ELSEWHERE = 2.0
 """Edges away from the peak, in those of the first mesh for K: the peak stays the same to 0.01 %."""
 MOST_ELEMENTS = 100_000
+"""Of the quarter or half: 450 000 unknowns, half a minute."""
 COARSER = (1.0, 1.5, 2.0)
-"""Of the quarter or half: 450 000 unknowns, half a minute. Where there would be more, steps and edges are
-these times as long; and where that does not help, the mesh that gave K serves."""
+"""Steps and edges are so many times as long where there would be more; where that does not help, the mesh
+that gave K serves."""
 PLACE_TOLERANCE = 0.02
 """Of the hole-free peak that says where to refine; its place is good to a share of a wall by then."""
 
@@ -45,8 +47,8 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
     def make() -> SolidField:
         expected = _hole_free_peak(flexspline)
-        fine = expected and _refined_at(flexspline, expected)
-        if not expected or not fine:
+        fine = _refined_at(flexspline, expected) if expected else None
+        if expected is None or fine is None:
             return _solved(flexspline, flexspline.twisted().rim, w0)
         field = _solved(flexspline, fine, w0)
         x, y, z = field.peak.at_mm

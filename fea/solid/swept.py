@@ -8,22 +8,26 @@ same design gives the same mesh.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from math import ceil, radians
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError
+from fea.axisymmetric.meridian_mesh import MeshingError
 from fea.axisymmetric.triangulate import triangulate
 from fea.solid.column import INTERFACE, Column, column_of
 from fea.solid.elements import element_volumes, facet_areas
-from fea.solid.errors import MeshQualityError, SolidError
+from fea.solid.errors import MeshQualityError
 from fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
 from fea.solid.prisms import along, cut, extruded, revolved
 from fea.solid.sizing import Grading
 from fea.solid.snap import snap_to_surfaces
+from fea.solid.swept_sizing import (
+    Finer,
+    critical_points,
+    graded_mesh,
+    plan_mesh,
+    refuse_beyond_memory,
+)
 from fea.types import TetMesh
 from geometry.design import Design
 from geometry.meridian import meridian
@@ -32,31 +36,9 @@ from geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
-PLAN_EDGE = 1.2
-"""Largest edge in the plan beside a hole, in hole radii."""
-ROUNDS = 60
 ON_SURFACE = 1e-6
 TOLERANCE = 1e-3
 """Of volume and patch areas; parabolas for arcs of 15° leave 1e-5."""
-MOST_ELEMENTS = 500_000
-"""2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
-
-
-@dataclass(frozen=True)
-class Finer:
-    """What a stress that varies about the axis asks of a mesh, beyond the grading.
-
-    Attributes
-    ----------
-    step_rad : the largest step about the axis.
-    places : points (r, z) of the meridian [mm].
-    within_mm, edge_mm : edges of the meridian are at most so long, so near to one of the places.
-    """
-
-    step_rad: float
-    places: tuple[tuple[float, float], ...]
-    within_mm: float
-    edge_mm: float
 
 
 def swept_mesh(
@@ -97,93 +79,26 @@ def _prisms(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Corners (n, 3) as (r, φ, z) and tetrahedra (m, 4), positive."""
     own = outline if column is None else column.rest(outline)
-    rest = _graded(triangulate(own), _critical_points(outline), grading, finer)
+    rest = graded_mesh(triangulate(own), critical_points(outline), grading, finer)
     step = LARGEST_STEP if finer is None else finer.step_rad
     if column is None:
         angles = np.linspace(0, sector, ceil(sector / step) + 1)
-        _refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
+        refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
     else:
         far = grading.far if finer is None else min(grading.far, step * column.interface)
-        plan = _plan(column, sector, far)
+        plan = plan_mesh(column, sector, far)
         seam = along(plan, INTERFACE)
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)
         angles[[0, -1]] = 0.0, sector
-        _refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
+        refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
         above, more = extruded(plan, column, rest, seam, len(polar))
         polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
     found = cut(prisms)
     used, compact = np.unique(found, return_inverse=True)
     return polar[used], compact.reshape(found.shape)
-
-
-def _refuse_beyond_memory(prisms: int) -> None:
-    """The column, which has fewer elements than the rest, is not counted."""
-    elements = 3 * prisms
-    if elements > MOST_ELEMENTS:
-        raise SolidError(
-            f"the mesh would have {elements} elements or more, at most {MOST_ELEMENTS}:"
-            " raise solver.tolerance_pct or solver.edge_length_mm"
-        )
-
-
-def _critical_points(outline: Meridian) -> np.ndarray:
-    """Points (k, 2) of the meridian where the torsional stress is singular.
-
-    Patch edges and inside corners, as `TaggedSurface.critical_edges`.
-    """
-    found = list(outline.patch_edges)
-    for i, s in enumerate(outline.segments):
-        before, after = outline.segments[i - 1].tangent(1), s.tangent(0)
-        if before[0] * after[1] - before[1] * after[0] < -1e-6:
-            found.append(s.start)
-    return np.array(found)
-
-
-def _graded(
-    mesh: MeridianMesh, critical: np.ndarray, grading: Grading, finer: Finer | None
-) -> MeridianMesh:
-    """Triangles halved until no edge is longer than the grading asks for, and `finer`."""
-
-    def from_(places: np.ndarray, points: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(points[:, None] - places, axis=2).min(axis=1)
-
-    def wanted(points: np.ndarray) -> np.ndarray:
-        edge = np.minimum(grading.far, grading.near + grading.growth * from_(critical, points))
-        if finer is None:
-            return edge
-        beyond = np.maximum(0.0, from_(np.array(finer.places), points) - finer.within_mm)
-        return np.minimum(edge, finer.edge_mm + grading.growth * beyond)
-
-    return _sized(mesh, wanted)
-
-
-def _plan(column: Column, sector: float, far: float) -> MeridianMesh:
-    """The column's plan, finer beside the hole."""
-    centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
-
-    def wanted(points: np.ndarray) -> np.ndarray:
-        away = np.linalg.norm(points - centre, axis=1) - hole
-        return np.minimum(far, np.maximum(PLAN_EDGE * hole, away))
-
-    return _sized(triangulate(column.plan(sector)), wanted)
-
-
-def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:
-    """No edge longer than `wanted` at its triangle's centre."""
-    for _ in range(ROUNDS):
-        corner = mesh.points[mesh.triangles]
-        longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max(axis=1)
-        large = longest > wanted(corner.mean(axis=1))
-        if not large.any():
-            return mesh
-        _refuse_beyond_memory(len(mesh.triangles))  # before it has them all
-        mesh = refined(mesh, large)
-    raise MeshQualityError(
-        f"{int(large.sum())} triangles of the meridian cannot be made fine enough"
-    )
 
 
 def _curved(

@@ -1,0 +1,106 @@
+"""How fine the meridian and the holes' plan of a swept part are: by grading, and beside chosen places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.axisymmetric.bisection import refined
+from fea.axisymmetric.meridian_mesh import MeridianMesh
+from fea.axisymmetric.triangulate import triangulate
+from fea.solid.column import Column
+from fea.solid.errors import MeshQualityError, SolidError
+from fea.solid.sizing import Grading
+from geometry.outline import Meridian
+
+PLAN_EDGE = 1.2
+"""Largest edge in the plan beside a hole, in hole radii."""
+ROUNDS = 60
+MOST_ELEMENTS = 500_000
+"""2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
+
+
+@dataclass(frozen=True)
+class Finer:
+    """What a stress that varies about the axis asks of a mesh, beyond the grading.
+
+    Attributes
+    ----------
+    step_rad : the largest step about the axis.
+    places : points (r, z) of the meridian [mm].
+    within_mm, edge_mm : edges of the meridian are at most so long, so near to one of the places.
+    """
+
+    step_rad: float
+    places: tuple[tuple[float, float], ...]
+    within_mm: float
+    edge_mm: float
+
+
+def graded_mesh(
+    mesh: MeridianMesh, critical: np.ndarray, grading: Grading, finer: Finer | None
+) -> MeridianMesh:
+    """Triangles halved until no edge is longer than the grading asks for, and `finer`."""
+
+    def nearest(places: np.ndarray, points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points[:, None] - places, axis=2).min(axis=1)
+
+    def wanted(points: np.ndarray) -> np.ndarray:
+        edge = np.minimum(grading.far, grading.near + grading.growth * nearest(critical, points))
+        if finer is None:
+            return edge
+        beyond = np.maximum(0.0, nearest(np.array(finer.places), points) - finer.within_mm)
+        return np.minimum(edge, finer.edge_mm + grading.growth * beyond)
+
+    return _sized(mesh, wanted)
+
+
+def plan_mesh(column: Column, sector: float, far: float) -> MeridianMesh:
+    """The column's plan, finer beside the hole."""
+    centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
+
+    def wanted(points: np.ndarray) -> np.ndarray:
+        away = np.linalg.norm(points - centre, axis=1) - hole
+        return np.minimum(far, np.maximum(PLAN_EDGE * hole, away))
+
+    return _sized(triangulate(column.plan(sector)), wanted)
+
+
+def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:
+    """No edge longer than `wanted` at its triangle's centre."""
+    for _ in range(ROUNDS):
+        corner = mesh.points[mesh.triangles]
+        longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max(axis=1)
+        large = longest > wanted(corner.mean(axis=1))
+        if not large.any():
+            return mesh
+        refuse_beyond_memory(len(mesh.triangles))  # before it has them all
+        mesh = refined(mesh, large)
+    raise MeshQualityError(
+        f"{int(large.sum())} triangles of the meridian cannot be made fine enough"
+    )
+
+
+def critical_points(outline: Meridian) -> np.ndarray:
+    """Points (k, 2) of the meridian where the torsional stress is singular.
+
+    Patch edges and inside corners, as `TaggedSurface.critical_edges`.
+    """
+    found = list(outline.patch_edges)
+    for i, s in enumerate(outline.segments):
+        before, after = outline.segments[i - 1].tangent(1), s.tangent(0)
+        if before[0] * after[1] - before[1] * after[0] < -1e-6:
+            found.append(s.start)
+    return np.array(found)
+
+
+def refuse_beyond_memory(prisms: int) -> None:
+    """Raise SolidError for too many prisms of the meridian; the column of the holes is not counted."""
+    elements = 3 * prisms
+    if elements > MOST_ELEMENTS:
+        raise SolidError(
+            f"the mesh would have {elements} elements or more, at most {MOST_ELEMENTS}:"
+            " raise solver.tolerance_pct or solver.edge_length_mm"
+        )
