@@ -29,7 +29,7 @@ tests did; edit the tests, not this page. A row is replaced when its test has ru
 can be run one by one. *Answered*: status 0 and finite figures between their bounds. *Refused*: status 2,
 one line, nothing written. *Failed*: status 1 with its reason in one line. A traceback, a hang, or a
 half-written file fails the test. Long tests come in blocks, a row each; a block without a row has not run
-since it was written (200 solid designs, 160 swept and 40 meshed, are there to be run). Times are by the clock
+since it was written. Times are by the clock
 on a machine with several times as much other work as cores.
 """
 COLUMNS = "| tried | how many | what came of it | longest |\n|---|---|---|---|"
