@@ -96,7 +96,7 @@ class FrictionHysteresis(Cause):
             run = stops(history, torque, pairs[:, 0], pairs[:, 1])
             at = 0
             for s, (r, weight) in zip(stopped, parts, strict=True):
-                mine = where[at : at + len(r)]
+                mine = where.ravel()[at : at + len(r)]  # of two dimensions in numpy 2.0.0
                 states[id(s)] = run[:, mine] @ (weight / r)
                 at += len(r)
         return [self._column(s, states[id(s)], history) for s in shapes]
