@@ -54,8 +54,10 @@ def rim_answers(flexspline: PartModel) -> RimAnswers:
 
 def wave_generator_field(flexspline: PartModel) -> SolidField:
     """The ellipse's field for pictures and files; its peak from the model that answers."""
-    peak = rim_answers(flexspline).wave_generator_peak
-    return replace(solid_ellipse(flexspline), peak=peak)
+    field = solid_ellipse(flexspline)
+    if not flexspline.axisymmetric:
+        return field
+    return replace(field, peak=_revolved(flexspline).wave_generator_peak)
 
 
 def _revolved(flexspline: PartModel) -> RimAnswers:

@@ -35,11 +35,19 @@ class ClusterError(ComputationError):
 
 @dataclass(frozen=True)
 class Hands:
-    """Who evaluates: an executor, how many designs at once, and which errors mean a lost worker."""
+    """Who evaluates.
+
+    Attributes
+    ----------
+    executor, width : where designs go, and how many at once.
+    lost : errors that mean that a design's workers died.
+    replace_lost : to be called every second or so, lest dead workers stay away.
+    """
 
     executor: Executor
     width: Callable[[], int]
     lost: tuple[type[BaseException], ...] = ()
+    replace_lost: Callable[[], None] = lambda: None
 
     def submit(self, function: Callable, *arguments: object) -> Future:
         return self.executor.submit(function, *arguments)
@@ -103,6 +111,8 @@ def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
                     (KilledWorker,),
                 )
             return
+        # where a worker that was to replace a dead one dies too, this one prints a traceback
+        logging.getLogger("tornado.application").setLevel(logging.CRITICAL)
         with _deaf_to_interrupts():
             cluster = LocalCluster(
                 n_workers=workers,
@@ -114,7 +124,14 @@ def dask_hands(workers: int, scheduler: str) -> Iterator[Hands]:
             )
         with cluster, Client(cluster) as client:
             try:
-                yield Hands(client.get_executor(pure=False), lambda: workers, (KilledWorker,))
+                yield Hands(
+                    client.get_executor(pure=False),
+                    lambda: workers,
+                    (KilledWorker,),
+                    # to its nanny, a worker that dies in its first moments is one that cannot start; the
+                    # cluster gives both up after 15 s (lost-worker-timeout), and asked again starts others
+                    lambda: cluster.scale(workers),
+                )
             except CommClosedError as fault:
                 raise ClusterError(f"the local cluster went away: {fault}") from fault
 

@@ -82,6 +82,7 @@ def carry_out(
 
     ledger.beat()
     while True:
+        hands.replace_lost()
         while len(pending) < hands.width() + source.ahead:
             job = _next(source, ledger)
             if job is None:

@@ -92,11 +92,12 @@ class FrictionHysteresis(Cause):
             start = np.repeat([s["start"] for s in stopped], lengths)
             # the even and exponential spreads repeat thresholds; each pair is run once
             pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
+            where = where.ravel()  # of two dimensions in numpy 2.0.0
             torque = steadied(history, shapes[0]["deadband_Nm"])
             run = stops(history, torque, pairs[:, 0], pairs[:, 1])
             at = 0
             for s, (r, weight) in zip(stopped, parts, strict=True):
-                mine = where.ravel()[at : at + len(r)]  # of two dimensions in numpy 2.0.0
+                mine = where[at : at + len(r)]
                 states[id(s)] = run[:, mine] @ (weight / r)
                 at += len(r)
         return [self._column(s, states[id(s)], history) for s in shapes]
