@@ -95,11 +95,8 @@ def carry_out(
             time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
             _adopt(source, ledger)
         else:
-            done, _ = wait(pending, timeout=POLL_S, return_when=FIRST_COMPLETED)
-            for future in done:
-                outcome = _outcome(future, hands)
-                ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
-            if done and time.monotonic() - watched > WATCH_S:
+            stored = _store_finished(pending, hands, source, ledger)
+            if stored and time.monotonic() - watched > WATCH_S:
                 watched = time.monotonic()
                 tell()
         if time.monotonic() - beaten > BEAT_S:
@@ -111,6 +108,20 @@ def is_complete(source: Source, ledger: Ledger) -> bool:
     """Whether every design has its row already."""
     _adopt(source, ledger)
     return len(ledger.rows()) >= source.size
+
+
+def _store_finished(
+    pending: dict[Future, Job], hands: Hands, source: Source, ledger: Ledger
+) -> bool:
+    """Store what is finished, after a wait of at most POLL_S; whether anything was.
+
+    No future is referred to afterwards: while one is, Dask makes its result again should the worker die.
+    """
+    done, _ = wait(pending, timeout=POLL_S, return_when=FIRST_COMPLETED)
+    for future in done:
+        outcome = _outcome(future, hands)
+        ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
+    return bool(done)
 
 
 def _outcome(future: Future, hands: Hands) -> Outcome:

@@ -24,6 +24,7 @@ def deadly(task: Task) -> Outcome:
         tried = len(list(marks.glob(f"{length:g}-*")))
         (marks / f"{length:g}-{tried}").touch()
         if length == 25 or tried == 0:
+            time.sleep(1)  # by then the result before is stored: it must not be made again
             os._exit(1)
     return quick(task)
 
@@ -40,8 +41,7 @@ def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert lost.values == {WALL: 0.4, "flexspline.length_mm": 25.0}
     assert "worker died" in lost.outcome.reason
     assert len(list(tmp_path.glob("25-*"))) == RETRIES + 1
-    # once more where Dask gives a worker up while it is at it
-    assert len(list(tmp_path.glob("30-*"))) in (2, 3)
+    assert len(list(tmp_path.glob("30-*"))) == 2
 
 
 def test_a_worker_that_is_not_started_again_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
