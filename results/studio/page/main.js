@@ -91,6 +91,7 @@ function adopt({ tables, form: groups }) {
   state.tables = tables;
   state.good = structuredClone(tables);
   title.value = tables.name;
+  title.disabled = false;
   form.build(groups);
   keep();
 }

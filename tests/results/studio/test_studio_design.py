@@ -19,7 +19,7 @@ from studio_page import Page
 from geometry.load import design_from, load_design
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator
+    from playwright.sync_api import Locator, Route
 
 WALL = "flexspline.wall_thickness_mm"
 STIFFNESSES = (
@@ -154,6 +154,20 @@ def test_bad_values_are_explained_where_they_are_typed(page: Page) -> None:
     page.set("bearing.radial_clearance_um", "12")
     page.quick()
     assert not fault.is_visible()
+
+
+def test_the_name_takes_no_text_before_the_design_has_come(page: Page) -> None:
+    held: list[Route] = []
+    page.tab.route("**/start", lambda route: held.append(route))
+    with page.tab.expect_request("**/start"):
+        page.tab.reload()
+    name = page.at("#name")
+    assert name.is_disabled()  # what went in now would be written over by what comes
+    held[0].continue_()
+    name.fill("in time")
+    page.quick()
+    assert name.input_value() == "in time"
+    assert page.tab.title().startswith("in time")
 
 
 @pytest.mark.parametrize(
