@@ -22,7 +22,7 @@ import numpy as np
 from pipeline.leftovers import discard, unfinished
 
 T = TypeVar("T")
-FORMAT = 7
+FORMAT = 8
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

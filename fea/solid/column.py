@@ -1,7 +1,7 @@
 """Where a part with bolt holes is no body of revolution: one column of its meridian.
 
-Around the bolt circle the material fills a rectangle of the (r, z) plane, from a bore or an outer wall
-to an `interface` beyond the holes. There the part is its plan, with the holes, extruded in z; all the
+Around the bolt circle the material fills a rectangle of the (r, z) plane, from a bore, the axis or an outer
+wall to an `interface` beyond the holes. There the part is its plan, with the holes, extruded in z; all the
 rest is its meridian, revolved.
 """
 
@@ -18,6 +18,7 @@ from geometry.outline import SAME, Meridian, Segment
 
 INTERFACE = "interface"
 HOLE = "hole"
+CORE_RIM = "core_rim"
 SHARE = 0.3
 """How far the interface lies from the holes towards the next feature of the meridian: nearer, and the
 plan's triangles beside it are small and many; farther, and the meridian's are."""
@@ -26,6 +27,9 @@ NARROW_OF_RADIUS, NARROW_OF_HEIGHT = 0.1, 0.02
 column's height is left to the mesher: fair triangles in it are too many (30 000 elements on a cup's
 land of 0.05 mm, 400 000 on one of 0.005)."""
 LARGEST_ARC = pi / 2
+CORE = 0.5
+"""Where the column reaches the axis, the plan's triangles end at this share of the holes' nearest radius:
+within, they would have the sector's angle, a needle's."""
 
 
 @dataclass(frozen=True)
@@ -52,14 +56,24 @@ class Column:
         """Whether material closes the holes above."""
         return self.depth < self.high - SAME
 
+    @property
+    def core(self) -> float:
+        """Radius [mm] within which the plan is a fan about the axis; 0 for a column off the axis."""
+        return CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
+
     def plan(self, sector_rad: float) -> Meridian:
-        """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0."""
+        """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
+
+        Its inner end is named CORE_RIM where the core is beyond it.
+        """
         rc, rh = self.bolt_circle, self.hole_radius
         turns = np.linspace(0, sector_rad, ceil(sector_rad / LARGEST_ARC) + 1)
         outer = [(self.outer * cos(a), self.outer * sin(a)) for a in turns]
-        inner = [(self.inner * cos(a), self.inner * sin(a)) for a in turns[::-1]]
+        within = self.inner or self.core
+        inner = [(within * cos(a), within * sin(a)) for a in turns[::-1]]
         hole, origin = (rc, 0.0), (0.0, 0.0)
         outside = self.interface == self.outer
+        inside = INTERFACE if not outside else CORE_RIM if self.core else None
         found = [
             Segment(inner[-1], (rc - rh, 0.0)),
             Segment((rc - rh, 0.0), (rc, rh), hole, HOLE),
@@ -67,7 +81,7 @@ class Column:
             Segment((rc + rh, 0.0), outer[0]),
             *(Segment(a, b, origin, INTERFACE if outside else None) for a, b in pairwise(outer)),
             Segment(outer[-1], inner[0]),
-            *(Segment(a, b, origin, None if outside else INTERFACE) for a, b in pairwise(inner)),
+            *(Segment(a, b, origin, inside) for a, b in pairwise(inner)),
         ]
         return Meridian(tuple(found))
 
@@ -127,7 +141,7 @@ def column_of(design: Design, part: str, outline: Meridian) -> Column | None:
     if len(within) + len(beyond) < len(r) or not len(within) or not len(beyond):
         return None  # something changes over the holes, or one of them lies over the axis
     below, above = float(within.max()), float(beyond.min())
-    if SAME < below <= r.min() + SAME:
+    if below <= r.min() + SAME:
         land = above - circle - hole
         inner, outer = below, circle + hole + SHARE * land
         interface = outer

@@ -32,13 +32,16 @@ def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.nda
 
     A triangle that is counter-clockwise in (r, z) is clockwise seen along φ: its order is turned, so
     that every prism, here and in `extruded`, has its second triangle on the positive side of the first.
+    A vertex on the axis is one node, the first of its own; prisms there have it twice.
     """
     n, k = len(rest.points), len(angles)
     polar = np.column_stack(
         [np.repeat(rest.points[:, 0], k), np.tile(angles, n), np.repeat(rest.points[:, 1], k)]
     )
-    base = rest.triangles[:, ::-1] * k
-    return polar, np.vstack([np.hstack([base + i, base + i + 1]) for i in range(k - 1)])
+    number = np.arange(n * k).reshape(n, k)
+    number[rest.on_axis()] = number[rest.on_axis(), :1]
+    base = number[rest.triangles[:, ::-1]]
+    return polar, np.vstack([np.hstack([base[..., i], base[..., i + 1]]) for i in range(k - 1)])
 
 
 def extruded(
@@ -87,11 +90,12 @@ def _filled_hole(plan: MeridianMesh, column: Column) -> tuple[np.ndarray, np.nda
 def cut(prisms: np.ndarray) -> np.ndarray:
     """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node.
 
-    They are positive as the prism is.
+    They are positive as the prism is. Of a prism with a node twice, on the axis, two are left, or one.
     """
     v = np.take_along_axis(prisms, ROTATIONS[prisms.argmin(axis=1)], axis=1)
     first = np.minimum(v[:, 1], v[:, 5]) < np.minimum(v[:, 2], v[:, 4])
-    return np.vstack([v[first][:, CUTS[0]].reshape(-1, 4), v[~first][:, CUTS[1]].reshape(-1, 4)])
+    tets = np.vstack([v[first][:, CUTS[0]].reshape(-1, 4), v[~first][:, CUTS[1]].reshape(-1, 4)])
+    return tets[(np.diff(np.sort(tets, axis=1), axis=1) > 0).all(axis=1)]
 
 
 def along(mesh: MeridianMesh, patch: str) -> np.ndarray:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fea.solid.errors import MeshQualityError
+from fea.solid.tetwild import signed_volumes
 from geometry.surfaces import Plane, Surface
 
 ROUNDS = 40
@@ -74,3 +76,16 @@ def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -
     best = away.argmin(axis=0)
     chosen = np.array(targets)[best, np.arange(len(points))]
     return np.where((away.min(axis=0) <= limit)[:, None], chosen, points)
+
+
+def undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np.ndarray:
+    """Take back the moves of nodes whose tetrahedra they flattened (under a tenth of the volume)."""
+    before = signed_volumes(raw, tets)
+    out = snapped.copy()
+    for _ in range(10):
+        bad = signed_volumes(out, tets) < 0.1 * before
+        if not bad.any():
+            return out
+        nodes = np.unique(tets[bad])
+        out[nodes] = raw[nodes]
+    raise MeshQualityError("boundary nodes cannot be put onto the CAD surface without inversion")

@@ -31,7 +31,7 @@ from fea.solid.swept_sizing import (
 from fea.types import TetMesh
 from geometry.design import Design
 from geometry.meridian import meridian
-from geometry.outline import SAME, Meridian
+from geometry.outline import Meridian
 from geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
@@ -46,7 +46,7 @@ def swept_mesh(
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
-    A keyway, a part that reaches the axis, and holes that are not in a plain column need a mesher.
+    A keyway and holes that are not in a plain column need a mesher.
     So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
     part, a volume or a patch area that is not its own, a meridian that cannot be triangulated.
 
@@ -66,12 +66,11 @@ def swept_mesh(
 
 
 def can_be_swept(design: Design, part: str) -> bool:
-    """Whether the part is a body of revolution off the axis, or one with holes in a plain column."""
+    """Whether the part is a body of revolution, or one with holes in a plain column."""
     outline = meridian(design, part)
     holes = (design.shaft if part == "shaft" else design.flexspline).bolts is not None
     keyed = part == "shaft" and design.shaft.keyway is not None
-    off_axis = min(s.start[0] for s in outline.segments) > SAME
-    return off_axis and not keyed and (not holes or column_of(design, part, outline) is not None)
+    return not keyed and (not holes or column_of(design, part, outline) is not None)
 
 
 def _prisms(
@@ -111,7 +110,7 @@ def _curved(
     surfaces = part_surfaces(design, part, outline, sector_deg)
     facet_surface = _surface_of(corners, faces, surfaces)
     edges, cells, facets = with_middles(corners, tets, faces)
-    nodes = np.vstack([corners, _cartesian(polar[edges].mean(axis=1))])
+    nodes = np.vstack([corners, _cartesian(_middles(polar[edges]))])
     longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
     nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
     nodes[: len(corners)] = corners
@@ -121,6 +120,14 @@ def _curved(
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
     _check(mesh, outline, column)
     return mesh
+
+
+def _middles(ends: np.ndarray) -> np.ndarray:
+    """Middles (e, 3) of edges (e, 2, 3), all as (r, φ, z); an end on the axis has the other's angle."""
+    off_axis = ends[:, :, 0] > 0
+    middles = ends.mean(axis=1)
+    middles[:, 1] = (ends[:, :, 1] * off_axis).sum(axis=1) / np.maximum(1, off_axis.sum(axis=1))
+    return middles
 
 
 def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface]) -> np.ndarray:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.triangulate import triangulate
-from fea.solid.column import Column
+from fea.solid.column import CORE_RIM, Column
 from fea.solid.errors import MeshQualityError, SolidError
 from fea.solid.sizing import Grading
 from geometry.outline import Meridian
@@ -58,14 +58,21 @@ def graded_mesh(
 
 
 def plan_mesh(column: Column, sector: float, far: float) -> MeridianMesh:
-    """The column's plan, finer beside the hole."""
+    """The column's plan, finer beside the hole; a core on the axis is a fan."""
     centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
 
     def wanted(points: np.ndarray) -> np.ndarray:
         away = np.linalg.norm(points - centre, axis=1) - hole
         return np.minimum(far, np.maximum(PLAN_EDGE * hole, away))
 
-    return _sized(triangulate(column.plan(sector)), wanted)
+    plan = _sized(triangulate(column.plan(sector)), wanted)
+    rim = plan.edges[np.isin(plan.edge_segment, plan.segments_of(CORE_RIM))]
+    if not len(rim):
+        return plan
+    axis = len(plan.points)
+    fan = np.column_stack([rim[:, ::-1], np.full(len(rim), axis)])
+    points, triangles = np.vstack([plan.points, (0.0, 0.0)]), np.vstack([plan.triangles, fan])
+    return replace(plan, points=points, triangles=triangles)
 
 
 def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:

@@ -14,6 +14,7 @@ from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from fea.solid.errors import MesherError, MeshQualityError
 from fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, mesh_surface
+from fea.solid.sizing import Grading
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.tetwild import TetwildSettings, tetrahedralize
 from fea.types import Elastic, TetMesh
@@ -84,7 +85,7 @@ def test_mesh_agrees_with_the_cad(shaft) -> None:
 
 
 def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
-    """A cup closed at the axis, so that only the mesher can mesh it; it left a crack there every time."""
+    """A cup closed at the axis; the mesher left a crack there every time."""
     given = design(
         0, inner_diameter_mm=20.4, wall_thickness_mm=1.13, ring_thickness_mm=1.77, length_mm=16.1,
         ring_width_mm=7.9, ring_offset_mm=2.4, diaphragm_thickness_mm=3.0, boss_diameter_mm=15.0,
@@ -100,6 +101,27 @@ def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
     assert facet_areas(mesh.nodes, mesh.on("mesh")).sum() == pytest.approx(
         whole.patch_area("mesh") * share, rel=5e-3
     )
+
+
+def test_the_mounts_rim_is_in_the_mesh() -> None:
+    """The mesher loses a circle in a plane here and there: one held facet beyond it made K 3 % too large.
+
+    So fine, 12 of 14 meshes had lost it by 0.02 % of the area and more.
+    """
+    given = design(
+        0, length_mm=18.0, wall_thickness_mm=0.9, ring_thickness_mm=1.2, diaphragm_thickness_mm=1.2,
+        ring_width_mm=6.0,
+    )  # fmt: skip
+    surface = surface_of(given, "flexspline")
+    first = first_spec(given, "flexspline")
+    grading = Grading(0.36 * first.grading.near, 0.8 * first.grading.far, 0.56)
+    mesh = mesh_surface(surface, replace(first, grading=grading, envelope=grading.near / 6))
+    mount = mesh.on("mount")
+    radius = np.hypot(*mesh.nodes[mount[:, :3], :2].transpose(2, 0, 1))
+    assert radius.max() == pytest.approx(given.flexspline.boss_diameter_mm / 2, abs=1e-6)
+    # six-node facets along circles, their arcs below 10°
+    area = facet_areas(mesh.nodes, mount).sum()
+    assert area == pytest.approx(surface.patch_areas["mount"], rel=1e-5)
 
 
 def test_nodes_of_both_symmetry_planes_go_onto_the_axis() -> None:

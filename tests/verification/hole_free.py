@@ -31,16 +31,6 @@ REFERENCE = 5e-5
 """Width of the two-sided bounds: a hundred times narrower, and eight times below any estimate so far."""
 FINE = 0.001
 """A tolerance that takes two or three meshes, where the default often takes one."""
-KINDS = [
-    pytest.param("chosen", TOLERANCE, id="chosen"),
-    pytest.param("chosen", FINE, id="chosen, to 0.1 %"),
-    pytest.param("fTetWild", TOLERANCE, id="fTetWild", marks=pytest.mark.long),
-]
-"""Mesher and tolerance. fTetWild alone is the choice for keyways and parts on the axis: the solid shaft
-below keeps it in the default tests, all ten designs take a minute."""
-
-SOLID = "shaft, solid, two steps"
-
 CASES: dict[str, tuple[str, str, dict[str, Any]]] = {
     "cup": ("xb1-40.toml", "flexspline", {}),
     "cup, short and thick": (
@@ -54,6 +44,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any]]] = {
          "diaphragm_thickness_mm": 0.4, "boss_diameter_mm": 22.0},
     ),
     "cup, ring inboard": ("xb1-40.toml", "flexspline", {"ring_offset_mm": 3.0}),
+    "cup, no bore": ("xb1-40.toml", "flexspline", {"bore_diameter_mm": 0.0}),
     "hat": ("hat-25.toml", "flexspline", {}),
     "hat, sharp corners": (
         "hat-25.toml", "flexspline", {"inner_fillet_mm": 0.0, "outer_fillet_mm": 0.0},
@@ -63,11 +54,23 @@ CASES: dict[str, tuple[str, str, dict[str, Any]]] = {
     "shaft, slender": ("xb1-40.toml", "shaft", {"segment": [
         {"length_mm": 3.0, "outer_diameter_mm": 24.0, "inner_diameter_mm": 8.0},
         {"length_mm": 40.0, "outer_diameter_mm": 14.0, "inner_diameter_mm": 8.0}]}),
-    SOLID: ("xb1-40.toml", "shaft", {"segment": [
+    "shaft, solid, two steps": ("xb1-40.toml", "shaft", {"segment": [
         {"length_mm": 4.0, "outer_diameter_mm": 26.0, "inner_diameter_mm": 0.0},
         {"length_mm": 10.0, "outer_diameter_mm": 16.0, "inner_diameter_mm": 0.0},
         {"length_mm": 14.0, "outer_diameter_mm": 12.0, "inner_diameter_mm": 0.0}]}),
 }  # fmt: skip
+
+MESHED = "shaft, solid, two steps"
+"""fTetWild alone meshes keyways: this shaft keeps it in the default tests, all eleven take a minute."""
+SOLUTIONS = [
+    pytest.param(
+        name, kind, tolerance, id=f"{kind}, to {tolerance:.1%}-{name}",
+        marks=[pytest.mark.long] * (kind == "fTetWild" and name != MESHED),
+    )
+    for kind, tolerance in (("chosen", TOLERANCE), ("chosen", FINE), ("fTetWild", TOLERANCE))
+    for name in CASES
+]  # fmt: skip
+"""Case, mesher, tolerance."""
 
 
 def hole_free(file: str, part: str, changes: dict[str, Any]) -> Design:

@@ -1,13 +1,13 @@
 """Honesty of the solid model's error estimate (Zienkiewicz and Zhu 1987, scaled by two meshes).
 
-True error over estimated error on ten designs; K itself from two-sided bounds (Michell 1899).
+True error over estimated error on eleven designs; K itself from two-sided bounds (Michell 1899).
 """
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from hole_free import CASES, FINE, KINDS, REFERENCE, SOLID, TOLERANCE, solved
+from hole_free import CASES, REFERENCE, SOLUTIONS, TOLERANCE, solved
 
 
 def ratio(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> float:
@@ -15,12 +15,9 @@ def ratio(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> floa
     return pair.true_error / pair.estimated_error
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), KINDS)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("name", "kind", "tolerance"), SOLUTIONS)
 def test_true_error_over_estimate(name: str, kind: str, tolerance: float, record) -> None:
     """The demand: between 0.3 and 3 on the finest mesh, the one that is reported."""
-    if (name, tolerance) == (SOLID, FINE):
-        pytest.skip("fTetWild to 0.1 % takes minutes")
     pair, found = solved(name, kind, tolerance), ratio(name, kind, tolerance)
     how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
     what = f"True over estimated error, {name}, to {tolerance:.1%}{how}"
@@ -30,8 +27,8 @@ def test_true_error_over_estimate(name: str, kind: str, tolerance: float, record
     assert 0.3 < found < 3.0
 
 
-def test_ten_designs_and_no_bias() -> None:
+def test_no_bias_over_ten_designs_and_more() -> None:
     """An estimate that is honest on the whole has a median near 1, not only extremes in range."""
-    assert len(CASES) == 10
+    assert len(CASES) >= 10  # the issue's demand
     # one mesh takes the usual scale, two have their own, each with its scatter: 0.8 to 1.8 measured
     assert 0.6 < np.median([ratio(name) for name in CASES]) < 1.6

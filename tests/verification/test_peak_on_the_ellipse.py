@@ -25,6 +25,7 @@ CASES = {
     "hat of 36.5 mm": ("hat-25.toml", {"length_mm": 36.5}),
     "hat": ("hat-25.toml", {}),
     "cup, wall of 0.2 mm": ("xb1-40.toml", {"wall_thickness_mm": 0.2}),
+    "cup, no bore": ("xb1-40.toml", {"bore_diameter_mm": 0.0}),
 }
 
 

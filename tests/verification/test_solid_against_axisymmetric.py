@@ -9,7 +9,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from hole_free import CASES, EXAMPLES, FINE, KINDS, SOLID, mesher, solved
+from hole_free import EXAMPLES, SOLUTIONS, mesher, solved
 
 from fea.solid.cases import Model, torsion
 from fea.solid.defaults import first_spec
@@ -22,13 +22,10 @@ from geometry.load import design_from
 from geometry.tagged import tagged_surface
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), KINDS)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("name", "kind", "tolerance"), SOLUTIONS)
 def test_solid_stiffness_lies_within_its_bounds(
     name: str, kind: str, tolerance: float, record
 ) -> None:
-    if (name, tolerance) == (SOLID, FINE):
-        pytest.skip("fTetWild to 0.1 % takes minutes")
     pair = solved(name, kind, tolerance)
     found, exact = pair.solid, pair.exact
     how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
