@@ -22,6 +22,9 @@ SMOOTH = 1e-6
 NEAR = 0.3
 """An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
 
+SLIP = 0.1
+"""Share of its way by which a moved node may leave another surface: along a curved one, not across one."""
+
 
 @dataclass(frozen=True)
 class PatchEdge:
@@ -56,35 +59,71 @@ def smooth_patch_edges(surfaces: Sequence[Surface]) -> Iterator[PatchEdge]:
                 yield PatchEdge(i, j, np.array(b.start), b.tangent(0))
 
 
-def with_patch_edges(
-    points: np.ndarray,
-    tets: np.ndarray,
-    faces: np.ndarray,
-    facet_surface: np.ndarray,
-    surfaces: Sequence[Surface],
-    space: Space,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 3) mm and tets (m, 4) in which no boundary edge crosses a patch edge.
+@dataclass(frozen=True)
+class Meshed:
+    """A mesher's mesh: points (n, 3) mm in meshing space, tets (m, 4), boundary faces (k, 3).
 
-    The points are in meshing space; `faces` (k, 3) is the boundary, `facet_surface` (k,) the surface of each.
+    `facet_surface` (k,): the index of the surface that each face lies on.
     """
+
+    points: np.ndarray
+    tets: np.ndarray
+    faces: np.ndarray
+    facet_surface: np.ndarray
+
+
+def with_patch_edges(mesh: Meshed, surfaces: Sequence[Surface], space: Space) -> Meshed:
+    """The mesh in which no face crosses a patch edge, and each is on its side's surface."""
     for edge in smooth_patch_edges(surfaces):
-        sides = _sides(faces[np.isin(facet_surface, (edge.first, edge.second))])
-        beyond = edge.beyond(space.back(points))
-        beyond[np.abs(beyond) < SAME] = 0.0
-        crossing = sides[beyond[sides].prod(axis=1) < 0]
-        share = np.abs(beyond[crossing]) / np.abs(np.diff(beyond[crossing]))
-        near = np.unique(crossing[share < NEAR])
-        wanted = points.copy()
-        wanted[near] = space.to(edge.reached(space.back(points[near])))
-        points = undo_inverted(points, wanted, tets)
-        beyond[near[(points[near] == wanted[near]).all(axis=1)]] = 0.0
-        for a, b in crossing[beyond[crossing].prod(axis=1) < 0]:
-            at = beyond[a] / (beyond[a] - beyond[b])
-            between = (points[a] + at * (points[b] - points[a]))[None]
-            tets = _halved(tets, a, b, len(points))
-            points = np.vstack([points, space.to(edge.reached(space.back(between)))])
-    return points, tets
+        mesh = _with(mesh, edge, surfaces, space)
+    return mesh
+
+
+def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Space) -> Meshed:
+    whole = space.back(mesh.points)
+    sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])
+    beyond = edge.beyond(whole)
+    beyond[np.abs(beyond) < SAME] = 0.0
+    crossing = sides[beyond[sides].prod(axis=1) < 0]
+    share = np.abs(beyond[crossing]) / np.abs(np.diff(beyond[crossing]))
+    near = np.unique(crossing[share < NEAR])
+    near = near[_stay(mesh, near, whole[near], edge.reached(whole[near]), surfaces)]
+    wanted = mesh.points.copy()
+    wanted[near] = space.to(edge.reached(whole[near]))
+    points = undo_inverted(mesh.points, wanted, mesh.tets)
+    beyond[near[(points[near] == wanted[near]).all(axis=1)]] = 0.0
+
+    crossing = crossing[beyond[crossing].prod(axis=1) < 0]
+    a, b = crossing.T
+    at = (beyond[a] / (beyond[a] - beyond[b]))[:, None]
+    between = space.to(edge.reached(space.back(points[a] + at * (points[b] - points[a]))))
+    tets, faces, surface = mesh.tets, mesh.faces, mesh.facet_surface
+    for middle, ends in enumerate(crossing, start=len(points)):
+        tets, _ = _halved(tets, ends, middle)
+        faces, parents = _halved(faces, ends, middle)
+        surface = surface[parents]
+    beyond = np.append(beyond, np.zeros(len(crossing)))[faces].sum(axis=1)
+    mine = np.isin(surface, (edge.first, edge.second))
+    surface = np.where(mine & (beyond < 0), edge.first, surface)
+    surface = np.where(mine & (beyond > 0), edge.second, surface)
+    return Meshed(np.vstack([points, between]), tets, faces, surface)
+
+
+def _stay(
+    mesh: Meshed,
+    nodes: np.ndarray,
+    there: np.ndarray,
+    then: np.ndarray,
+    surfaces: Sequence[Surface],
+) -> np.ndarray:
+    """Mask (k,) of `nodes` that keep to all their surfaces when they move from `there` to `then` (k, 3)."""
+    allowed = SLIP * np.linalg.norm(then - there, axis=1)
+    stay = np.ones(len(nodes), bool)
+    for k in np.unique(mesh.facet_surface):
+        mine = np.isin(nodes, mesh.faces[mesh.facet_surface == k])
+        off = [np.linalg.norm(surfaces[k].project(p) - p, axis=1) for p in (there, then)]
+        stay &= ~mine | (off[1] <= off[0] + allowed)
+    return stay
 
 
 def _meridional(points: np.ndarray) -> np.ndarray:
@@ -100,9 +139,10 @@ def _sides(faces: np.ndarray) -> np.ndarray:
     return np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
 
 
-def _halved(tets: np.ndarray, a: int, b: int, middle: int) -> np.ndarray:
-    """Every tetrahedron with the edge from a to b as two, with the node `middle` between."""
-    both = (tets == a).any(axis=1) & (tets == b).any(axis=1)
-    one, other = tets[both], tets[both]
-    one[one == b], other[other == a] = middle, middle
-    return np.vstack([tets[~both], one, other])
+def _halved(simplices: np.ndarray, ends: np.ndarray, middle: int) -> tuple[np.ndarray, np.ndarray]:
+    """Each simplex with the edge between `ends` as two, with `middle` between, and whose parts they are."""
+    both = np.flatnonzero(np.isin(simplices, ends).sum(axis=1) == 2)
+    one, other = simplices[both], simplices[both]
+    one[one == ends[1]], other[other == ends[0]] = middle, middle
+    rest = np.delete(np.arange(len(simplices)), both)
+    return np.vstack([simplices[rest], one, other]), np.concatenate([rest, both, both])

@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio, linear_mesh
 from fea.solid.errors import MeshQualityError
-from fea.solid.imprint import with_patch_edges
+from fea.solid.imprint import Meshed, with_patch_edges
 from fea.solid.sizing import Grading, graded_background
 from fea.solid.snap import snap_to_surfaces, undo_inverted
 from fea.solid.tetwild import TetwildSettings, tetrahedralize
@@ -83,11 +83,8 @@ def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     points, tets = tetrahedralize(vertices, triangles, settings, background)
     points, tets = _without_orphans(points, tets)
     faces = boundary_faces(tets)
-    facet_surface = _tag(points, faces, boundary, surface, spec)
-    points, tets = with_patch_edges(points, tets, faces, facet_surface, surface.surfaces, space)
-    faces = boundary_faces(tets)
-    facet_surface = _tag(points, faces, boundary, surface, spec)
-    return _quadratic(points, tets, faces, facet_surface, surface, space, spec)
+    raw = Meshed(points, tets, faces, _tag(points, faces, boundary, surface, spec))
+    return _quadratic(with_patch_edges(raw, surface.surfaces, space), surface, space, spec)
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
@@ -137,18 +134,10 @@ def _tag(
     return surface.surface_of[triangle]
 
 
-def _quadratic(
-    points: np.ndarray,
-    tets: np.ndarray,
-    faces: np.ndarray,
-    facet_surface: np.ndarray,
-    surface: TaggedSurface,
-    space: Space,
-    spec: MeshSpec,
-) -> TetMesh:
+def _quadratic(mesh: Meshed, surface: TaggedSurface, space: Space, spec: MeshSpec) -> TetMesh:
     """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
-    n = len(points)
-    raw = _in_planes(space.back(points), faces, facet_surface, surface)
+    n, tets, faces, facet_surface = len(mesh.points), mesh.tets, mesh.faces, mesh.facet_surface
+    raw = _in_planes(space.back(mesh.points), faces, facet_surface, surface)
     corners = snap_to_surfaces(raw, faces, facet_surface, surface.surfaces, spec.snap_limit)
     corners = undo_inverted(raw, corners, tets)
     edges, cells, facets = with_middles(corners, tets, faces)
@@ -161,9 +150,9 @@ def _quadratic(
     nodes = straightened(nodes, cells, edges)
     names = tuple(dict.fromkeys(["", *(s.patch for s in surface.surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surface.surfaces])[facet_surface]
-    mesh = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
-    _check(mesh, surface)
-    return mesh
+    made = TetMesh(nodes, cells, facets, facet_patch, names, surface.sector_deg)
+    _check(made, surface)
+    return made
 
 
 def _in_planes(

@@ -9,7 +9,7 @@ import pytest
 from skfem import MeshTet
 from structured import from_cylindrical
 
-from fea.solid.imprint import smooth_patch_edges, with_patch_edges
+from fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
 from fea.solid.mesh import boundary_faces
 from fea.solid.tetwild import signed_volumes
 from fea.solid.unroll import Cartesian, Space, Unrolled
@@ -64,12 +64,16 @@ def test_the_circle_is_in_the_mesh(seed: int, space: Space) -> None:
     facet_surface = np.where(down, np.where(centre < EDGE, 0, 1), 2)
     before = signed_volumes(points, tets).sum()
 
-    new, more = with_patch_edges(points, tets, faces, facet_surface, RING, space)
+    made = with_patch_edges(Meshed(points, tets, faces, facet_surface), RING, space)
+    new, more = made.points, made.tets
 
     assert len(more) > len(tets)  # some edges cross in their middle
     assert signed_volumes(new, more).min() > 0
     assert signed_volumes(new, more).sum() == pytest.approx(before, rel=1e-12)
-    outside = boundary_faces(more)
+    outside = made.faces
+    assert {tuple(f) for f in np.sort(outside).tolist()} == {
+        tuple(f) for f in np.sort(boundary_faces(more)).tolist()
+    }
     sides = np.vstack([outside[:, [0, 1]], outside[:, [1, 2]], outside[:, [2, 0]]])
     there = {tuple(s) for s in sides.tolist()}
     assert {(b, a) for a, b in there} == there  # every split is the neighbours' too
@@ -80,7 +84,8 @@ def test_the_circle_is_in_the_mesh(seed: int, space: Space) -> None:
     assert not ((beyond.min(axis=1) < -1e-9) & (beyond.max(axis=1) > 1e-9)).any()
     rim = np.sort(phi[np.unique(plane[np.abs(beyond) < 1e-9])])
     assert rim[[0, -1]] == pytest.approx([0, SECTOR], abs=1e-12)
-    mount = space.back(new)[plane[beyond.max(axis=1) < 1e-9]]
+    mount = space.back(new)[outside[made.facet_surface == 0]]
+    assert len(mount) == (beyond.max(axis=1) < 1e-9).sum()
     area = np.linalg.norm(np.cross(mount[:, 1] - mount[:, 0], mount[:, 2] - mount[:, 0]), axis=1)
     bore = np.sort(phi[np.unique(plane[r[plane] < INNER + 1e-9])])
     wanted = EDGE**2 * np.sin(np.diff(rim)).sum() - INNER**2 * np.sin(np.diff(bore)).sum()
@@ -99,9 +104,31 @@ def test_a_mesh_that_has_the_circle_stays_as_it_is() -> None:
     points, tets = loose_mesh(0, Cartesian())
     faces = boundary_faces(tets)
     surface = np.where(lower_side(points, faces), 0, 2)
-    once = with_patch_edges(points, tets, faces, surface, RING, Cartesian())
-    faces = boundary_faces(once[1])
-    surface = np.where(lower_side(once[0], faces), 0, 2)
-    again = with_patch_edges(*once, faces, surface, RING, Cartesian())
-    assert (again[0] == once[0]).all()
-    assert (again[1] == once[1]).all()
+    once = with_patch_edges(Meshed(points, tets, faces, surface), RING, Cartesian())
+    again = with_patch_edges(once, RING, Cartesian())
+    assert (again.points == once.points).all()
+    assert (again.tets == once.tets).all()
+    assert (again.facet_surface == once.facet_surface).all()
+
+
+def test_an_edge_across_two_circles_is_halved_at_both() -> None:
+    """A narrow patch within one triangle: what the first circle makes is met by the second."""
+    points, tets = loose_mesh(1, Cartesian())
+    faces = boundary_faces(tets)
+    narrow = EDGE + 0.05
+    surfaces: list[Surface] = [
+        Swept(Segment((INNER, 0), (EDGE, 0), patch="mount")),
+        Swept(Segment((EDGE, 0), (narrow, 0), patch="grip")),
+        Swept(Segment((narrow, 0), (OUTER, 0))),
+        *RING[2:],
+    ]
+    surface = np.where(lower_side(points, faces), 0, 3)
+    made = with_patch_edges(Meshed(points, tets, faces, surface), surfaces, Cartesian())
+    assert np.array_equal(np.unique(made.tets), np.arange(len(made.points)))
+    assert signed_volumes(made.points, made.tets).min() > 0
+    radius = np.hypot(*made.points[made.faces][:, :, :2].transpose(2, 0, 1))
+    ranges = [(INNER, EDGE), (EDGE, narrow), (narrow, OUTER)]
+    for mine, (low, high) in enumerate(ranges):
+        there = radius[made.facet_surface == mine]
+        assert there.min() == pytest.approx(low, abs=1e-9)
+        assert there.max() == pytest.approx(high, abs=1e-9)
