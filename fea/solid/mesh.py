@@ -11,7 +11,7 @@ from fea.solid.errors import MeshQualityError
 from fea.solid.imprint import Meshed, with_patch_edges
 from fea.solid.sizing import Grading, graded_background
 from fea.solid.snap import snap_to_surfaces, undo_inverted
-from fea.solid.tetwild import TetwildSettings, tetrahedralize
+from fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
 from fea.solid.unroll import Cartesian, Space, Unrolled
 from fea.types import TetMesh
 from geometry.nearest import nearest_triangles
@@ -30,6 +30,8 @@ ENVELOPES_PER_EDGE = 6
 JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element
 in ten thousand below it, with ten times the true stress at its nodes."""
+FLAT = 1e-7
+"""Least volume over the longest edge's cube; 0.12 for a regular tetrahedron, 0.006 the least of a dozen meshes."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
 """Edge lengths of the attempts at a mesh, and whether they may be in unrolled space: a keyway's planes are
 bent there."""
@@ -140,6 +142,7 @@ def _quadratic(mesh: Meshed, surface: TaggedSurface, space: Space, spec: MeshSpe
     raw = _in_planes(space.back(mesh.points), faces, facet_surface, surface)
     corners = snap_to_surfaces(raw, faces, facet_surface, surface.surfaces, spec.snap_limit)
     corners = undo_inverted(raw, corners, tets)
+    _refuse_flat(corners, tets)
     edges, cells, facets = with_middles(corners, tets, faces)
     # a middle follows its corners in meshing space, then goes onto the surface itself
     middles = space.back(space.to(corners)[edges].mean(axis=1))
@@ -171,6 +174,18 @@ def _in_planes(
         in_planes[nodes] += 1
     out[in_planes == 2, :2] = 0.0
     return out
+
+
+def _refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
+    """Beside the axis two nodes can go to one place of it, and the tetrahedron between has no volume."""
+    corner = points[tets]
+    sides = [corner - np.roll(corner, k, axis=1) for k in (1, 2)]
+    longest = np.linalg.norm(sides, axis=3).max(axis=(0, 2))
+    flat = signed_volumes(points, tets) < FLAT * longest**3
+    if flat.any():
+        raise MeshQualityError(
+            f"{int(flat.sum())} elements are flat once their nodes are on the CAD"
+        )
 
 
 def with_middles(

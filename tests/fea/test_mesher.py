@@ -13,7 +13,7 @@ from fea.axisymmetric.torsion import torsional_stiffness
 from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from fea.solid.errors import MesherError, MeshQualityError
-from fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, mesh_surface
+from fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, _refuse_flat, mesh_surface
 from fea.solid.sizing import Grading
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.tetwild import TetwildSettings, tetrahedralize
@@ -138,6 +138,14 @@ def test_nodes_of_both_symmetry_planes_go_onto_the_axis() -> None:
     assert np.abs(moved[[0, 3], :2]).max() == 0
     for plane, nodes in zip(sector_planes(surface.sector_deg), ([0, 1, 3], [0, 2, 3]), strict=True):
         assert plane.project(moved[nodes]) == pytest.approx(moved[nodes], abs=1e-12)
+
+
+def test_an_element_without_volume_is_refused() -> None:
+    """Two nodes beside the axis went to one place of it; the solver met a singular matrix."""
+    points = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+    _refuse_flat(points, np.array([[0, 2, 3, 1]]))
+    with pytest.raises(MeshQualityError, match="2 elements are flat"):
+        _refuse_flat(points, np.array([[0, 2, 3, 1], [1, 2, 3, 4], [0, 1, 2, 4]]))
 
 
 def test_a_wrong_patch_is_refused(shaft) -> None:
