@@ -31,7 +31,7 @@ JACOBIAN_RATIO = 0.3
 """Least ratio of det J within an element; 0.2 is where meshers' quality checks warn. Seen: one element
 in ten thousand below it, with ten times the true stress at its nodes."""
 FLAT = 1e-7
-"""Least volume over the longest edge's cube; 0.12 for a regular tetrahedron, 0.006 the least of a dozen meshes."""
+"""Least volume over the cube of the longest edge; 0.12 for a regular tetrahedron, 0.006 or more in meshes."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
 """Edge lengths of the attempts at a mesh, and whether they may be in unrolled space: a keyway's planes are
 bent there."""
