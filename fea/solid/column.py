@@ -64,7 +64,7 @@ class Column:
     def plan(self, sector_rad: float) -> Meridian:
         """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
 
-        Its inner end is named CORE_RIM where the core is beyond it.
+        Its inner end is named CORE_RIM where the core lies within it.
         """
         rc, rh = self.bolt_circle, self.hole_radius
         turns = np.linspace(0, sector_rad, ceil(sector_rad / LARGEST_ARC) + 1)

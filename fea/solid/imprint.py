@@ -18,10 +18,9 @@ from geometry.outline import SAME, Segment, distance
 from geometry.surfaces import Surface, Swept
 
 SMOOTH = 1e-6
-"""Segments whose tangents differ by less join smoothly."""
+"""Segments join smoothly where the cosine of the angle between their tangents is 1 to this."""
 NEAR = 0.3
 """An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
-
 SLIP = 0.1
 """Share of its way by which a moved node may leave another surface: along a curved one, not across one."""
 
@@ -30,7 +29,7 @@ SLIP = 0.1
 class PatchEdge:
     """A circle about the axis where two surfaces that join smoothly have different patches.
 
-    `r`, `z` [mm] and the meridian's tangent there; `first`, `second`: the surfaces before and after.
+    `rz` (2,) [mm] and the meridian's tangent there; `first`, `second`: the surfaces before and after.
     """
 
     first: int
@@ -80,6 +79,7 @@ def with_patch_edges(mesh: Meshed, surfaces: Sequence[Surface], space: Space) ->
 
 
 def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Space) -> Meshed:
+    """One patch edge: near nodes onto it, other crossing edges halved, faces given to their side."""
     whole = space.back(mesh.points)
     sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])
     beyond = edge.beyond(whole)
