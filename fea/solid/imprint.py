@@ -87,9 +87,11 @@ def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Spa
     crossing = sides[beyond[sides].prod(axis=1) < 0]
     share = np.abs(beyond[crossing]) / np.abs(np.diff(beyond[crossing]))
     near = np.unique(crossing[share < NEAR])
-    near = near[_stay(mesh, near, whole[near], edge.reached(whole[near]), surfaces)]
+    reached = edge.reached(whole[near])
+    stay = _stay(mesh, near, whole[near], reached, surfaces)
+    near = near[stay]
     wanted = mesh.points.copy()
-    wanted[near] = space.to(edge.reached(whole[near]))
+    wanted[near] = space.to(reached[stay])
     points = undo_inverted(mesh.points, wanted, mesh.tets)
     beyond[near[(points[near] == wanted[near]).all(axis=1)]] = 0.0
 

@@ -39,7 +39,8 @@ def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.nda
         [np.repeat(rest.points[:, 0], k), np.tile(angles, n), np.repeat(rest.points[:, 1], k)]
     )
     number = np.arange(n * k).reshape(n, k)
-    number[rest.on_axis()] = number[rest.on_axis(), :1]
+    on_axis = rest.on_axis()
+    number[on_axis] = number[on_axis, :1]
     base = number[rest.triangles[:, ::-1]]
     return polar, np.vstack([np.hstack([base[..., i], base[..., i + 1]]) for i in range(k - 1)])
 

@@ -104,7 +104,7 @@ def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
 
 
 def test_the_mounts_rim_is_in_the_mesh() -> None:
-    """The mesher loses a circle in a plane here and there: one held facet beyond it made K 3 % too large.
+    """The mesher loses a circle in a plane here and there: one facet held beyond it: K 3 % too large on it.
 
     So fine, 12 of 14 meshes had lost it by 0.02 % of the area and more.
     """
