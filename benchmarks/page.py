@@ -111,11 +111,8 @@ def times(r: Row, case: str) -> Iterable[str]:
 
 
 def line(t: Row) -> str:
-    bound = f"± {t['bound_pct']:.3f}" if "bound_pct" in t else "none"
-    if t.get("model") == "axisymmetric":
-        bound += ", guaranteed"
-    elif "bound_pct" in t:
-        bound += ", estimated"
+    kind = t.get("bounds_kind", "estimated")
+    bound = f"± {t['bound_pct']:.3f}, {kind}" if "bound_pct" in t else "none"
     low, high = t["wall_range_s"]
     spread = f"({low:.2f} to {high:.2f})" if t["runs"] > 1 else "(one run)"
     cpu = f"{t['cpu_s']:.2f}" if t["cpu_s"] > 0 else "not taken"

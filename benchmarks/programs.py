@@ -84,5 +84,6 @@ def _figures(found: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "K": K, "bound_pct": 50 * (high - low) / K, "unknowns": solver["dofs"],
         "elements": solver["elements"], "model": solver["model"],
+        "bounds_kind": found["K_b_bounds_kind"],
         "wall_s": found["wall_s"], "cpu_s": found["cpu_s"], "peak_MB": found["peak_MB"],
     }  # fmt: skip

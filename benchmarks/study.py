@@ -14,7 +14,7 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.study.cluster import dask_hands
+from pipeline.study.cluster import hands_of
 from pipeline.study.drive import carry_out
 from pipeline.study.evaluate import evaluate
 from pipeline.study.load import study_from
@@ -42,7 +42,7 @@ def seconds_per_design(workers: int, designs: int) -> tuple[float, float, float]
     source = source_of(study)
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
-        with dask_hands(workers, "") as hands:
+        with hands_of(workers, "") as hands:
             ledger = ledger_of(study, Path(folder))
             first = source.task({"flexspline.wall_thickness_mm": 0.4})
             for future in [hands.submit(evaluate, first) for _ in range(2 * workers)]:

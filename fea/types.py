@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -67,15 +67,42 @@ class TetMesh:
         """Sorted node indices of a patch, edges included."""
         return np.unique(self.on(patch))
 
+    @property
+    def shortest_edge_mm(self) -> float:
+        """Between corner nodes."""
+        return shortest_edge_mm(self.nodes, self.cells[:, :4])
+
 
 @dataclass(frozen=True)
 class StressPeak:
-    """The largest von Mises stress away from sharp edges and patch edges, and where it is."""
+    """The largest von Mises stress away from sharp edges and patch edges, and where it is.
+
+    Attributes
+    ----------
+    excluded : plain words: which places were left out and why.
+    exclusion_mm : the distance from those edges up to which nothing counts.
+    at_excluded_border : whether the stress goes on rising into the excluded zone. The figure then hangs on
+        `exclusion_mm`, says nothing of the part alone, and is compared with no limit.
+    mises_at_twice_MPa : the largest at twice that distance; None where no point is that far.
+    """
 
     mises_MPa: float
     at_mm: tuple[float, float, float]
     excluded: str
-    """Plain words: which places were left out and why."""
+    exclusion_mm: float
+    at_excluded_border: bool
+    mises_at_twice_MPa: float | None
+    shortfall: str = ""
+    """Why the refinement ended before its tolerance was met, in plain words; "" where it was met."""
+
+    def times(self, factor: float) -> StressPeak:
+        """The same under `factor` times the load."""
+        twice = self.mises_at_twice_MPa
+        return replace(
+            self,
+            mises_MPa=self.mises_MPa * factor,
+            mises_at_twice_MPa=None if twice is None else twice * factor,
+        )
 
 
 @dataclass(frozen=True)
@@ -97,27 +124,63 @@ class SolidField:
 
 @dataclass(frozen=True)
 class MeshLevel:
-    """One mesh of a refinement sequence and what it gave."""
+    """One mesh of a refinement sequence and what it gave.
 
-    edge_length_mm: float
+    Attributes
+    ----------
+    shortest_edge_mm : between corner nodes.
+    K_Nm_per_rad : from the strain energy.
+    K_check_Nm_per_rad : the same K from the reaction torque, or from the work of the loads; None
+        where nobody computed it.
+    residual : relative residual of the worst solve; None where nobody computed it.
+    """
+
+    shortest_edge_mm: float
     elements: int
     dofs: int
     K_Nm_per_rad: float
-    K_reaction_Nm_per_rad: float
-    residual: float
+    K_check_Nm_per_rad: float | None = None
+    residual: float | None = None
 
 
 @dataclass(frozen=True)
 class Stiffness:
-    """A torsional stiffness with its error bounds, N·m/rad."""
+    """A torsional stiffness with its error bounds, N·m/rad.
+
+    Attributes
+    ----------
+    guaranteed : whether both ends are theorems about the part that K is given for; else they are
+        estimates.
+    method : how the bounds were obtained, in plain words.
+    error_scale : true error over estimated error, as found from the meshes; 1 where nothing is
+        estimated.
+    shortfall : why the refinement ended before its tolerance was met, in plain words; "" where it
+        was met.
+    """
 
     K_Nm_per_rad: float
     lower_Nm_per_rad: float
     upper_Nm_per_rad: float
+    guaranteed: bool
     model: Literal["solid", "axisymmetric"]
     symmetry: str
     method: str
-    """Plain words: how the bounds were obtained."""
     levels: tuple[MeshLevel, ...]
     error_scale: float = 1.0
-    """True error over estimated error, as found from the meshes; 1 where the bounds are theorems."""
+    shortfall: str = ""
+
+    @property
+    def bounds_Nm_per_rad(self) -> tuple[float, float]:
+        """Lower and upper."""
+        return self.lower_Nm_per_rad, self.upper_Nm_per_rad
+
+    @property
+    def half_width(self) -> float:
+        """Half the distance of the bounds over K."""
+        return (self.upper_Nm_per_rad - self.lower_Nm_per_rad) / (2 * self.K_Nm_per_rad)
+
+
+def shortest_edge_mm(points: np.ndarray, cells: np.ndarray) -> float:
+    """Of simplices: `cells` (m, k) number the corners among `points` [mm]."""
+    first, second = np.triu_indices(cells.shape[1], 1)
+    return float(np.linalg.norm(points[cells[:, first]] - points[cells[:, second]], axis=2).min())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from geometry.design import Cup, Design
 from geometry.errors import GeometryError
+from geometry.kernel import load_kernel
 from geometry.meridian import meridian
 from geometry.outline import Meridian, Segment
 
@@ -22,9 +23,9 @@ def build_solid(design: Design, part: str, sector_deg: float = WHOLE) -> cq.Soli
 
     Raises
     ------
-    GeometryError : the kernel left no single valid solid.
+    GeometryError : the kernel cannot be loaded, or left no single valid solid.
     """
-
+    load_kernel()
     body: cq.Shape = _revolve(meridian(design, part), sector_deg)
     tools = [*bolt_cylinders(design, part), *_keyway_boxes(design, part)]
     if tools:
@@ -39,6 +40,7 @@ def build_solid(design: Design, part: str, sector_deg: float = WHOLE) -> cq.Soli
 
 def bolt_cylinders(design: Design, part: str) -> list[cq.Solid]:
     """The bolt holes as solids, the first at angle 0."""
+    load_kernel()
     import cadquery as cq
 
     bolts = (design.shaft if part == "shaft" else design.flexspline).bolts

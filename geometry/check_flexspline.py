@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asin, ceil, hypot, pi, sin, sqrt
+from math import inf
 
-from geometry.design import SMALLEST_MM, Cup, Hat, Shaft
-from geometry.errors import MISSING, DesignError
+from geometry.bounds import TINY, Interval, above, below, beside, from_zero, is_step, lengths, upto
+from geometry.check_bolts import bolt_faults
+from geometry.check_fillets import PREFIX, fault, fillet_faults
+from geometry.culprits import culprits
+from geometry.design import SMALLEST_MM, Cup, Hat
+from geometry.errors import DesignError
+from geometry.ranges import LENGTH_mm
 
-TINY = 1e-6
-"""Gaps below this [mm] close in the CAD kernel (its tolerance is 1e-7 mm)."""
-PREFIX = "flexspline."
 
+def flexspline_faults(f: Cup | Hat, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:
+    """Everything that keeps the flexspline from being built, in the order to mend it.
 
-def flexspline_faults(f: Cup | Hat) -> Iterator[DesignError]:
-    """Everything that keeps the flexspline from being built, in the order to mend it."""
-    ring = list(_ring_faults(f))
-    end = list(_cup_faults(f) if isinstance(f, Cup) else _hat_faults(f))
+    Each names a key and a range that holds whatever the keys named after it are; `teeth` are the ends that
+    drawn teeth set to the ring's thickness [mm].
+    """
+    wrong = list(culprits(f))
+    yield from wrong
+    ring = list(_ring_faults(f, teeth))
+    end = list(_cup_faults(f) if isinstance(f, Cup) else _hat_faults(f, not ring))
     yield from ring
     yield from end
     if not ring and not end:  # the room for fillets is only defined then
-        yield from _fillet_faults(f)
+        yield from fillet_faults(f)
     if isinstance(f, Cup):
         yield from bolt_faults(
             PREFIX,
@@ -37,194 +44,165 @@ def flexspline_faults(f: Cup | Hat) -> Iterator[DesignError]:
         )
 
 
-def corner_wall(f: Cup | Hat) -> float:
-    """Smallest wall between the inner and the outer fillet [mm]; not positive if they cross.
-
-    With d the outer less the inner radius, wall t and diaphragm h, the arcs' centres are
-    hypot(d − t, d − h) apart; the arcs come closest along the line of centres once d > t and d > h.
-    """
-    t, h = f.wall_thickness_mm, f.diaphragm_thickness_mm
-    d = f.outer_fillet_mm - f.inner_fillet_mm
-    return d - hypot(d - t, d - h) if d > max(t, h) else min(t, h)
-
-
-def is_step(height: float) -> bool:
-    """No step, or one that the CAD kernel sees [mm]."""
-    return height == 0 or height >= SMALLEST_MM - 1e-9
-
-
-def _ring_faults(f: Cup | Hat) -> Iterator[DesignError]:
-    h, length = f.diaphragm_thickness_mm, f.length_mm
-    rise = f.ring_thickness_mm - f.wall_thickness_mm
-    if h >= length - TINY:
-        yield _fault(f, "diaphragm_thickness_mm", f"must be below length_mm = {length:g}")
-        return
-    if not is_step(rise):
-        yield _fault(
-            f,
-            "ring_thickness_mm",
-            f"must be at least wall_thickness_mm = {f.wall_thickness_mm:g}: the same, or "
-            f"{SMALLEST_MM:g} more",
-        )
+def _ring_faults(f: Cup | Hat, teeth: Interval) -> Iterator[DesignError]:
+    h, length, wall = f.diaphragm_thickness_mm, f.length_mm, f.wall_thickness_mm
+    rise = f.ring_thickness_mm - wall
+    if h > upto(length - SMALLEST_MM):
+        room = lengths(0, upto(length - SMALLEST_MM))
+        if room is None:
+            least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
+            yield fault(f, "length_mm", f"must be {least} mm: for a diaphragm and a ring")
+        else:
+            yield fault(
+                f, "diaphragm_thickness_mm", f"must be {room} mm: below length_mm = {length:g}"
+            )
         return
     seat_floor, shoulder_floor = (h, 0.0) if isinstance(f, Cup) else (0.0, h)
-    room = min(length - seat_floor, length - shoulder_floor - rise)
+    room_of = min(length - seat_floor, length - shoulder_floor - rise)
     tube = f"length_mm = {length:g} less diaphragm_thickness_mm = {h:g}"
-    if room <= TINY:
-        yield _fault(
+    if not is_step(rise) or room_of < SMALLEST_MM - TINY / 2:
+        room_for = _ring_span(wall, (teeth[0], min(teeth[1], thickest_ring(f))))
+        if not room_for:
+            reason = 'must be "none": wall and length leave no room for a ring with teeth'
+            yield fault(f, "teeth", reason)
+            return
+        why = ""
+        if is_step(rise):
+            why = (
+                f": its 45° shoulder rises over ring_thickness_mm - wall_thickness_mm within {tube}"
+            )
+        yield fault(f, "ring_thickness_mm", f"must be {room_for} mm{why}")
+    elif f.ring_offset_mm > upto(max(room_of - SMALLEST_MM, 0.0)):
+        most_offset = from_zero(upto(max(room_of - SMALLEST_MM, 0.0)))
+        yield fault(
             f,
-            "ring_thickness_mm",
-            f"must be below {f.wall_thickness_mm + length - shoulder_floor:g} mm: its 45° shoulder "
-            f"rises over ring_thickness_mm - wall_thickness_mm = {rise:g} mm within {tube}",
+            "ring_offset_mm",
+            f"must be {most_offset} mm: below {room_of:g}, {tube}, less the shoulder",
         )
-    elif f.ring_offset_mm >= room - TINY:
-        yield _fault(f, "ring_offset_mm", f"must be below {room:g} ({tube}, less the shoulder)")
-    elif f.ring_offset_mm + f.ring_width_mm > room + TINY:
-        yield _fault(
+    elif f.ring_offset_mm + f.ring_width_mm > room_of + TINY:
+        left = lengths(0, max(upto(room_of - f.ring_offset_mm), SMALLEST_MM))
+        yield fault(
             f,
             "ring_width_mm",
-            f"must be at most {room - f.ring_offset_mm:g} mm: the ring, ring_offset_mm = "
-            f"{f.ring_offset_mm:g} and a shoulder of {rise:g} mm must fit the tube ({tube})",
+            f"must be {left} mm: the ring, ring_offset_mm = {f.ring_offset_mm:g} and a shoulder of "
+            f"{rise:g} mm must fit the tube ({tube})",
         )
+
+
+def thickest_ring(f: Cup | Hat) -> float:
+    """The ring's thickness whose shoulder fills the tube, but for the thinnest ring [mm]."""
+    floor = 0.0 if isinstance(f, Cup) else f.diaphragm_thickness_mm
+    return upto(f.wall_thickness_mm + f.length_mm - floor - SMALLEST_MM)
+
+
+def _ring_span(wall: float, ends: Interval) -> str:
+    """What the ring's thickness may be, in words."""
+    low, high = max(ends[0], wall), max(ends[1], wall)
+    return beside(wall, "wall_thickness_mm", SMALLEST_MM, min(low, high), high)
 
 
 def _cup_faults(f: Cup) -> Iterator[DesignError]:
     if f.boss_diameter_mm >= f.inner_diameter_mm - TINY:
-        yield _fault(
-            f, "boss_diameter_mm", f"must be below inner_diameter_mm = {f.inner_diameter_mm:g}"
-        )
+        room = lengths(0, below(f.inner_diameter_mm))
+        if room is None:
+            least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
+            yield fault(f, "inner_diameter_mm", f"must be {least} mm: for a boss inside it")
+        else:
+            yield fault(
+                f,
+                "boss_diameter_mm",
+                f"must be {room} mm: below inner_diameter_mm = {f.inner_diameter_mm:g}",
+            )
     if f.bore_diameter_mm >= f.boss_diameter_mm - TINY:
-        yield _fault(
+        yield fault(
             f,
             "bore_diameter_mm",
-            f"must be from 0 to below boss_diameter_mm = {f.boss_diameter_mm:g}",
+            f"must be {from_zero(below(f.boss_diameter_mm))} mm: below boss_diameter_mm = "
+            f"{f.boss_diameter_mm:g}",
         )
-    yield from _thickness_faults(f, "boss_thickness_mm", f.boss_thickness_mm)
+    yield from _thickness_faults(f, "boss_thickness_mm", f.boss_thickness_mm, f.length_mm)
 
 
-def _hat_faults(f: Hat) -> Iterator[DesignError]:
+def _hat_faults(f: Hat, ring_fits: bool) -> Iterator[DesignError]:
     inner, outer = f.flange_inner_diameter_mm, f.flange_outer_diameter_mm
-    if inner <= 2 * f.wall_radius + TINY:
-        yield _fault(
+    most = LENGTH_mm.high - 2 * SMALLEST_MM  # the flange itself goes around it
+    if 2 * f.ring_radius > most - 2 * SMALLEST_MM:
+        # a ring as thin as the wall is the least; the wall must leave room for it too
+        yield from _too_wide(f, most - 2 * SMALLEST_MM)
+        return
+    least = above(2 * f.wall_radius)
+    touches = _touches(f)
+    if ring_fits and touches - TINY < f.diaphragm_thickness_mm:
+        least = max(least, _clear_of_the_ring(f))
+    if inner <= 2 * f.wall_radius + TINY or inner < least - 2 * TINY or inner > most:
+        yield fault(
             f,
             "flange_inner_diameter_mm",
-            f"must be above the tube's outside, inner_diameter_mm + 2 wall_thickness_mm = "
-            f"{2 * f.wall_radius:g}",
+            f"must be {lengths(least, most)} mm: above the tube's outside, inner_diameter_mm + 2 "
+            f"wall_thickness_mm = {2 * f.wall_radius:g}, with room for the ring and for "
+            "flange_outer_diameter_mm",
         )
+        return
     if outer <= inner + TINY:
-        yield _fault(
-            f, "flange_outer_diameter_mm", f"must be above flange_inner_diameter_mm = {inner:g}"
-        )
-    yield from _thickness_faults(f, "flange_thickness_mm", f.flange_thickness_mm)
-    # a flange taller than the shoulder must leave room for the ring inside it
-    touches = f.ring_start - max(0.0, f.ring_radius - inner / 2)
-    if inner / 2 <= f.ring_radius + TINY and f.flange_thickness_mm > touches - TINY:
-        yield _fault(
+        yield fault(
             f,
-            "flange_thickness_mm",
-            f"must be below {touches:g} mm, where the ring reaches flange_inner_diameter_mm = "
+            "flange_outer_diameter_mm",
+            f"must be {lengths(above(inner), LENGTH_mm.high)} mm: above flange_inner_diameter_mm = "
             f"{inner:g}",
         )
+    yield from _thickness_faults(
+        f,
+        "flange_thickness_mm",
+        f.flange_thickness_mm,
+        min(f.length_mm, touches) if ring_fits else f.length_mm,
+    )
 
 
-def _thickness_faults(f: Cup | Hat, key: str, value: float) -> Iterator[DesignError]:
-    h, length = f.diaphragm_thickness_mm, f.length_mm
-    if not is_step(value - h) or value >= length - TINY:
-        yield _fault(
-            f,
-            key,
-            f"must be at least diaphragm_thickness_mm = {h:g} (the same, or {SMALLEST_MM:g} more) "
-            f"and below length_mm = {length:g}",
-        )
+def _touches(f: Hat) -> float:
+    """The height that a flange taller than the shoulder must leave to the ring inside it [mm]."""
+    inner = f.flange_inner_diameter_mm / 2
+    if inner > f.ring_radius + TINY:
+        return inf
+    return f.ring_start - max(0.0, f.ring_radius - inner)
 
 
-def _fillet_faults(f: Cup | Hat) -> Iterator[DesignError]:
-    h, start = f.diaphragm_thickness_mm, f.ring_start
-    if isinstance(f, Cup):
-        end, boss = f"boss_diameter_mm = {f.boss_diameter_mm:g}", f.boss_diameter_mm / 2
-        inner_radial, outer_radial = f.inner_radius - boss, f.wall_radius - boss
-        inner_axial, outer_axial = start - h, f.shoulder_start
-    else:
-        flange = f.flange_inner_diameter_mm / 2
-        end = f"flange_inner_diameter_mm = {f.flange_inner_diameter_mm:g}"
-        inner_radial, outer_radial = flange - f.wall_radius, flange - f.inner_radius
-        inner_axial, outer_axial = f.shoulder_start - h, start
-    fits = True
-    for key, radial, axial in (
-        ("inner_fillet_mm", inner_radial, inner_axial),
-        ("outer_fillet_mm", outer_radial, outer_axial),
-    ):
-        if getattr(f, key) > min(radial, axial) + TINY:
-            fits = False
-            where = f"between the tube and {end}" if radial <= axial else "below the toothed ring"
-            yield _fault(f, key, f"must be from 0 to {min(radial, axial):g} mm to fit {where}")
-    if fits and corner_wall(f) <= TINY:
-        t = f.wall_thickness_mm
-        limit = f.inner_fillet_mm + t + h + sqrt(2 * t * h)
-        yield _fault(
-            f,
-            "outer_fillet_mm",
-            f"must be below {limit:.4g} mm or it cuts through to inner_fillet_mm = "
-            f"{f.inner_fillet_mm:g} (wall_thickness_mm = {t:g}, diaphragm_thickness_mm = {h:g})",
-        )
+def _clear_of_the_ring(f: Hat) -> float:
+    """Smallest diameter at which a flange as thin as the diaphragm clears the ring [mm]."""
+    under = f.ring_start - f.diaphragm_thickness_mm - 2 * TINY
+    return 2 * (f.ring_radius - under) + 2 * TINY if under > 0 else 2 * f.ring_radius + 4 * TINY
 
 
-def bolt_faults(
-    prefix: str, part: Cup | Hat | Shaft, inner: tuple[str, float], outer: tuple[str, float]
+def _too_wide(f: Hat, most: float) -> Iterator[DesignError]:
+    """Which of the tube's own figures leaves no room for a flange."""
+    figures = {
+        "inner_diameter_mm": (f.inner_diameter_mm, most - 4 * SMALLEST_MM, 1.0),
+        "wall_thickness_mm": (
+            f.wall_thickness_mm,
+            most - f.inner_diameter_mm - 2 * SMALLEST_MM,
+            2.0,
+        ),
+        "ring_thickness_mm": (f.ring_thickness_mm, most - f.inner_diameter_mm, 2.0),
+    }
+    for key, (value, room, share) in figures.items():
+        if value * share > room:
+            yield fault(
+                f,
+                key,
+                f"must be {lengths(0, room / share)} mm: for a flange_outer_diameter_mm of at most "
+                f"{LENGTH_mm.high:g} mm",
+            )
+            return
+
+
+def _thickness_faults(
+    f: Cup | Hat, key: str, value: float, ceiling: float
 ) -> Iterator[DesignError]:
-    """Holes that leave the ring between two diameters (key, mm), or touch each other."""
-    n, circle, hole = part.bolt_count, part.bolt_circle_diameter_mm, part.bolt_hole_diameter_mm
-    if n == 0:
-        return
-    land = f"{inner[0]} = {inner[1]:g} and {outer[0]} = {outer[1]:g}"
-    alone = n == 1 and inner[1] == 0  # a single hole in a solid end may lie over the axis
-    largest = outer[1] if alone else (outer[1] - inner[1]) / 2
-    if hole is None:
-        yield DesignError(
-            prefix + "bolt_hole_diameter_mm",
-            MISSING,
-            f"bolt_count = {n} needs it; give a number of mm below {largest:g} ({land})",
+    h = f.diaphragm_thickness_mm
+    if not is_step(value - h) or value >= ceiling - TINY:
+        room = beside(h, "diaphragm_thickness_mm", SMALLEST_MM, h, max(below(ceiling), h))
+        where = (
+            f"below length_mm = {f.length_mm:g}"
+            if ceiling == f.length_mm
+            else f"below the place z = {ceiling:g} where the ring reaches the flange"
         )
-    if circle is None:
-        yield DesignError(
-            prefix + "bolt_circle_diameter_mm",
-            MISSING,
-            f"bolt_count = {n} needs it; give a number of mm between {inner[1]:g} and {outer[1]:g} "
-            f"({land})",
-        )
-    if hole is None or circle is None or outer[1] <= inner[1]:
-        return
-    if hole >= largest - TINY:
-        yield DesignError(
-            prefix + "bolt_hole_diameter_mm",
-            hole,
-            f"must be below {largest:g} mm to fit between {land}",
-        )
-        return
-    low, high = 0.0 if alone else inner[1] + hole, outer[1] - hole
-    if not low + TINY < circle < high - TINY and not (alone and circle < high - TINY):
-        yield DesignError(
-            prefix + "bolt_circle_diameter_mm",
-            circle,
-            f"must be between {low:g} and {high:g} mm so that holes of bolt_hole_diameter_mm = "
-            f"{hole:g} stay between {land}",
-        )
-    elif n >= 2 and circle * sin(pi / n) <= hole + TINY:
-        yield DesignError(
-            prefix + "bolt_count",
-            n,
-            f"must be from 0 to {_most_holes(circle, hole)} or the holes touch, or "
-            f"bolt_hole_diameter_mm = {hole:g} below {circle * sin(pi / n):.4g} mm "
-            f"(bolt_circle_diameter_mm = {circle:g})",
-        )
-
-
-def _most_holes(circle: float, hole: float) -> int:
-    """The largest number of equal holes on a circle that do not touch."""
-    if hole + TINY >= circle:
-        return 1
-    return max(1, ceil(pi / asin((hole + TINY) / circle)) - 1)
-
-
-def _fault(f: Cup | Hat, key: str, reason: str) -> DesignError:
-    return DesignError(PREFIX + key, getattr(f, key), reason)
+        yield fault(f, key, f"must be {room} mm: at least diaphragm_thickness_mm = {h:g}, {where}")

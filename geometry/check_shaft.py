@@ -6,9 +6,26 @@ from collections.abc import Iterator
 from itertools import accumulate, pairwise
 from math import sqrt
 
-from geometry.check_flexspline import TINY, bolt_faults, is_step
-from geometry.design import SMALLEST_MM, Keyway, Shaft
+from geometry.bounds import (
+    TINY,
+    Interval,
+    above,
+    below,
+    beside,
+    from_zero,
+    is_step,
+    joined,
+    lengths,
+    outside,
+    upto,
+)
+from geometry.check_bolts import bolt_faults
+from geometry.design import SMALLEST_MM, Keyway, Shaft, ShaftSegment
 from geometry.errors import DesignError
+from geometry.ranges import LENGTH_mm
+
+STEP_mm = 2 * SMALLEST_MM
+"""Of a diameter: the CAD kernel sees half of it."""
 
 
 def shaft_faults(s: Shaft) -> Iterator[DesignError]:
@@ -30,31 +47,76 @@ def shaft_faults(s: Shaft) -> Iterator[DesignError]:
 
 
 def _segment_faults(s: Shaft) -> Iterator[DesignError]:
-    for i, a in enumerate(s.segment):
-        if a.inner_diameter_mm >= a.outer_diameter_mm - TINY:
+    """Each segment by those before it: the same diameters as the one before always work."""
+    for i, segment in enumerate(s.segment):
+        before = s.segment[i - 1] if i else None
+        around = max(t.inner_diameter_mm for t in s.segment[max(i - 1, 0) : i + 2])
+        bores = sum(
+            t.inner_diameter_mm >= segment.outer_diameter_mm - TINY
+            for t in s.segment[max(i - 1, 0) : i + 2]
+        )
+        if bores >= 2:  # the bores are right then, and the outside is not
             yield DesignError(
-                f"shaft.segment[{i}].inner_diameter_mm",
-                a.inner_diameter_mm,
-                f"must be from 0 to below outer_diameter_mm = {a.outer_diameter_mm:g}",
+                f"shaft.segment[{i}].outer_diameter_mm",
+                segment.outer_diameter_mm,
+                f"must be {_outer_room(before, above(around))} mm: above inner_diameter_mm = {around:g} "
+                "of this segment and the next",
             )
-    for i, (a, b) in enumerate(pairwise(s.segment)):
-        for j, k, bored, solid in ((i, i + 1, a, b), (i + 1, i, b, a)):
-            if solid.outer_diameter_mm <= bored.inner_diameter_mm + TINY:
-                yield DesignError(
-                    f"shaft.segment[{k}].outer_diameter_mm",
-                    solid.outer_diameter_mm,
-                    f"must be above segment[{j}].inner_diameter_mm = {bored.inner_diameter_mm:g}, "
-                    "or the two segments do not meet",
-                )
-        for key in ("outer_diameter_mm", "inner_diameter_mm"):
-            below, above = getattr(a, key), getattr(b, key)
-            if not is_step(abs(above - below) / 2):
-                yield DesignError(
-                    f"shaft.segment[{i + 1}].{key}",
-                    above,
-                    f"must equal segment[{i}].{key} = {below:g} or differ by at least "
-                    f"{2 * SMALLEST_MM:g} mm",
-                )
+            return
+        yield from _outer_faults(i, segment, before)
+        yield from _inner_faults(i, segment, before)
+
+
+def _outer_faults(
+    i: int, segment: ShaftSegment, before: ShaftSegment | None
+) -> Iterator[DesignError]:
+    if before is None:
+        return
+    name, value = f"segment[{i - 1}]", segment.outer_diameter_mm
+    meets = value > before.inner_diameter_mm + TINY
+    if meets and is_step(abs(value - before.outer_diameter_mm) / 2):
+        return
+    room = _outer_room(before, above(before.inner_diameter_mm))
+    yield DesignError(
+        f"shaft.segment[{i}].outer_diameter_mm",
+        value,
+        f"must be {room} mm: the same as before or a step of at least {STEP_mm:g} mm, and above "
+        f"{name}.inner_diameter_mm = {before.inner_diameter_mm:g}, or the two do not meet",
+    )
+
+
+def _outer_room(before: ShaftSegment | None, least: float) -> str | None:
+    """What an outer diameter may be, from `least` [mm], in words."""
+    if before is None:
+        return lengths(least, LENGTH_mm.high)
+    level = before.outer_diameter_mm
+    name = "outer_diameter_mm of the segment before"
+    return beside(level, name, STEP_mm, max(SMALLEST_MM, least), LENGTH_mm.high)
+
+
+def _inner_faults(
+    i: int, segment: ShaftSegment, before: ShaftSegment | None
+) -> Iterator[DesignError]:
+    key, value = f"shaft.segment[{i}].inner_diameter_mm", segment.inner_diameter_mm
+    most = segment.outer_diameter_mm
+    if before is None:
+        if value >= most - TINY:
+            reason = f"must be {from_zero(below(most))} mm: below outer_diameter_mm = {most:g}"
+            yield DesignError(key, value, reason)
+        return
+    name = f"segment[{i - 1}]"
+    least = min(most, before.outer_diameter_mm)
+    if value < least - TINY and is_step(abs(value - before.inner_diameter_mm) / 2):
+        return
+    room = beside(
+        before.inner_diameter_mm, f"{name}.inner_diameter_mm", STEP_mm, 0.0, below(least), zero=True
+    )
+    yield DesignError(
+        key,
+        value,
+        f"must be {room} mm: the same as before or a step of at least {STEP_mm:g} mm, and below "
+        f"outer_diameter_mm = {most:g} and {name}.outer_diameter_mm = {before.outer_diameter_mm:g}",
+    )
 
 
 def _steps(s: Shaft) -> list[float]:
@@ -63,50 +125,67 @@ def _steps(s: Shaft) -> list[float]:
 
 
 def _fillet_faults(s: Shaft) -> Iterator[DesignError]:
+    """One fault, of the step or segment that leaves the least room."""
     f, steps = s.fillet_mm, _steps(s)
-    for i, step in enumerate(steps):
-        if step and f > abs(step) + TINY:
-            yield DesignError(
-                "shaft.fillet_mm",
-                f,
-                f"must be from 0 to {abs(step):g} mm, the step from segment[{i}] to "
-                f"segment[{i + 1}] (outer_diameter_mm = {s.segment[i].outer_diameter_mm:g} and "
-                f"{s.segment[i + 1].outer_diameter_mm:g})",
-            )
+    rooms = [
+        (
+            abs(step),
+            f"the step from segment[{i}] to segment[{i + 1}] (outer_diameter_mm = "
+            f"{s.segment[i].outer_diameter_mm:g} and {s.segment[i + 1].outer_diameter_mm:g})",
+        )
+        for i, step in enumerate(steps)
+        if step
+    ]
     for i, segment in enumerate(s.segment):
         corners = (i > 0 and steps[i - 1] < 0) + (i < len(steps) and steps[i] > 0)
-        if corners * f > segment.length_mm + TINY:
-            yield DesignError(
-                "shaft.fillet_mm",
-                f,
-                f"must be from 0 to {segment.length_mm / corners:g} mm to fit "
-                f"segment[{i}].length_mm = {segment.length_mm:g}",
-            )
+        if corners:
+            fits = f"to fit segment[{i}].length_mm = {segment.length_mm:g}"
+            rooms.append((segment.length_mm / corners, fits))
+    most, where = min(rooms, default=(LENGTH_mm.high, ""))
+    if f > most + TINY:
+        yield DesignError("shaft.fillet_mm", f, f"must be {from_zero(upto(most))} mm: {where}")
 
 
 def _grip_faults(s: Shaft, fillets_fit: bool) -> Iterator[DesignError]:
-    grip = s.grip_length_mm
-    if grip >= s.length - TINY:
+    grip, most = s.grip_length_mm, below(s.length)
+    if most < SMALLEST_MM:
+        yield _too_short(s)
+        return
+    holes = list(_fillets_along(s)) if fillets_fit else []
+    # the grip ends at z = length - grip
+    taken = [(s.length - high + TINY / 2, s.length - low - TINY / 2) for low, high in holes]
+    if grip < s.length - TINY and not any(low < grip < high for low, high in taken):
+        return
+    free = [t for a, b in outside(taken, SMALLEST_MM, most) if (t := lengths(a, b)) is not None]
+    if not free:
         yield DesignError(
-            "shaft.grip_length_mm",
-            grip,
-            f"must be below the shaft's length, {s.length:g} mm (sum of segment length_mm)",
+            "shaft.fillet_mm",
+            s.fillet_mm,
+            f"must be 0: fillets along the whole shaft, {s.length:g} mm, leave no grip_length_mm",
         )
         return
-    if not fillets_fit:
-        return
-    start = s.length - grip
+    where = f"below the shaft's length, {s.length:g} mm (sum of segment length_mm)"
+    if taken:
+        where += f", and not ending in a fillet_mm = {s.fillet_mm:g}"
+    yield DesignError("shaft.grip_length_mm", grip, f"must be {joined(free)} mm: {where}")
+
+
+def _fillets_along(s: Shaft) -> Iterator[Interval]:
+    """(low, high) z of every fillet [mm]."""
     ends = accumulate(segment.length_mm for segment in s.segment)
-    for i, (step, z) in enumerate(zip(_steps(s), ends, strict=False)):
-        low, high = (z - s.fillet_mm, z) if step > 0 else (z, z + s.fillet_mm)
-        if step and low + TINY < start < high - TINY:
-            yield DesignError(
-                "shaft.grip_length_mm",
-                grip,
-                f"must be at most {s.length - high:g} or at least {s.length - low:g} mm, so that "
-                f"it does not end in the fillet_mm = {s.fillet_mm:g} between segment[{i}] and "
-                f"segment[{i + 1}]",
-            )
+    for step, z in zip(_steps(s), ends, strict=False):
+        if step and s.fillet_mm > 2 * TINY:
+            yield (z - s.fillet_mm, z) if step > 0 else (z, z + s.fillet_mm)
+
+
+def _too_short(s: Shaft) -> DesignError:
+    last = len(s.segment) - 1
+    least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
+    return DesignError(
+        f"shaft.segment[{last}].length_mm",
+        s.segment[last].length_mm,
+        f"must be {least} mm: for a grip and the rest of the shaft",
+    )
 
 
 def _keyway_faults(s: Shaft, key: Keyway) -> Iterator[DesignError]:
@@ -117,8 +196,10 @@ def _keyway_faults(s: Shaft, key: Keyway) -> Iterator[DesignError]:
         yield DesignError(
             "shaft.keyway.length_mm",
             key.length_mm,
-            f"must be below the shaft's length, {s.length:g} mm (sum of segment length_mm)",
+            f"must be {lengths(0, below(s.length))} mm: below the shaft's length, {s.length:g} mm (sum "
+            "of segment length_mm)",
         )
+        return
     bored = [
         (segment.inner_diameter_mm / 2, i)
         for i, segment in enumerate(s.segment)
@@ -127,18 +208,23 @@ def _keyway_faults(s: Shaft, key: Keyway) -> Iterator[DesignError]:
     ]
     bore, i = max(bored, default=(last.inner_diameter_mm / 2, len(s.segment) - 1))
     if floor <= bore + TINY:
-        yield DesignError(
-            "shaft.keyway.depth_mm",
-            key.depth_mm,
-            f"must be below {radius - bore:g} mm, from the last outer_diameter_mm = {2 * radius:g} "
-            f"to segment[{i}].inner_diameter_mm = {2 * bore:g}",
+        room = lengths(0, below(radius - bore))
+        lands = (
+            f"from the last outer_diameter_mm = {2 * radius:g} to segment[{i}].inner_diameter_mm = "
+            f"{2 * bore:g}"
         )
+        if room is None:
+            yield DesignError(
+                "shaft.keyway", key.model_dump(), f"must be left out: no depth fits {lands}"
+            )
+        else:
+            yield DesignError("shaft.keyway.depth_mm", key.depth_mm, f"must be {room} mm: {lands}")
         return
     chord = 2 * sqrt(radius**2 - floor**2)
     if key.width_mm >= chord - TINY:
         yield DesignError(
             "shaft.keyway.width_mm",
             key.width_mm,
-            f"must be below {chord:.4g} mm, the chord at depth_mm = {key.depth_mm:g} in "
-            f"outer_diameter_mm = {2 * radius:g}",
+            f"must be {lengths(0, below(chord))} mm: below the chord {chord:.4g} mm at depth_mm = "
+            f"{key.depth_mm:g} in outer_diameter_mm = {2 * radius:g}",
         )

@@ -9,11 +9,13 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterator
 
+from geometry.bounds import span
 from geometry.check_flexspline import flexspline_faults
 from geometry.check_shaft import shaft_faults
 from geometry.design import Design
 from geometry.errors import DesignError
-from geometry.tooth import tooth_faults
+from geometry.ranges import TEETH
+from geometry.tooth import ring_ends, tooth_faults
 
 
 def check(design: Design) -> None:
@@ -31,7 +33,7 @@ def check(design: Design) -> None:
 
 def _faults(design: Design) -> Iterator[DesignError]:
     yield from _name_faults(design)
-    yield from flexspline_faults(design.flexspline)
+    yield from flexspline_faults(design.flexspline, ring_ends(design))
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
     yield from tooth_faults(design)
@@ -52,12 +54,18 @@ def _name_faults(design: Design) -> Iterator[DesignError]:
 
 def _gear_faults(design: Design) -> Iterator[DesignError]:
     z1, z2 = design.gear.teeth_flexspline, design.gear.teeth_circular_spline
-    if z2 <= z1 or (z2 - z1) % 2:
+    if z1 + 2 > TEETH.high:
+        yield DesignError(
+            "gear.teeth_flexspline",
+            z1,
+            f"must be from {TEETH.low:g} to {TEETH.high - 2:g}: the circular spline has at least two more",
+        )
+    elif z2 <= z1 or (z2 - z1) % 2:
         yield DesignError(
             "gear.teeth_circular_spline",
             z2,
-            f"must be teeth_flexspline = {z1} plus an even number for the two lobes: "
-            f"{z1 + 2}, {z1 + 4}, …",
+            f"must be {', '.join(str(n) for n in (z1 + 2, z1 + 4) if n <= TEETH.high)}, …: "
+            f"teeth_flexspline = {z1} plus an even number for the two lobes",
         )
 
 
@@ -70,7 +78,7 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
         yield DesignError(
             "bearing.radial_clearance_um",
             c,
-            f"must be from 0 to c_max = 2a(1 - cos α) = {limit:.4g} µm, where the involute model "
+            f"must be {span(0.0, limit, 4)} µm, c_max = 2a(1 - cos α), where the involute model "
             'ends; bearing_play_model = "small_displacement" has no such end',
         )
 

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-SMALLEST_MM = 0.001
-"""Features below 1 µm are beneath what the CAD kernel keeps apart (its tolerance is 1e-4 µm)."""
+from geometry import ranges
+
+SMALLEST_MM = ranges.LENGTH_mm.low
+STEEL_KG_PER_M3 = 7850.0
+"""Density where the file states none: that of steel."""
 
 
 def _zero_or_visible(value: float) -> float:
@@ -22,12 +25,17 @@ def _zero_or_visible(value: float) -> float:
     return value
 
 
-Length = Annotated[float, Field(ge=SMALLEST_MM, le=10_000, allow_inf_nan=False, description="mm")]
+def _within(range_: ranges.Range, description: str | None = None) -> Any:
+    """A field's limits."""
+    return Field(ge=range_.low, le=range_.high, allow_inf_nan=False, description=description)
+
+
+Length = Annotated[float, _within(ranges.LENGTH_mm, "mm")]
 LengthOrZero = Annotated[
     float,
     Field(
         ge=0,
-        le=10_000,
+        le=ranges.LENGTH_mm.high,
         allow_inf_nan=False,
         description="mm",
         json_schema_extra={"anyOf": [{"const": 0}, {"minimum": SMALLEST_MM}]},
@@ -35,7 +43,7 @@ LengthOrZero = Annotated[
     AfterValidator(_zero_or_visible),
 ]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False, description="%")]
-Micrometre = Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False, description="µm")]
+Micrometre = Annotated[float, _within(ranges.CLEARANCE_um, "µm")]
 BoltCount = Annotated[int, Field(ge=0, le=200)]
 
 
@@ -189,15 +197,21 @@ class Material(_Frozen):
     """Isotropic linear elastic material."""
 
     name: str = Field(min_length=1, max_length=200, description="for the report")
-    youngs_modulus_GPa: float = Field(gt=0, le=2000, allow_inf_nan=False, description="GPa, E")
-    poissons_ratio: float = Field(ge=0, le=0.49, allow_inf_nan=False, description="1, ν")
-    fatigue_limit_MPa: float | None = Field(
-        default=None,
-        gt=0,
-        le=1e5,
-        allow_inf_nan=False,
-        description="MPa, optional, compared with stress",
+    youngs_modulus_GPa: Annotated[float, _within(ranges.YOUNGS_MODULUS_GPa)] = Field(
+        description="GPa, E"
     )
+    poissons_ratio: Annotated[float, _within(ranges.POISSONS_RATIO)] = Field(description="1, ν")
+    fatigue_limit_MPa: Annotated[float, _within(ranges.FATIGUE_LIMIT_MPa)] | None = Field(
+        default=None, description="MPa, optional, compared with stress"
+    )
+    density_kg_per_m3: Annotated[float, _within(ranges.DENSITY_kg_per_m3)] = Field(
+        default=STEEL_KG_PER_M3, description="kg/m³, for the mass alone; absent: steel's 7850"
+    )
+
+    @property
+    def density_stated(self) -> bool:
+        """Whether the file gives the density; else it is taken for steel's."""
+        return "density_kg_per_m3" in self.model_fields_set
 
 
 class Materials(_Frozen):
@@ -210,12 +224,18 @@ class Materials(_Frozen):
 class Gear(_Frozen):
     """The two gears, their flank clearance included."""
 
-    module_mm: float = Field(ge=SMALLEST_MM, le=100, allow_inf_nan=False, description="mm, m")
-    teeth_flexspline: int = Field(ge=10, le=10_000, description="number of teeth, z1")
-    teeth_circular_spline: int = Field(
-        ge=11, le=10_000, description="number of teeth, z2; z2 - z1 is even (two lobes)"
+    module_mm: Annotated[float, _within(ranges.MODULE_mm)] = Field(description="mm, m")
+    teeth_flexspline: int = Field(
+        ge=ranges.TEETH.low, le=ranges.TEETH.high, description="number of teeth, z1"
     )
-    pressure_angle_deg: float = Field(ge=5, le=45, allow_inf_nan=False, description="deg, α")
+    teeth_circular_spline: int = Field(
+        ge=ranges.TEETH.low + 1,
+        le=ranges.TEETH.high,
+        description="number of teeth, z2; z2 - z1 is even (two lobes)",
+    )
+    pressure_angle_deg: Annotated[float, _within(ranges.PRESSURE_ANGLE_deg)] = Field(
+        description="deg, α"
+    )
     flank_clearance_um: Micrometre = Field(description="µm, j_bn0, along the flank's normal")
 
     @property
@@ -241,17 +261,25 @@ class Bearing(_Frozen):
 class Load(_Frozen):
     """The torque at which the backlash is measured."""
 
-    torque_Nm: float = Field(gt=0, le=1e6, allow_inf_nan=False, description="N·m, T_L, each way")
+    torque_Nm: Annotated[float, _within(ranges.TORQUE_Nm)] = Field(description="N·m, T_L, each way")
 
 
 class Uncertainty(_Frozen):
-    """One standard deviation each: what the prediction may be off by with nothing wrong with it."""
+    """One standard deviation each: what the prediction may be off by with nothing wrong with it.
+
+    0, as absent, states nothing: no dimension is exact.
+    """
 
     youngs_modulus_pct: Percent = Field(
-        default=0.0, description="%, of E, flexspline and shaft alike"
+        default=0.0, description="%, of E, flexspline and shaft alike; 0: not stated"
     )
-    flank_clearance_um: Micrometre = Field(default=0.0, description="µm, of j_bn0")
-    radial_clearance_um: Micrometre = Field(default=0.0, description="µm, of c")
+    flank_clearance_um: Micrometre = Field(default=0.0, description="µm, of j_bn0; 0: not stated")
+    radial_clearance_um: Micrometre = Field(default=0.0, description="µm, of c; 0: not stated")
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """The sources of doubt that have a standard deviation: their keys without unit."""
+        return tuple(key.rpartition("_")[0] for key, std in self if std > 0)
 
 
 class Solver(_Frozen):
@@ -263,15 +291,11 @@ class Solver(_Frozen):
     load_case: Literal["uniform", "lobes"] = Field(
         default="uniform", description="uniform or lobes: which K_b enters the sum"
     )
-    tolerance_pct: float = Field(
-        default=0.5, ge=0.01, le=20, allow_inf_nan=False, description="%, wanted error of K"
+    tolerance_pct: Annotated[float, _within(ranges.TOLERANCE_pct)] = Field(
+        default=0.5, description="%, wanted error of K"
     )
-    edge_length_mm: float | None = Field(
-        default=None,
-        gt=0,
-        le=1000,
-        allow_inf_nan=False,
-        description="mm, fixes the first solid mesh",
+    edge_length_mm: Annotated[float, _within(ranges.EDGE_mm)] | None = Field(
+        default=None, description="mm, fixes the first solid mesh"
     )
 
 
@@ -291,3 +315,7 @@ class Design(_Frozen):
     @property
     def shaft_material(self) -> Material:
         return self.material.shaft or self.material.flexspline
+
+    def material_of(self, part: str) -> Material:
+        """What ``"flexspline"`` or ``"shaft"`` is made of."""
+        return self.shaft_material if part == "shaft" else self.material.flexspline

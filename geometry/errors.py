@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+
+_UNREAD = re.compile("[\udc80-\udcff]+")
 MISSING = object()
 """The value of a key that is not there."""
 
@@ -60,8 +63,15 @@ def short(value: object, limit: int = 60) -> str:
     return one_line(text, limit)
 
 
+def readable(text: str) -> str:
+    """Text that UTF-8 can hold: the bytes of a file's name that the locale could not read, read as UTF-8."""
+    return _UNREAD.sub(
+        lambda found: found[0].encode("utf-8", "surrogateescape").decode("utf-8", "replace"), text
+    )
+
+
 def one_line(text: str, limit: int = 600) -> str:
     """Printable text on one line: control characters are written as escapes."""
-    text = text[: limit + 1]
+    text = readable(text[: limit + 1])
     text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     return text if len(text) <= limit else text[: limit - 1] + "…"

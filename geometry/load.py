@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +12,10 @@ from pydantic import ValidationError
 
 from geometry.checks import check
 from geometry.design import Design
-from geometry.errors import DesignFileError
-from geometry.plain_words import translate
+from geometry.errors import MISSING, DesignError, DesignFileError
+from geometry.input_file import InputFileError, read_input
+from geometry.plain_words import kind_of, translate, without_tag
+from geometry.schema import ends_of
 from geometry.toml_read import TomlError, toml_tables
 
 LARGEST_BYTES = 1_000_000
@@ -30,31 +34,27 @@ def load_design(path: Path | str) -> Design:
     return design_from(read_toml(path))
 
 
-def read_toml(path: Path | str) -> dict[str, Any]:
-    """The file's tables.
+def read_toml(path: Path | str, what: str = "design") -> dict[str, Any]:
+    """The file's tables; `what` kind of file it should be.
 
     Raises
     ------
-    DesignFileError : no such file, a directory, too large, not UTF-8, not TOML.
+    DesignFileError : no such file, not a regular file, too large, not UTF-8, not TOML.
+    """
+    return tables_from(read_raw(path, what), path)
+
+
+def read_raw(path: Path | str, what: str = "design") -> bytes:
+    """The file's bytes; `what` is what an error calls the file.
+
+    Raises
+    ------
+    DesignFileError : no such file, not a regular file, too large.
     """
     try:
-        if Path(path).is_dir():
-            raise DesignFileError(path, "is a directory, not a design file")
-        if not Path(path).exists():
-            raise DesignFileError(path, "no such file")
-        if not Path(path).is_file():
-            raise DesignFileError(path, "is not a regular file")
-        size = Path(path).stat().st_size
-        if size > LARGEST_BYTES:
-            raise DesignFileError(
-                path, f"{size} bytes; a design file has at most {LARGEST_BYTES} bytes"
-            )
-        raw = Path(path).read_bytes()
-    except (OSError, ValueError) as fault:
-        if isinstance(fault, DesignFileError):
-            raise
-        raise DesignFileError(path, f"cannot be read ({fault})") from fault
-    return tables_from(raw, path)
+        return read_input(path, LARGEST_BYTES, f"a {what} file")
+    except InputFileError as fault:
+        raise DesignFileError(path, str(fault)) from None
 
 
 def tables_from(raw: bytes, name: object) -> dict[str, Any]:
@@ -84,6 +84,54 @@ def design_from(data: Mapping[str, Any]) -> Design:
     try:
         design = Design.model_validate(data)
     except ValidationError as fault:
-        raise translate(fault, data) from None
+        refused = translate(fault, data)
+        raise _by_the_rest(refused, fault, data) or refused from None
     check(design)
     return design
+
+
+def _by_the_rest(
+    refused: DesignError, fault: ValidationError, data: Mapping[str, Any]
+) -> DesignError | None:
+    """The same refusal with the range that the rest of the design leaves, where it can be told.
+
+    What a key may hold by itself is wider: its nearest end would be refused again.
+    """
+    location = without_tag(fault.errors()[0]["loc"])
+    if refused.more or not (ends := ends_of(location, kind_of(data))):
+        return None
+    tried = deepcopy(dict(data))
+    table: Any = tried
+    for part in location[:-1]:
+        table = table[part]
+    for end in _nearest(refused.value, ends):
+        table[location[-1]] = end
+        try:
+            check(Design.model_validate(tried))
+        except DesignError as further:
+            if further.key == refused.key:
+                reason = f"{_what(refused)}{further.reason}"
+                return DesignError(refused.key, refused.value, reason)
+        except ValidationError:  # a fault that another one hid
+            return None
+    return None
+
+
+def _what(refused: DesignError) -> str:
+    """What the key takes at all, where it is missing or of another type."""
+    noun = re.match(r"(give|must be) a (whole )?number", refused.reason)
+    if noun is None:
+        return ""
+    found = re.search(r", not [\w ]+$", refused.reason)
+    if found is None and refused.value is not MISSING:
+        return ""
+    return f"{noun[0]}{found[0] if found else ''}; it "
+
+
+def _nearest(value: object, ends: list[float]) -> list[float]:
+    """The end that lies nearest to a value; all where it is no number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+        return ends
+    if value >= ends[-1]:
+        return ends[-1:]
+    return ends[:1] if value <= ends[0] else [min(ends, key=lambda end: abs(end - value))]

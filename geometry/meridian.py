@@ -154,3 +154,16 @@ def meridian(design: Design, part: str) -> Meridian:
         return shaft_meridian(design.shaft)
     f = design.flexspline
     return cup_meridian(f) if isinstance(f, Cup) else hat_meridian(f)
+
+
+def with_narrow_seat(outline: Meridian, share: float) -> Meridian:
+    """The same body with a `seat` of that share (below 1) of its width, in the middle of the old one."""
+    found: list[Segment] = []
+    for s in outline.segments:
+        if s.patch != "seat":
+            found.append(s)
+            continue
+        at = s.at(np.array([0.0, (1 - share) / 2, (1 + share) / 2, 1.0]))
+        a, b, c, d = (_pair(p) for p in at)
+        found += [Segment(a, b), Segment(b, c, patch="seat"), Segment(c, d)]
+    return Meridian(tuple(found), outline.cuts)

@@ -27,8 +27,8 @@ def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
 
 
 def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
-    kind = _kind(data)
-    location = _without_tag(e["loc"])
+    kind = kind_of(data)
+    location = without_tag(e["loc"])
     if e["type"] == "extra_forbidden":
         return DesignError(dotted(location), e["input"], _unknown(location, kind))
     if e["type"] in ("union_tag_invalid", "union_tag_not_found"):
@@ -46,14 +46,15 @@ def _is_wrong_type(e: ErrorDetails) -> bool:
     return e["type"].endswith("_type") and type(e["input"]) in _NOUNS
 
 
-def _without_tag(location: Location) -> Location:
+def without_tag(location: Location) -> Location:
     """Pydantic puts the chosen kind after ``flexspline``; it is no key of the file."""
     if location[:1] == ("flexspline",) and location[1:2] in (("cup",), ("hat",)):
         return (location[0], *location[2:])
     return location
 
 
-def _kind(data: Mapping[str, Any]) -> str | None:
+def kind_of(data: Mapping[str, Any]) -> str | None:
+    """The flexspline's kind, None where none is given."""
     flexspline = data.get("flexspline")
     kind = flexspline.get("kind") if isinstance(flexspline, Mapping) else None
     return kind if kind in KINDS else None

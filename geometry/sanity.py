@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from geometry.check_flexspline import corner_wall
+from geometry.check_fillets import corner_wall
 from geometry.design import Cup, Design
 
 ROOT_TOLERANCE = 0.15
@@ -51,7 +51,13 @@ def _root_radius(design: Design) -> Iterator[str]:
     gear, ring = design.gear, design.flexspline.ring_radius
     root = gear.module_mm * (gear.teeth_flexspline / 2 - DEDENDUM)
     apart, allowed = abs(root - ring), ROOT_TOLERANCE * gear.module_mm
-    if apart > allowed:
+    if root < design.flexspline.inner_radius:
+        yield (
+            f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm lies inside the tube, whose inner "
+            f"radius is {design.flexspline.inner_radius:.4g} mm: gear.module_mm, gear.teeth_flexspline or "
+            "flexspline.inner_diameter_mm is wrong"
+        )
+    elif apart > allowed:
         yield (
             f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm, but the ring's outer radius "
             f"is {ring:.4g} mm: {apart:.3g} mm apart, more than {ROOT_TOLERANCE} module = "

@@ -18,6 +18,7 @@ UNITS = {
     "_Nm": "N·m",
     "_deg": "deg",
     "_pct": "%",
+    "_kg_per_m3": "kg/m³",
 }
 """Key suffix to unit."""
 
@@ -95,10 +96,18 @@ def allowed(location: Location, kind: str | None = None) -> str:
     return f"{noun} {_range(node)}{_unit(location)}"
 
 
+def ends_of(location: Location, kind: str | None = None) -> list[float]:
+    """The ends of what a number may be; whole numbers where it is one, empty where it is none."""
+    node = node_at(location, kind)
+    if node.get("type") not in ("number", "integer"):
+        return []
+    smallest = [part["minimum"] for part in node.get("anyOf", ()) if "minimum" in part]
+    ends = [node["minimum"], *smallest, node["maximum"]]
+    return [int(end) if node["type"] == "integer" else float(end) for end in ends]
+
+
 def _range(node: Node) -> str:
     high = f"{node['maximum']:g}"
-    if "exclusiveMinimum" in node:
-        return f"above {node['exclusiveMinimum']:g} and up to {high}"
     low = f"from {node['minimum']:g} to {high}"
     if "anyOf" in node:  # zero stands for "none"
         zero, rest = node["anyOf"]

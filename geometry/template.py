@@ -23,6 +23,7 @@ _STEEL = {
     "youngs_modulus_GPa": 206.0,
     "poissons_ratio": 0.3,
     "fatigue_limit_MPa": 500.0,
+    "density_kg_per_m3": 7850.0,
 }
 _CUP: Table = {
     "kind": "cup",

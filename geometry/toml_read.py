@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 import tomllib
 from typing import Any
@@ -22,10 +23,14 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
     ------
     TomlError : not UTF-8, not TOML, or nested too deeply.
     """
+    if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or b"\0" in raw[:4]:
+        raise TomlError("is UTF-16 or another encoding, not UTF-8 text; save it as UTF-8")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
-        raise TomlError(f"is not UTF-8 text (byte {fault.start})") from fault
+        line = raw.count(b"\n", 0, fault.start) + 1
+        reason = f"is not UTF-8 text (line {line}, byte {fault.start}); save it as UTF-8"
+        raise TomlError(reason) from fault
     if _deepest_key(text) > DEEPEST_KEY:
         raise TomlError("is nested too deeply")
     try:

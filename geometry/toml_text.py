@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 
+from geometry.errors import readable
+
 
 def quoted(text: str) -> str:
     """A basic string of TOML; JSON's escapes are among TOML's, but for DEL and lone surrogates."""
-    whole = text.encode("utf-8", "replace").decode()
+    whole = readable(text).encode("utf-8", "replace").decode()
     return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")

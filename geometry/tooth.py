@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import acos, asin, cos, pi, radians, sin, tan
+from math import acos, asin, cos, inf, pi, radians, sin, tan
 
-from geometry.design import Design
+from geometry.bounds import beside, span
+from geometry.check_flexspline import thickest_ring
+from geometry.design import SMALLEST_MM, Design
 from geometry.errors import DesignError
 from geometry.outline import SAME, Meridian, Point, Segment
+from geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 
 ADDENDUM = 1.0
 """Of the standard basic rack (ISO 53), in modules."""
@@ -21,8 +24,6 @@ SMALLEST_LAND = 0.02
 """Half width of tip and root, in modules, below which a tooth counts as pointed."""
 CHORD_ERROR = 3e-4
 """Of the flank, in modules: it moves the equivalent thickness by less than one part in 1e4."""
-SMALLEST_PRESSURE_ANGLE = 5.0
-"""The schema's [deg]; there every tooth of ten or more has a tip."""
 
 
 @dataclass(frozen=True)
@@ -137,45 +138,68 @@ def _chords(psi: Callable[[float], float], low: float, high: float, allowed: flo
     return _chords(psi, low, middle, allowed) + _chords(psi, middle, high, allowed)
 
 
+def ring_ends(design: Design) -> tuple[float, float]:
+    """Least and largest ring thickness with which teeth can be drawn [mm]; 0 and inf where none are to be.
+
+    The root circle lies within the pitch circle, and the flanks leave a gap there.
+    """
+    f, gear = design.flexspline, design.gear
+    pitch, land = gear.module_mm * gear.teeth_flexspline / 2, SMALLEST_LAND * gear.module_mm
+    if f.teeth == "none" or pitch - land <= f.wall_radius + SAME:
+        return 0.0, inf
+    margin = 1e-6 * gear.module_mm
+    low, high = f.wall_radius, pitch - land - margin
+    if _gap(design, low) < land:
+        inside, outside = high, low
+        while inside - outside > margin:
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if _gap(design, middle) > land else (inside, middle)
+        low = inside
+    return low - f.inner_radius, high - f.inner_radius
+
+
 def tooth_faults(design: Design) -> Iterator[DesignError]:
     """What keeps the teeth from being drawn; nothing where none are asked for."""
     if design.flexspline.teeth == "none":
         return
     f, gear = design.flexspline, design.gear
     pitch, land = gear.module_mm * gear.teeth_flexspline / 2, SMALLEST_LAND * gear.module_mm
-    key = "flexspline.ring_thickness_mm"
     if pitch - land <= f.wall_radius + SAME:
+        least = f.wall_radius / (gear.teeth_flexspline / 2 - SMALLEST_LAND)
+        room = span(least * (1 + 1e-6) + SAME, MODULE_mm.high, 4)
+        circles = (
+            f"the pitch circle, radius {pitch:.4g} mm, lies within the tube, radius "
+            f"{f.wall_radius:.4g} mm"
+        )
+        if room is None:
+            yield DesignError("flexspline.teeth", f.teeth, f'must be "none": {circles}')
+        else:
+            reason = f"must be {room} mm for teeth to be drawn: {circles}"
+            yield DesignError("gear.module_mm", gear.module_mm, reason)
+        return
+    low, high = ring_ends(design)
+    if f.ring_radius >= pitch - land or _gap(design, f.ring_radius) < land:
+        wall = f.wall_thickness_mm
+        room = beside(
+            wall, "wall_thickness_mm", SMALLEST_MM, max(low, wall), min(high, thickest_ring(f))
+        )
+        if not room:
+            reason = (
+                f'must be "none": teeth need a ring_thickness_mm of {low:.4g} to {high:.4g} mm, and wall '
+                f"and length leave {wall:.4g} to {thickest_ring(f):.4g} mm"
+            )
+            yield DesignError("flexspline.teeth", f.teeth, reason)
+            return
         yield DesignError(
-            "gear.module_mm",
-            gear.module_mm,
-            f"must be above {f.wall_radius / (gear.teeth_flexspline / 2 - SMALLEST_LAND):.4g} mm for "
-            f"teeth to be drawn: the pitch circle, radius {pitch:.4g} mm, lies within the tube, radius "
-            f"{f.wall_radius:.4g} mm",
+            "flexspline.ring_thickness_mm",
+            f.ring_thickness_mm,
+            f"must be {room} mm for teeth to be drawn: the root circle, radius {f.ring_radius:.4g} mm, "
+            f"must lie within the pitch circle, m z1/2 = {pitch:.4g} mm, and flanks of "
+            f"{gear.pressure_angle_deg:g}° leave a gap between teeth there",
         )
         return
-    if f.ring_radius >= pitch - land:
-        most = pitch - land - f.inner_radius
-        yield DesignError(
-            key,
-            f.ring_thickness_mm,
-            f"must be below {most:.4g} mm for teeth to be drawn: the root circle, radius "
-            f"{f.ring_radius:.4g} mm, must lie within the pitch circle, m z1/2 = {pitch:.4g} mm",
-        )
-        return
-    if _gap(design, f.ring_radius) < land:
-        low, high = f.ring_radius, pitch
-        while high - low > 1e-6 * gear.module_mm:
-            middle = (low + high) / 2
-            low, high = (low, middle) if _gap(design, middle) > land else (middle, high)
-        yield DesignError(
-            key,
-            f.ring_thickness_mm,
-            f"must be above {high - f.inner_radius:.4g} mm for teeth to be drawn: at the root "
-            f"circle, radius {f.ring_radius:.4g} mm, flanks of {gear.pressure_angle_deg:g}° leave "
-            f"no gap between teeth (pitch circle {pitch:.4g} mm)",
-        )
     if _land(design, radians(gear.pressure_angle_deg)) < land:
-        small, large = SMALLEST_PRESSURE_ANGLE, gear.pressure_angle_deg
+        small, large = PRESSURE_ANGLE_deg.low, gear.pressure_angle_deg
         while large - small > 1e-4:
             middle = (small + large) / 2
             pointed = _land(design, radians(middle)) < land
@@ -183,8 +207,8 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
         yield DesignError(
             "gear.pressure_angle_deg",
             gear.pressure_angle_deg,
-            f"must be from {SMALLEST_PRESSURE_ANGLE:g} to {small:.3f} for teeth to be drawn: beyond, "
-            f"they are pointed below the tip circle, radius {tip_radius(design):.4g} mm",
+            f"must be {span(PRESSURE_ANGLE_deg.low, small)} for teeth to be drawn: beyond, they are "
+            f"pointed below the tip circle, radius {tip_radius(design):.4g} mm",
         )
 
 

@@ -37,8 +37,9 @@ class Backlash:
     shaft_arcsec, flexspline_arcsec : wind-up between −T_L and +T_L, 2T_L/K.
     flank_clearance_arcsec, bearing_play_arcsec : the two parts of the gap.
     total_arcsec : their sum.
-    std_arcsec : one standard deviation of the total, from `[uncertainty]` alone.
-    std_by_source_arcsec : its independent parts, by the source of doubt.
+    std_arcsec : one standard deviation of the total, from `[uncertainty]` alone; None where the
+        design states none.
+    std_by_source_arcsec : its independent parts, by the source of doubt, those that are stated.
     play_beyond_limit : probability that the play lies beyond the involute model's end, where
         `std_arcsec` cannot answer for it; 0 for the small-displacement model.
     model_form_arcsec : total with the other bearing-play model, less this total; None where the
@@ -50,7 +51,7 @@ class Backlash:
     flank_clearance_arcsec: float
     bearing_play_arcsec: float
     total_arcsec: float
-    std_arcsec: float
+    std_arcsec: float | None
     std_by_source_arcsec: Mapping[str, float]
     play_beyond_limit: float
     model_form_arcsec: float | None
@@ -105,11 +106,12 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
     play = _gap(design, play_clearance(design))
     total = shaft + flexspline + flank + play
     play_std, beyond = play_spread(design.gear, design.bearing, doubt.radial_clearance_um)
-    std = {
+    every = {
         "youngs_modulus": (shaft + flexspline) * doubt.youngs_modulus_pct / 100,
         "flank_clearance": _gap(design, doubt.flank_clearance_um * MM_PER_UM),
         "radial_clearance": _gap(design, play_std),
     }
+    std = {source: every[source] for source in doubt.stated}
     other = _other_play_clearance(design)
     return Backlash(
         shaft_arcsec=shaft * ARCSEC_PER_RAD,
@@ -117,7 +119,7 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
         flank_clearance_arcsec=flank * ARCSEC_PER_RAD,
         bearing_play_arcsec=play * ARCSEC_PER_RAD,
         total_arcsec=total * ARCSEC_PER_RAD,
-        std_arcsec=hypot(*std.values()) * ARCSEC_PER_RAD,
+        std_arcsec=hypot(*std.values()) * ARCSEC_PER_RAD if std else None,
         std_by_source_arcsec={k: v * ARCSEC_PER_RAD for k, v in std.items()},
         play_beyond_limit=beyond,
         model_form_arcsec=None if other is None else (_gap(design, other) - play) * ARCSEC_PER_RAD,

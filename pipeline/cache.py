@@ -2,27 +2,26 @@
 
 fTetWild is not deterministic, so the cache is also what makes a part that it meshes give the same answer
 twice.
-An entry is one .npz: arrays, and a JSON text for the rest. Damaged entries are dropped and made anew.
+An entry is one .npz (`pipeline.packing`). Damaged entries are dropped and made anew.
 """
 
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
 import shutil
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-
+from geometry.errors import ComputationError
 from pipeline.leftovers import discard, unfinished
+from pipeline.packing import packed, unpacked
 
 T = TypeVar("T")
-FORMAT = 8
+FORMAT = 12
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
@@ -33,17 +32,45 @@ class Cache:
     folder: Path
     types: tuple[type, ...]
     notice: Callable[[str], None] = print
+    failed: dict[str, ComputationError] = field(default_factory=dict, compare=False)
+    """What failed since this object was made, by key: nobody waits for the same failure twice."""
+    passing: dict[str, Any] = field(default_factory=dict, compare=False)
+    """What is not for the disk, by key."""
 
-    def get(self, stage: str, inputs: Mapping[str, Any], make: Callable[[], T]) -> tuple[T, bool]:
-        """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored."""
+    def get(
+        self,
+        stage: str,
+        inputs: Mapping[str, Any],
+        make: Callable[[], T],
+        is_lasting: Callable[[T], bool] = lambda _: True,
+    ) -> tuple[T, bool]:
+        """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
+
+        A value that is not lasting is kept as long as this object and not on disk: another run may do better.
+
+        Raises
+        ------
+        ComputationError : from `make`, now or when it was asked before.
+        """
         key = content_key({"format": FORMAT, "stage": stage, **inputs})
         path = self.folder / stage / f"{key}.npz"
         found = self._read(path, key)
         if found is not _MISSING:
             return found, True
         discard(path.parent, self.notice)
-        value = make()
-        self._write(path, key, value)
+        if key in self.failed:
+            raise self.failed[key]
+        if key in self.passing:
+            return self.passing[key], True
+        try:
+            value = make()
+        except ComputationError as fault:
+            self.failed[key] = fault
+            raise
+        if is_lasting(value):
+            self._write(path, key, value)
+        else:
+            self.passing[key] = value
         return value, False
 
     def _read(self, path: Path, key: str) -> Any:
@@ -55,12 +82,10 @@ class Cache:
             self._discard(path, error)
             return _MISSING
         try:
-            with np.load(io.BytesIO(data), allow_pickle=False) as entry:
-                arrays = {name: entry[name] for name in entry.files}  # zip checks its CRCs here
-            stored = json.loads(arrays.pop("json").tobytes().decode())
+            stored = unpacked(data, self.types)
             if stored["key"] != key:
                 raise ValueError("the answer to another question")
-            return self._decode(stored["value"], arrays)
+            return stored["value"]
         except Exception as error:  # bytes that anything may have happened to: any reader may choke
             self._discard(path, error)
             return _MISSING
@@ -76,34 +101,16 @@ class Cache:
             self.notice(f"could not remove it: {fault.strerror}")
 
     def _write(self, path: Path, key: str, value: Any) -> None:
-        arrays: dict[str, np.ndarray] = {}
-        text = json.dumps({"key": key, "value": _encode(value, arrays)}).encode()
-        data = io.BytesIO()
-        np.savez(data, **arrays, json=np.frombuffer(text, np.uint8))  # type: ignore[arg-type]
+        data = packed({"key": key, "value": value})
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            made = unfinished(path.parent, data.getvalue())
+            made = unfinished(path.parent, data)
             try:
                 os.replace(made, path)
             finally:
                 made.unlink(missing_ok=True)
         except OSError as error:
             self.notice(f"could not store a result in {path.parent}: {error.strerror}")
-
-    def _decode(self, text: Any, arrays: Mapping[str, np.ndarray]) -> Any:
-        if isinstance(text, list):
-            return tuple(self._decode(v, arrays) for v in text)
-        if not isinstance(text, dict):
-            return text
-        if "array" in text:
-            return arrays[text["array"]]
-        if "bytes" in text:
-            return arrays[text["bytes"]].tobytes()
-        values = {k: self._decode(v, arrays) for k, v in text["fields"].items()}
-        if text["type"] == "dict":
-            return values
-        known = {t.__name__: t for t in self.types}
-        return known[text["type"]](**values)
 
 
 _MISSING: Any = object()
@@ -121,24 +128,3 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "model_dump"):
         return value.model_dump(mode="json")
     raise TypeError(f"{type(value).__name__} cannot be part of a cache key")
-
-
-def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:
-    if isinstance(value, np.ndarray):
-        name = f"a{len(arrays)}"
-        arrays[name] = value
-        return {"array": name}
-    if isinstance(value, bytes):
-        name = f"a{len(arrays)}"
-        arrays[name] = np.frombuffer(value, np.uint8)
-        return {"bytes": name}
-    if isinstance(value, np.generic):
-        return value.item()
-    if is_dataclass(value) and not isinstance(value, type):
-        named = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value)}
-        return {"type": type(value).__name__, "fields": named}
-    if isinstance(value, Mapping):
-        return {"type": "dict", "fields": {k: _encode(v, arrays) for k, v in value.items()}}
-    if isinstance(value, (list, tuple)):
-        return [_encode(v, arrays) for v in value]
-    return value

@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from fea.axisymmetric.stress import torsion_stress
+from fea.deadline import STAGE_SECONDS, Deadline
 from fea.solid.peak import stress_field
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
 from geometry.design import Design
+from geometry.errors import ComputationError
 from geometry.meridian import meridian
 from geometry.sanity import warnings
+from pipeline.attempts import Attempts
 from pipeline.backlash import Backlash, backlash
+from pipeline.linear_limit import LinearLimit, linear_limit
 from pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
 from pipeline.rim import (
     STRESS_TOLERANCE,
-    RimAnswers,
-    SolidLobes,
+    half_seat_peak,
     rim_answers,
     wave_generator_field,
 )
 from pipeline.rim_stress import sharp_edges
+from pipeline.stress_limits import PEAK_OF
 
 CACHED_TYPES: tuple[type, ...] = (
-    EquivalentRing, MeshLevel, MeshedPart, RimAnswers, SolidField, SolidLobes, Stiffness, StressPeak,
+    EquivalentRing, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,
     TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
@@ -32,9 +36,11 @@ CACHED_TYPES: tuple[type, ...] = (
 
 @dataclass(frozen=True)
 class Stiffnesses:
-    """K_b of each load case that was solved, and K_e; None where nobody asked.
+    """K_b of each load case that was solved, and K_e; None where nobody asked, or what failed.
 
     `ring` is the plain ring that stood for the teeth in all K_b, None where none were drawn.
+    `half_seat_peak` is the wave generator's peak on a seat half as wide as the ring.
+    `missing`: why a figure that was asked for is not there, by its name.
     """
 
     K_b: Stiffness | None
@@ -44,38 +50,76 @@ class Stiffnesses:
     K_b_lobes_contact: Stiffness | None = None
     wave_generator_peak: StressPeak | None = None
     ring: EquivalentRing | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
+    half_seat_peak: StressPeak | None = None
 
     def in_sum(self, design: Design) -> Stiffness:
-        """The K_b that enters the backlash sum, by `solver.load_case`."""
-        chosen = self.K_b_lobes if design.solver.load_case == "lobes" else self.K_b
-        if chosen is None:
-            raise LookupError("K_b was not solved")
-        return chosen
+        """The K_b that enters the backlash sum, by `solver.load_case`; raises as `shaft`."""
+        return self._found("K_b_lobes" if design.solver.load_case == "lobes" else "K_b")
+
+    @property
+    def named(self) -> dict[str, Stiffness]:
+        """What was solved, by the name of its figure ("K_b_lobes"), in the order of the reports."""
+        every = {
+            "K_b": self.K_b,
+            "K_b_lobes": self.K_b_lobes,
+            "K_b_lobes_contact": self.K_b_lobes_contact,
+            "K_b_lobes_unsupported": self.K_b_lobes_unsupported,
+            "K_e": self.K_e,
+        }
+        return {name: found for name, found in every.items() if found is not None}
 
     @property
     def flexspline(self) -> Stiffness:
-        """K_b of the case "uniform", which somebody must have asked for."""
-        if self.K_b is None:
-            raise LookupError("K_b was not solved")
-        return self.K_b
+        """K_b of the case "uniform"; raises as `shaft`."""
+        return self._found("K_b")
 
     @property
     def shaft(self) -> Stiffness:
-        """K_e, which somebody must have asked for."""
-        if self.K_e is None:
-            raise LookupError("K_e was not solved")
-        return self.K_e
+        """K_e.
+
+        Raises
+        ------
+        NotFoundError : it failed, or nobody asked for it.
+        """
+        return self._found("K_e")
+
+    def _found(self, name: str) -> Stiffness:
+        if name not in self.named:
+            raise NotFoundError(name, self.missing.get(name, "nobody asked for it"), self)
+        return self.named[name]
+
+    def has_sum(self, design: Design) -> bool:
+        """Whether both K of the backlash sum are there."""
+        return {"K_b_lobes" if design.solver.load_case == "lobes" else "K_b", "K_e"} <= set(
+            self.named
+        )
+
+    def require(self, design: Design) -> None:
+        """Both K of the sum and K_b of the case "uniform", which every answer is about; as `shaft`."""
+        for name in ("K_b", "K_e"):
+            self._found(name)
+        self.in_sum(design)
 
     def series_Nm_per_rad(self, design: Design) -> float:
-        """1/K = 1/K_e + 1/K_b."""
+        """1/K = 1/K_e + 1/K_b; raises as `shaft`."""
         return 1 / (1 / self.shaft.K_Nm_per_rad + 1 / self.in_sum(design).K_Nm_per_rad)
+
+
+class NotFoundError(ComputationError):
+    """A figure that the answer needs failed: its `name`, and all that was `found` beside it."""
+
+    def __init__(self, name: str, why: str, found: Stiffnesses) -> None:
+        self.name, self.found = name, found
+        super().__init__(f"{name} was not found: {why}")
 
 
 @dataclass(frozen=True)
 class RunResult:
     """Everything that `flexspline run` found.
 
-    `fields` has "flexspline_torque", "shaft_torque" and "wave_generator".
+    `fields` has "flexspline_torque", "shaft_torque" and "wave_generator", but for those that are
+    `stiffnesses.missing`. `warnings` are the design's own.
     """
 
     design: Design
@@ -83,6 +127,7 @@ class RunResult:
     stiffnesses: Stiffnesses
     fields: Mapping[str, SolidField]
     backlash: Backlash
+    linear_limit: LinearLimit
     stage_seconds: Mapping[str, float]
 
 
@@ -91,23 +136,27 @@ def stiffnesses(
 ) -> Stiffnesses:
     """All that `flexspline stiffness` answers, for the parts that are asked for.
 
+    What fails is absent, with its reason in `missing`; the rest is there.
+
     Without `rim` the lobes and the wave generator are left out: the backlash sum needs them only
     where `solver.load_case` says so.
 
     Raises
     ------
-    DesignError, ComputationError
+    DesignError
+    ComputationError : the plain ring of drawn teeth failed.
     """
     rim_part, shaft_part = shop.part("flexspline"), shop.part("shaft")
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         _ = wanted and part.axisymmetric  # refuse before the long work
-    K_b = rim_part.stiffness() if flexspline else None
-    K_e = shaft_part.stiffness() if shaft else None
+    tried = Attempts()
+    K_b = tried.get("K_b", rim_part.stiffness) if flexspline else None
+    K_e = tried.get("K_e", shaft_part.stiffness) if shaft else None
     if not flexspline:
-        return Stiffnesses(K_b, K_e)
+        return Stiffnesses(K_b, K_e, missing=tried.missing)
     if not rim:
-        return Stiffnesses(K_b, K_e, ring=shop.ring)
-    answers = rim_answers(rim_part)
+        return Stiffnesses(K_b, K_e, ring=shop.ring, missing=tried.missing)
+    answers = rim_answers(rim_part, tried)
     return Stiffnesses(
         K_b,
         K_e,
@@ -116,21 +165,39 @@ def stiffnesses(
         answers.K_b_lobes_contact,
         answers.wave_generator_peak,
         shop.ring,
+        tried.missing,
+        tried.get("half_seat_peak", lambda: half_seat_peak(rim_part)),
     )
 
 
 def run(shop: Workshop) -> RunResult:
-    """The main job: all stiffnesses, the three stress fields, and the backlash sum."""
+    """The main job: all stiffnesses, the three stress fields, and the backlash sum.
+
+    A field that fails is absent, with its reason in `stiffnesses.missing`.
+
+    Raises
+    ------
+    DesignError
+    NotFoundError : what the backlash sum needs failed; it carries what was found.
+    """
     design = shop.design
     flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
     found = stiffnesses(shop)
-    fields = {
-        "flexspline_torque": torque_field(flexspline),
-        "shaft_torque": torque_field(shaft),
-        "wave_generator": wave_generator_field(flexspline),
-    }
+    found.require(design)
     total = backlash_of(design, found)
-    return RunResult(design, warnings(design), found, fields, total, dict(shop.progress.seconds))
+    tried = Attempts()
+    asked = {
+        "flexspline_torque": lambda: torque_field(flexspline),
+        "shaft_torque": lambda: torque_field(shaft),
+        "wave_generator": lambda: wave_generator_field(flexspline),
+    }
+    made = {name: tried.get(name, solve) for name, solve in asked.items()}
+    fields = {name: solved for name, solved in made.items() if solved is not None}
+    found = replace(found, missing={**found.missing, **tried.missing})
+    peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
+    limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)
+    seconds = dict(shop.progress.seconds)
+    return RunResult(design, warnings(design), found, fields, total, limit, seconds)
 
 
 def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
@@ -144,7 +211,7 @@ def torque_field(part: PartModel) -> SolidField:
     torque = design.load.torque_Nm
     twisted = part.twisted()
     with part.shop.progress.stage(f"stress of the {part.name} under torque"):
-        field = stress_field(
+        solved = stress_field(
             twisted.meshed.mesh,
             twisted.displacement * (torque / twisted.stiffness.upper_Nm_per_rad),
             part.material,
@@ -152,13 +219,14 @@ def torque_field(part: PartModel) -> SolidField:
             sharp_edges(part, twisted.meshed),
         )
         if not part.axisymmetric:
-            return field
+            return solved
         exact = torsion_stress(
             meridian(design, part.name),
             part.material,
             DRIVEN[part.name],
             torque,
-            design.flexspline.wall_thickness_mm,
+            part.exclusion_mm,
             STRESS_TOLERANCE,
+            Deadline(STAGE_SECONDS),
         )
-    return replace(field, peak=exact.peak)
+    return replace(solved, peak=exact.peak)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
+from fea.types import Stiffness
 from geometry.checks import check
 from geometry.design import Design
 from geometry.errors import DesignError
@@ -55,3 +57,15 @@ def with_plain_ring(design: Design, ring: EquivalentRing) -> Design:
             'teeth = "none" works',
         ) from None
     return plain
+
+
+def of_toothed(of_plain: Stiffness) -> Stiffness:
+    """K of the plain ring's part as K of the part with its teeth: the same numbers, now an estimate.
+
+    The bounds enclose the plain part's K. That its ring is as stiff as the toothed one is a model, and no
+    theorem says how far off it is.
+    """
+    if not of_plain.guaranteed:
+        return of_plain
+    method = f"{of_plain.method}; of the part with the plain ring that stands for the teeth"
+    return replace(of_plain, guaranteed=False, method=method)

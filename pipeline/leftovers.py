@@ -1,27 +1,31 @@
 """Unfinished files name the process that writes them; what a killed process left, the next one clears.
 
 A killed process cannot clean up. So that nobody has to guess what is rubbish, every unfinished file or
-folder of ours is called ``.flexspline-HOST-PID-…``; those of processes of this machine that are no more
-go as soon as another process writes to the same folder. Another machine's are left alone.
+folder of ours is called ``.flexspline-`` and the process (`pipeline.process_id`); those of processes that
+are no more go as soon as another process writes to the same folder. Where that cannot be seen (another
+machine's, another container's, from before a reboot), they go when nothing in them has changed for long.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
-import socket
 import tempfile
-import zlib
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from pipeline.process_id import parsed, this_process
+
 MARK = ".flexspline-"
+FORGOTTEN_S = 10 * 86_400.0
+"""After ten days without a change nobody waits for a file: systemd clears /tmp by the same measure."""
 
 
 def mark() -> str:
     """How the names of this process's unfinished files begin."""
-    return f"{_of_host()}{os.getpid()}-"
+    return f"{MARK}{this_process()}-"
 
 
 def unfinished(folder: Path, data: bytes) -> Path:
@@ -45,12 +49,11 @@ def unfinished(folder: Path, data: bytes) -> Path:
 
 
 def clear(folder: Path) -> list[Path]:
-    """Remove what processes of this machine left that are no more; what was removed."""
+    """Remove what processes left that are no more; what was removed."""
     gone = []
     with suppress(OSError):  # a folder that cannot be listed will say so when it is written to
-        for entry in folder.glob(f"{_of_host()}*"):
-            pid = entry.name.removeprefix(_of_host()).partition("-")[0]
-            if pid.isdecimal() and not _lives(int(pid)):
+        for entry in folder.glob(f"{MARK}*"):
+            if _abandoned(entry):
                 _remove(entry)
                 gone.append(entry)
     return gone
@@ -62,14 +65,21 @@ def discard(folder: Path, say: Callable[[str], None]) -> None:
         say(f"discarded {entry.name}, left unfinished by a process that was stopped")
 
 
-def _of_host() -> str:
-    return f"{MARK}{zlib.crc32(socket.gethostname().encode()):08x}-"
+def _abandoned(entry: Path) -> bool:
+    owner = parsed(entry.name.removeprefix(MARK))
+    if owner is None:  # no name of ours
+        return False
+    fate = owner.fate
+    return fate == "gone" or (fate == "unknown" and _unchanged_s(entry) > FORGOTTEN_S)
 
 
-def _lives(pid: int) -> bool:
-    import psutil
-
-    return pid == os.getpid() or psutil.pid_exists(pid)
+def _unchanged_s(entry: Path) -> float:
+    """Since the last change of a file, or of a folder and anything below it [s]; 0 if it cannot be seen."""
+    try:
+        below = entry.rglob("*") if entry.is_dir() and not entry.is_symlink() else ()
+        return time.time() - max(p.lstat().st_mtime for p in (entry, *below))
+    except OSError:
+        return 0.0
 
 
 def _remove(entry: Path) -> None:

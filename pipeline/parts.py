@@ -10,27 +10,30 @@ from typing import Any
 import numpy as np
 
 from fea.axisymmetric.torsion import torsional_stiffness
+from fea.deadline import STAGE_SECONDS, Deadline
+from fea.shortfall import of_the_machine
 from fea.solid.defaults import first_spec, surface_to_mesh
 from fea.solid.mesh import MeshSpec, mesh_surface
 from fea.solid.stiffness import solid_stiffness
 from fea.solid.swept import can_be_swept, swept_edges, swept_mesh
 from fea.solid.swept_sizing import Finer
 from fea.toothed_ring.equivalent import EquivalentRing
-from fea.types import Elastic, Stiffness, TetMesh
+from fea.types import Elastic, Stiffness, StressPeak, TetMesh
 from geometry.design import Design
 from geometry.errors import DesignError
+from geometry.exclusion import exclusion_mm
 from geometry.meridian import meridian
 from geometry.symmetry import Sector, sector_of
 from geometry.tagged import TaggedSurface
 from pipeline.cache import Cache
-from pipeline.drawn_teeth import ring_of, with_plain_ring
+from pipeline.drawn_teeth import of_toothed, ring_of, with_plain_ring
 from pipeline.progress import Progress
 
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 RIM_ELEMENTS = 40_000
 """About 180 000 unknowns and 5 s for each of the two lobe cases."""
-EDGE_POINTS_PER_WALL = 8
-"""Sharp edges are sampled this finely for the stress rule: its distance is one wall thickness."""
+EDGE_POINTS = 8
+"""Of sharp edges, within the stress rule's distance from them."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,25 @@ class Workshop:
         """Its model; a flexspline's teeth enter it as the equivalent plain ring."""
         if name == "shaft" or self.ring is None:
             return PartModel(self, name)
-        return PartModel(replace(self, design=with_plain_ring(self.design, self.ring)), name)
+        plain = replace(self, design=with_plain_ring(self.design, self.ring))
+        return PartModel(plain, name, toothed=True)
+
+
+def is_lasting(found: Stiffness | StressPeak) -> bool:
+    """Whether a figure would be the same on a machine with more time and memory."""
+    return not of_the_machine(found.shortfall)
 
 
 @dataclass(frozen=True)
 class PartModel:
-    """The flexspline or the shaft of a design."""
+    """The flexspline or the shaft of a design.
+
+    `toothed`: teeth are drawn, and the plain ring of the workshop's design stands for them.
+    """
 
     shop: Workshop
     name: str
+    toothed: bool = False
 
     @property
     def material(self) -> Elastic:
@@ -122,8 +135,14 @@ class PartModel:
         return {**self.revolved_key, "spec": asdict(first_spec(self.shop.design, self.name))}
 
     @property
+    def exclusion_mm(self) -> float:
+        """The stress rule's distance from sharp edges and patch edges."""
+        design = self.shop.design
+        return exclusion_mm(design.shaft if self.name == "shaft" else design.flexspline)
+
+    @property
     def _edge_spacing(self) -> float:
-        return self.shop.design.flexspline.wall_thickness_mm / EDGE_POINTS_PER_WALL
+        return self.exclusion_mm / EDGE_POINTS
 
     @cached_property
     def _surface(self) -> TaggedSurface:
@@ -159,9 +178,10 @@ class PartModel:
 
     def stiffness(self) -> Stiffness:
         """K by the design's `solver.model`: axisymmetric where the part allows it, else solid."""
-        if self.axisymmetric:
-            return self._axisymmetric_stiffness()
-        return self.twisted().stiffness
+        if not self.axisymmetric:
+            return self.twisted().stiffness
+        found = self._axisymmetric_stiffness()
+        return of_toothed(found) if self.toothed else found
 
     @property
     def axisymmetric(self) -> bool:
@@ -188,9 +208,11 @@ class PartModel:
         def make() -> Stiffness:
             with self.shop.progress.stage(f"axisymmetric bounds of the {self.name}"):
                 outline = meridian(design, self.name)
-                return torsional_stiffness(outline, self.material, DRIVEN[self.name], tolerance)
+                return torsional_stiffness(
+                    outline, self.material, DRIVEN[self.name], tolerance, Deadline(STAGE_SECONDS)
+                )
 
-        return self.shop.cache.get("axisymmetric", self.revolved_key, make)[0]
+        return self.shop.cache.get("axisymmetric", self.revolved_key, make, is_lasting)[0]
 
     def twisted(self) -> TwistedPart:
         """The solid model turned by 1 rad, refined until the tolerance is met."""
@@ -221,4 +243,6 @@ class PartModel:
             rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
             return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])
 
-        return self.shop.cache.get("torsion", self.torsion_key, make)[0]
+        return self.shop.cache.get(
+            "torsion", self.torsion_key, make, lambda made: is_lasting(made.stiffness)
+        )[0]

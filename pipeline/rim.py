@@ -2,54 +2,86 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from fea.axisymmetric.contact import contact_stiffness
 from fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
 from fea.axisymmetric.stress import ellipse_stress
-from fea.solid.cases import Model
-from fea.solid.lobes import lobe_stiffness
-from fea.solid.unfold import unfolded
+from fea.deadline import STAGE_SECONDS, Deadline
 from fea.types import SolidField, Stiffness, StressPeak
-from geometry.meridian import meridian
-from geometry.symmetry import sector_of
-from pipeline.parts import PartModel
+from geometry.meridian import meridian, with_narrow_seat
+from geometry.outline import Meridian
+from pipeline.attempts import Attempts
+from pipeline.parts import PartModel, is_lasting
 from pipeline.rim_stress import solid_ellipse
+from pipeline.solid_lobes import solid_lobes
 
+T = TypeVar("T", Stiffness, StressPeak)
+NARROW_SEAT = 0.5
+"""Share of the ring's width that the seat has where it is asked how its width matters."""
+SEAT_TOLERANCE = 0.02
+"""Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
 STRESS_TOLERANCE = 0.005
 """Change of a peak stress over two refinements at which the axisymmetric mesh is fine enough."""
+HARMONICS = {
+    "K_b_lobes": "lobes",
+    "K_b_lobes_unsupported": "lobes, rim unsupported",
+    "K_b_lobes_contact": "lobes, rim resting on the seat",
+    "wave_generator_peak": "wave generator",
+    "half_seat_peak": "wave generator, seat half as wide,",
+}
+"""What a stage is called, by its figure."""
 
 
 @dataclass(frozen=True)
 class RimAnswers:
-    """K_b of the lobe cases and the peak stress on the ellipse.
+    """K_b of the lobe cases and the peak stress on the ellipse; None where it was not found.
 
     `K_b_lobes_contact` (the seat may lift off) is None where only the solid model applies: lift-off
     breaks the symmetry that makes that model small.
     """
 
-    K_b_lobes: Stiffness
-    K_b_lobes_unsupported: Stiffness
+    K_b_lobes: Stiffness | None
+    K_b_lobes_unsupported: Stiffness | None
     K_b_lobes_contact: Stiffness | None
-    wave_generator_peak: StressPeak
+    wave_generator_peak: StressPeak | None
 
 
-@dataclass(frozen=True)
-class SolidLobes:
-    """K_b of the lobe cases on a solid model, without and with the seat free to move."""
-
-    K_b_lobes: Stiffness
-    K_b_lobes_unsupported: Stiffness
-
-
-def rim_answers(flexspline: PartModel) -> RimAnswers:
-    """By the model that the part's stiffness uses."""
+def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
+    """By the model that the part's stiffness uses; `tried` hears what fails."""
     if flexspline.axisymmetric:
-        return _revolved(flexspline)
-    lobes = _solid_lobes(flexspline)
-    peak = solid_ellipse(flexspline).peak
-    return RimAnswers(lobes.K_b_lobes, lobes.K_b_lobes_unsupported, None, peak)
+        contact = tried.get("K_b_lobes_contact", lambda: _revolved_contact(flexspline))
+        lobes, peak = _revolved_lobes, _revolved_peak
+    else:
+        contact, lobes = None, solid_lobes
+        peak = _solid_peak
+    return RimAnswers(
+        tried.get("K_b_lobes", lambda: lobes(flexspline, True)),
+        tried.get("K_b_lobes_unsupported", lambda: lobes(flexspline, False)),
+        contact,
+        tried.get("wave_generator_peak", lambda: peak(flexspline)),
+    )
+
+
+def _solid_peak(flexspline: PartModel) -> StressPeak:
+    return solid_ellipse(flexspline).peak
+
+
+def half_seat_peak(flexspline: PartModel) -> StressPeak:
+    """The ellipse's peak on a seat half as wide, holes left out.
+
+    How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
+    """
+    w0, apart = flexspline.shop.design.gear.centre_distance_mm, flexspline.exclusion_mm
+
+    def make(outline: Meridian, deadline: Deadline) -> StressPeak:
+        narrow = with_narrow_seat(outline, NARROW_SEAT)
+        own = flexspline.material
+        return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
+
+    return _by_harmonics(flexspline, "half_seat_peak", make, w0_mm=w0)
 
 
 def wave_generator_field(flexspline: PartModel) -> SolidField:
@@ -57,45 +89,52 @@ def wave_generator_field(flexspline: PartModel) -> SolidField:
     field = solid_ellipse(flexspline)
     if not flexspline.axisymmetric:
         return field
-    return replace(field, peak=_revolved(flexspline).wave_generator_peak)
+    return replace(field, peak=_revolved_peak(flexspline))
 
 
-def _revolved(flexspline: PartModel) -> RimAnswers:
-    design = flexspline.shop.design
-    w0 = design.gear.centre_distance_mm
-    wall = design.flexspline.wall_thickness_mm
-    tolerance = design.solver.tolerance_pct / 100
-
-    def make() -> RimAnswers:
-        with flexspline.shop.progress.stage("wave generator and lobes by Fourier harmonics"):
-            outline, material = meridian(design, "flexspline"), flexspline.material
-            supported = revolved_lobe_stiffness(outline, material, True, tolerance)
-            return RimAnswers(
-                supported,
-                revolved_lobe_stiffness(outline, material, False, tolerance),
-                contact_stiffness(outline, material, supported),
-                ellipse_stress(outline, material, w0, wall, STRESS_TOLERANCE).peak,
-            )
-
-    inputs: dict[str, Any] = {**flexspline.revolved_key, "w0_mm": w0}
-    return flexspline.shop.cache.get("harmonics", inputs, make)[0]
-
-
-def _solid_lobes(flexspline: PartModel) -> SolidLobes:
-    """On the torsion mesh, reflected to a quarter or half."""
+def _by_harmonics(
+    flexspline: PartModel, figure: str, make: Callable[[Meridian, Deadline], T], **more: float
+) -> T:
+    """A figure of the meridian, from the cache or made; `more` is what it depends on beside the part."""
     shop = flexspline.shop
-    sector = sector_of(shop.design, "flexspline", "lobes")
 
-    def make() -> SolidLobes:
-        twisted = flexspline.twisted()
-        with shop.progress.stage("lobes"):
-            whole = unfolded(twisted.rim.mesh, sector.degrees)
-            shop.progress.note(f"  {len(whole.cells)} elements, {sector.label} of the part")
-            model = Model.of(whole, flexspline.material)
-            scale = twisted.stiffness.error_scale
-            return SolidLobes(
-                lobe_stiffness(model, True, scale, sector.label),
-                lobe_stiffness(model, False, scale, sector.label),
-            )
+    def timed() -> T:
+        with shop.progress.stage(f"{HARMONICS[figure]} by Fourier harmonics"):
+            return make(meridian(shop.design, "flexspline"), Deadline(STAGE_SECONDS))
 
-    return shop.cache.get("lobes", flexspline.torsion_key, make)[0]
+    inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
+    return shop.cache.get("harmonics", inputs, timed, is_lasting)[0]
+
+
+def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
+    tolerance = flexspline.shop.design.solver.tolerance_pct / 100
+    figure = "K_b_lobes" if supported else "K_b_lobes_unsupported"
+    return _by_harmonics(
+        flexspline,
+        figure,
+        lambda outline, deadline: revolved_lobe_stiffness(
+            outline, flexspline.material, supported, tolerance, deadline
+        ),
+    )
+
+
+def _revolved_contact(flexspline: PartModel) -> Stiffness:
+    held = _revolved_lobes(flexspline, True)
+    return _by_harmonics(
+        flexspline,
+        "K_b_lobes_contact",
+        lambda outline, deadline: contact_stiffness(outline, flexspline.material, held, deadline),
+    )
+
+
+def _revolved_peak(flexspline: PartModel) -> StressPeak:
+    design = flexspline.shop.design
+    w0, apart = design.gear.centre_distance_mm, flexspline.exclusion_mm
+    return _by_harmonics(
+        flexspline,
+        "wave_generator_peak",
+        lambda outline, deadline: (
+            ellipse_stress(outline, flexspline.material, w0, apart, STRESS_TOLERANCE, deadline).peak
+        ),
+        w0_mm=w0,
+    )

@@ -67,10 +67,10 @@ def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     design = flexspline.shop.design
     if not can_be_swept(design, flexspline.name):
         return None
-    outline, wall = meridian(design, flexspline.name), design.flexspline.wall_thickness_mm
-    w0 = design.gear.centre_distance_mm
+    outline, w0 = meridian(design, flexspline.name), design.gear.centre_distance_mm
+    apart = flexspline.exclusion_mm
     try:
-        return ellipse_stress(outline, flexspline.material, w0, wall, PLACE_TOLERANCE).peak_rz
+        return ellipse_stress(outline, flexspline.material, w0, apart, PLACE_TOLERANCE).peak_rz
     except ComputationError:
         return None
 
@@ -121,6 +121,5 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
 
 
 def sharp_edges(part: PartModel, meshed: MeshedPart) -> SharpEdges:
-    """The stress rule's edges and its distance, one wall thickness."""
-    wall = part.shop.design.flexspline.wall_thickness_mm
-    return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, wall)
+    """The stress rule's edges and its distance."""
+    return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, part.exclusion_mm)

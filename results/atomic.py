@@ -7,6 +7,10 @@ from pathlib import Path
 
 from pipeline.leftovers import unfinished
 
+UMASK = os.umask(0o077)
+"""What the user keeps from others; it can be read only by setting it."""
+os.umask(UMASK)
+
 
 def write_bytes(path: Path, data: bytes) -> None:
     """Write `data` beside `path` and move it into place, so that a stop leaves no half file.
@@ -19,7 +23,7 @@ def write_bytes(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     made = unfinished(path.parent, data)
     try:
-        os.chmod(made, 0o644)  # mkstemp's 0600 would hide the file from the user's colleagues
+        os.chmod(made, 0o666 & ~UMASK)  # mkstemp's 0600 would hide it from the user's colleagues
         os.replace(made, path)
     finally:
         made.unlink(missing_ok=True)

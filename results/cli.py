@@ -21,10 +21,14 @@ from results.job import (
     begin,
     deliver,
     folder_of,
+    keep,
+    kept,
     stiffness_option,
     tell,
+    tell_all,
+    warn,
 )
-from results.scratch import own_scratch
+from results.streams import show
 from results.studio.command import register as register_studio
 from results.study.command import register as register_study
 
@@ -36,12 +40,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-
-
-def main() -> None:
-    """Entry point of the console script."""
-    with own_scratch():
-        app()
 
 
 @app.command()
@@ -63,23 +61,33 @@ def run(
         from pipeline.chain import run as run_chain
         from pipeline.diagnosis.extended_backlash import extended_backlash
         from results.pictures import write_pictures
-        from results.records import extended_record, run_record
+        from results.records import Record, extended_record, run_record, write_record
         from results.report.build import write_run_page, write_run_report
 
-        result = run_chain(job.shop)
+        with kept(job, json):
+            result = run_chain(job.shop)
+        warn(job.design, result.stiffnesses, result.fields)
+        tell_all(result.linear_limit.passed(job.design))
         extended = None
         if measured is not None:
             torque = job.design.load.torque_Nm
             extended = extended_backlash(result.backlash, measured.model, torque)
+        name = measured.path.name if measured else ""
+
+        def record() -> Record:
+            added = extended_record(extended, name) if extended is not None else {}
+            return run_record(result, job.wall_s) | added
+
+        write_record(job.folder, record())  # the answer first: drawing may fail
         pictures = write_pictures(job.shop, result, job.folder, extended)
+        for line in pictures.warnings:
+            tell(f"warning: {line}")
         with job.shop.progress.stage("report"):
-            name = measured.path.name if measured else ""
-            write_run_report(job.folder / "report.pdf", result, pictures, name)
-        write_run_page(job.folder / "report.html", job.shop, result, pictures, name)
-        record = run_record(result, job.wall_s)
-        if extended is not None:
-            record |= extended_record(extended, name)
-        deliver(job.folder, record, json)
+            files = (job.file,)
+            write_run_report(job.folder / "report.pdf", result, pictures, name, files)
+        write_run_page(job.folder / "report.html", job.shop, result, pictures, name, files)
+        missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
+        deliver(job.folder, record() | missing, json)
 
 
 @app.command()
@@ -88,11 +96,10 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     with answered(design):
         job = begin(design, out)
         from pipeline.chain import stiffnesses
-        from results.records import heading, stiffness_record
 
         found = stiffnesses(job.shop)
-        record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
-        deliver(job.folder, record, json)
+        keep(job, found, json)
+        found.require(job.design)
 
 
 @app.command()
@@ -106,15 +113,20 @@ def backlash(
     """The four-term backlash sum."""
     with answered(design):
         job = begin(design, out)
-        record = _backlash_record(job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
+        with kept(job, json):
+            record = _backlash_record(
+                job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
+            )
         deliver(job.folder, record, json)
 
 
 def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, Any]:
+    from geometry.sanity import warnings
     from pipeline.backlash import backlash as total
-    from results.records import backlash_record, heading, stiffness_record
+    from pipeline.linear_limit import linear_limit
+    from results.records import backlash_record, heading, linear_limit_record, stiffness_record
 
-    record = heading(job.design)
+    record = {**heading(job.design), "warnings": list(warnings(job.design))}
     if kb is None or ke is None:
         from pipeline.chain import stiffnesses
 
@@ -123,8 +135,11 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
         record |= stiffness_record(job.design, found, job.wall_s)
         kb = kb or found.in_sum(job.design).K_Nm_per_rad
         ke = ke or found.shaft.K_Nm_per_rad
-    record["K_series_Nm_per_rad"] = 1 / (1 / kb + 1 / ke)
-    return record | backlash_record(total(job.design, kb, ke))
+        warn(job.design, found)
+    K = record["K_series_Nm_per_rad"] = 1 / (1 / kb + 1 / ke)
+    limit = linear_limit(job.design, K)
+    record["warnings"] += tell_all(limit.passed(job.design))
+    return record | backlash_record(total(job.design, kb, ke)) | linear_limit_record(limit)
 
 
 @app.command()
@@ -145,7 +160,7 @@ def export(
         files = write_exports(job.shop, job.folder)
         files += write_decks(job.shop, job.folder) if deck else []
         record = {**heading(job.design), "files": [str(f) for f in files]}
-        print(as_json(record) if json else "\n".join(record["files"]))
+        show(as_json(record) if json else "\n".join(record["files"]), json)
 
 
 @app.command()
@@ -163,7 +178,7 @@ def diagnose(
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        print(diagnose_and_write(job.shop, measured, given, job.folder, json))
+        show(diagnose_and_write(job.shop, measured, given, job.folder, json, (job.file,)), json)
 
 
 @app.command()
@@ -180,7 +195,7 @@ def predict(
         from results.diagnosis.prediction import predict_and_write
 
         gear, folder = load_design(design), folder_of(design, out)
-        print(predict_and_write(gear, model, torque, folder, json, tell))
+        show(predict_and_write(gear, model, torque, folder, json, tell), json)
 
 
 @app.command()
@@ -195,7 +210,7 @@ def init(
         kinds: dict[str, Literal["cup", "hat"]] = {"cup": "cup", "hat": "hat"}
         if kind not in kinds:
             raise DesignError("kind", kind, 'must be "cup" or "hat"')
-        print(template(kinds[kind]), end="")
+        show(template(kinds[kind]).removesuffix("\n"))
 
 
 @app.command()
@@ -205,11 +220,13 @@ def schema() -> None:
         from geometry.template import json_schema
         from results.records import as_json
 
-        print(as_json(json_schema()))
+        show(as_json(json_schema()), json=True)
 
 
 register_study(app)
 register_studio(app)
 
 if __name__ == "__main__":
+    from results.entry import main
+
     main()

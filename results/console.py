@@ -5,7 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from results.doubt import NOT_STATED
+from results.peaks import marked
 from results.quantities import QUANTITIES
+
+SPREAD = "backlash_arcsec.std"
 
 
 def table(record: dict[str, Any], folder: Path) -> str:
@@ -15,14 +19,18 @@ def table(record: dict[str, Any], folder: Path) -> str:
         value: Any = record
         for key in entry.key.split("."):
             value = value.get(key) if isinstance(value, dict) else None
+        if value is None and entry.key == SPREAD and "backlash_arcsec" in record:
+            lines.append(f"  {entry.name:<64} {NOT_STATED}")
         if value is None or entry.key in ("design", "version"):
             continue
         if entry.kind == "text":
             shown = str(value)
         elif entry.kind == "bounds":
-            shown = f"{entry.range_text(*value)} {entry.unit}"
+            kind = record.get(entry.key.replace("_bounds_Nm_per_rad", "_bounds_kind"), "")
+            shown = f"{entry.range_text(*value)} {entry.unit}" + (f", {kind}" if kind else "")
         else:
-            shown = f"{entry.text(value)} {entry.unit}"
+            mark = marked(record, entry.key)
+            shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines.append(f"  {entry.name:<64} {shown}".rstrip())
     lines.append(f"files in {folder}")
     return "\n".join(lines)

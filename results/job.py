@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,8 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from fea.types import SolidField
     from geometry.design import Design
+    from pipeline.chain import Stiffnesses
     from pipeline.parts import Workshop
+    from results.report.attached import Attachment
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
 Out = Annotated[
@@ -47,7 +50,8 @@ def tell(line: str) -> None:
     """One line of progress or warning, its control characters escaped."""
     from geometry.errors import one_line
 
-    print(one_line(line, LONGEST_LINE), file=sys.stderr, flush=True)
+    with suppress(OSError):  # whoever listened has gone: no reason to stop
+        print(one_line(line, LONGEST_LINE), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -66,9 +70,7 @@ def answered(path: Path | None = None) -> Iterator[None]:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(2) from None
     except KeyboardInterrupt:
-        tell(
-            "flexspline: interrupted; finished stages are kept, the same command goes on from there"
-        )
+        tell("flexspline: interrupted; run the same command again to resume")
         raise typer.Exit(130) from None
     except ComputationError as error:
         tell(f"flexspline: {where}{error}")
@@ -89,6 +91,7 @@ class Job:
     design: Design
     shop: Workshop
     folder: Path
+    file: Attachment
     began: float
 
     @property
@@ -98,11 +101,12 @@ class Job:
 
 def begin(path: Path, out: Path | None) -> Job:
     """Load the design, say its warnings, open the cache."""
-    from geometry.load import load_design
+    from geometry.load import design_from, read_raw, tables_from
     from geometry.sanity import warnings
 
     began = time.monotonic()
-    design = load_design(path)
+    raw = read_raw(path)
+    design = design_from(tables_from(raw, path))
     folder = folder_of(path, out)
     for line in warnings(design):
         tell(f"warning: {line}")
@@ -111,9 +115,10 @@ def begin(path: Path, out: Path | None) -> Job:
     from pipeline.parts import Workshop
     from pipeline.progress import Progress
     from pipeline.storage import cache_folder
+    from results.report.attached import Attachment
 
     shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, tell), Progress(tell))
-    return Job(design, shop, folder, began)
+    return Job(design, shop, folder, Attachment(path.name, raw, "Design file"), began)
 
 
 def folder_of(path: Path, out: Path | None) -> Path:
@@ -133,15 +138,55 @@ def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
     from results.console import table
     from results.records import as_json as text
     from results.records import write_record
+    from results.streams import show
 
     write_record(folder, record)
-    print(text(record) if as_json else table(record, folder))
+    show(text(record) if as_json else table(record, folder), as_json)
+
+
+def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
+    """result.json with the stiffnesses that there are; what they lack is told."""
+    from results.records import heading, stiffness_record
+
+    warn(job.design, found)
+    record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
+    deliver(job.folder, record, as_json)
+
+
+def warn(
+    design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
+) -> None:
+    """A line on stderr for each figure that missed its tolerance, or is missing."""
+    from results.warned import shortfalls
+
+    tell_all(shortfalls(design, found, fields))
+
+
+def tell_all(warnings: Iterable[str]) -> list[str]:
+    """A line on stderr for each warning; the same again, for result.json."""
+    said = list(warnings)
+    for line in said:
+        tell(f"warning: {line}")
+    return said
+
+
+@contextmanager
+def kept(job: Job, as_json: bool) -> Iterator[None]:
+    """Where a figure that the answer needs failed, keep the others before the error goes on."""
+    from pipeline.chain import NotFoundError
+
+    try:
+        yield
+    except NotFoundError as fault:
+        keep(job, fault.found, as_json)
+        raise
 
 
 def stiffness_option(name: str, value: float | None) -> float | None:
     """A stiffness given on the command line, checked."""
     from geometry.errors import DesignError
+    from geometry.ranges import STIFFNESS_Nm_per_rad
 
-    if value is not None and not 0 < value < float("inf"):
-        raise DesignError(name, value, "must be a positive number of N·m/rad")
+    if value is not None and value not in STIFFNESS_Nm_per_rad:
+        raise DesignError(name, value, f"must be a number {STIFFNESS_Nm_per_rad} N·m/rad")
     return value

@@ -1,11 +1,16 @@
-"""All pictures of a run, drawn once for the same content and kept."""
+"""All pictures of a run, drawn once for the same content and kept.
+
+Charts are drawn here, parts in `results.renders.process`: where that fails, those pictures are missing and
+everything else comes. What is missing is not kept: the next run tries again.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import tempfile
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,141 +22,173 @@ from pipeline.chain import RunResult
 from pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from pipeline.parts import Workshop
 from results.atomic import write_bytes
+from results.figures.budget import write_budget
+from results.figures.convergence import write_convergence
+from results.figures.torque_angle import write_torque_angle
+from results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
+from results.renders.mesh_picture import write_mesh_picture
+from results.renders.process import DrawingProcess, NotDrawnError
+from results.renders.stress_picture import write_torque_stress, write_turning_torque_stress
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 3
+ELLIPSE = "wave_generator"
+DRAWING = 5
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 TURNING = 2
 """The same of the 3-D views."""
 
 
+@dataclass(frozen=True)
+class RunPictures:
+    """What was drawn of a run.
+
+    Attributes
+    ----------
+    paths : PNG files by name.
+    views : the stress pictures as views that turn in a browser, by the pictures' names.
+    missing : why, by the names of the pictures and views that could not be drawn.
+    """
+
+    paths: Mapping[str, Path]
+    views: Mapping[str, bytes] = field(default_factory=dict)
+    missing: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One line for each reason."""
+        by_reason: dict[str, list[str]] = {}
+        for name, reason in self.missing.items():
+            by_reason.setdefault(reason, []).append(name)
+        return tuple(f"not drawn: {', '.join(n)}: {reason}" for reason, n in by_reason.items())
+
+
+@dataclass(frozen=True)
+class _Drawing:
+    """A picture or a view: what it depends on beside its name, and how to make its bytes."""
+
+    name: str
+    inputs: Mapping[str, Any]
+    make: Callable[[], bytes]
+
+
 def write_pictures(
     shop: Workshop, result: RunResult, folder: Path, extended: ExtendedBacklash | None = None
-) -> Mapping[str, Path]:
-    """Draw (or take from the cache) every picture of a run into `folder`; name to path."""
-    paths = {}
-    for name, inputs, draw in _pictures(shop, result, extended):
-        path = folder / f"{name}.png"
-        with shop.progress.stage(f"picture {name}"):
-            write_bytes(path, _drawn(shop.cache, name, inputs, draw))
-        paths[name] = path
-    return paths
+) -> RunPictures:
+    """Draw (or take from the cache) every picture of a run into `folder`, and the 3-D views.
 
-
-def turning_views(shop: Workshop, result: RunResult) -> dict[str, bytes]:
-    """The stress pictures as views that turn in a browser, by the pictures' names."""
-    design, fields = result.design, result.fields
-    torque_Nm, w0 = design.load.torque_Nm, design.gear.centre_distance_mm
-
-    def stress(part: str) -> Callable[[Path], None]:
-        def draw(path: Path) -> None:
-            from results.renders.stress_picture import turning_torque_stress
-
-            name = f"{part}_torque"
-            path.write_bytes(turning_torque_stress(name, fields[name], TITLES[part], torque_Nm))
-
-        return draw
-
-    def ellipse(path: Path) -> None:
-        from results.renders.ellipse_picture import turning_ellipse
-
-        path.write_bytes(turning_ellipse("wave_generator", fields["wave_generator"], w0))
-
-    draws = {f"{p}_torque": stress(p) for p in TITLES} | {"wave_generator": ellipse}
-    found = {}
-    for name, inputs, _ in _pictures(shop, result, None):
-        if name in draws:
-            with shop.progress.stage(f"3-D view {name}"):
-                found[name] = _drawn(shop.cache, name, {"turning": TURNING, **inputs}, draws[name])
-    return found
+    Without "convergence" where every stiffness was solved on one mesh, and without those of fields that
+    are missing. A picture of an earlier run that cannot be drawn now is removed: it may be another
+    design's.
+    """
+    paths, views, missing = {}, {}, {}
+    with DrawingProcess() as process:
+        renders, charts = _renders(shop, result, process), _charts(result, extended)
+        for drawing in (*renders, *charts):
+            path = folder / f"{drawing.name}.png"
+            try:
+                with shop.progress.stage(f"picture {drawing.name}"):
+                    write_bytes(path, _drawn(shop.cache, drawing))
+                paths[drawing.name] = path
+            except NotDrawnError as error:
+                missing[drawing.name] = str(error)
+                path.unlink(missing_ok=True)
+        # only of pictures that there are: they stand where scripts do not run
+        for drawing in _views(shop, result, process, tuple(paths)):
+            try:
+                with shop.progress.stage(f"3-D view {drawing.name}"):
+                    views[drawing.name] = _drawn(shop.cache, drawing)
+            except NotDrawnError as error:
+                missing[f"3-D view {drawing.name}"] = str(error)
+    return RunPictures(paths, views, missing)
 
 
 def small(shop: Workshop, png: Path) -> bytes:
     """A rendered picture as WebP, a fifth of its PNG: for pages, which carry their pictures."""
 
-    def draw(path: Path) -> None:
+    def write(path: Path) -> None:
         from PIL import Image
 
         with Image.open(png) as image:
             image.convert("RGB").save(path, "WEBP", quality=82, method=4)
 
     digest = hashlib.sha256(png.read_bytes()).hexdigest()
-    return _drawn(shop.cache, "webp", {"sha256": digest}, draw)
+    return _drawn(shop.cache, _Drawing("webp", {"sha256": digest}, partial(_here, write)))
 
 
-def _drawn(
-    cache: Cache, name: str, inputs: Mapping[str, Any], draw: Callable[[Path], None]
-) -> bytes:
-    def make() -> bytes:
-        with tempfile.TemporaryDirectory(prefix="flexspline-picture-") as folder:
-            path = Path(folder) / "picture.png"
-            draw(path)
-            return path.read_bytes()
-
-    return cache.get("picture", {"drawing": DRAWING, "name": name, **inputs}, make)[0]
+def _drawn(cache: Cache, drawing: _Drawing) -> bytes:
+    inputs = {"drawing": DRAWING, "name": drawing.name, **drawing.inputs}
+    return cache.get("picture", inputs, drawing.make)[0]
 
 
-def _pictures(
-    shop: Workshop, result: RunResult, extended: ExtendedBacklash | None
-) -> list[tuple[str, Mapping[str, Any], Callable[[Path], None]]]:
-    design, found, fields = result.design, result.stiffnesses, result.fields
-    torque = {"torque_Nm": design.load.torque_Nm, "wall": design.flexspline.wall_thickness_mm}
-    w0 = design.gear.centre_distance_mm
-    sums = {"backlash": asdict(result.backlash), **torque}
-    added = None if extended is None else asdict(extended)
+def _here(write: Callable[..., None], *arguments: Any) -> bytes:
+    """What `write(path, *arguments)` writes, in this process."""
+    with tempfile.TemporaryDirectory(prefix="flexspline-picture-") as folder:
+        path = Path(folder) / "picture.png"
+        write(path, *arguments)
+        return path.read_bytes()
+
+
+def _stress_inputs(shop: Workshop, part: str) -> Mapping[str, Any]:
+    return {**shop.part(part).torsion_key, "torque_Nm": shop.design.load.torque_Nm}
+
+
+def _ellipse_inputs(shop: Workshop) -> Mapping[str, Any]:
+    w0 = shop.design.gear.centre_distance_mm
+    return {**shop.part("flexspline").torsion_key, "w0_mm": w0}
+
+
+def _renders(shop: Workshop, result: RunResult, process: DrawingProcess) -> Iterable[_Drawing]:
+    """The parts whose fields there are: meshes, stress under torque, the ellipse."""
+    fields, load = result.fields, result.design.load
+    solved = {part: f"{part}_torque" for part in TITLES if f"{part}_torque" in fields}
+    for part, name in solved.items():
+        make = partial(process.draw, write_mesh_picture, fields[name].mesh, TITLES[part])
+        yield _Drawing(f"{part}_mesh", shop.part(part).torsion_key, make)
+    for part, name in solved.items():
+        shown = fields[name], TITLES[part], load.torque_Nm
+        make = partial(process.draw, write_torque_stress, *shown)
+        yield _Drawing(name, _stress_inputs(shop, part), make)
+    if ELLIPSE in fields:
+        ellipse = fields[ELLIPSE], result.design.gear.centre_distance_mm
+        make = partial(process.draw, write_ellipse_picture, *ellipse)
+        yield _Drawing(ELLIPSE, _ellipse_inputs(shop), make)
+
+
+def _views(
+    shop: Workshop, result: RunResult, process: DrawingProcess, names: Iterable[str]
+) -> Iterable[_Drawing]:
+    """Those of the stress pictures again, as views that turn."""
+    fields, load = result.fields, result.design.load
+    for name in names:
+        key: dict[str, Any] = {"turning": TURNING}
+        part = name.removesuffix("_torque")
+        if name == ELLIPSE:
+            ellipse = name, fields[name], result.design.gear.centre_distance_mm
+            make = partial(process.draw, write_turning_ellipse, *ellipse)
+            yield _Drawing(name, {**key, **_ellipse_inputs(shop)}, make)
+        elif part in TITLES:
+            shown = name, fields[name], TITLES[part], load.torque_Nm
+            make = partial(process.draw, write_turning_torque_stress, *shown)
+            yield _Drawing(name, {**key, **_stress_inputs(shop, part)}, make)
+
+
+def _charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterable[_Drawing]:
+    """What matplotlib draws alone."""
+    design, found, backlash = result.design, result.stiffnesses, result.backlash
+    sums = {"backlash": asdict(backlash), "torque_Nm": design.load.torque_Nm}
     K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad
-    bounded = {"K_b_Nm_per_rad": found.flexspline, "K_e_Nm_per_rad": found.shaft}
+    solved = {"K_b_Nm_per_rad": found.flexspline, "K_e_Nm_per_rad": found.shaft}
+    settling = {key: K for key, K in solved.items() if len(K.levels) > 1}
 
-    def part(name: str) -> Mapping[str, Any]:
-        return shop.part(name).torsion_key
+    def angle(torque: np.ndarray) -> np.ndarray:
+        return np.asarray(angle_rad(design, torque, K_b, K_e)) * ARCSEC_PER_RAD
 
-    def mesh(name: str) -> Callable[[Path], None]:
-        def draw(path: Path) -> None:
-            from results.renders.mesh_picture import write_mesh_picture
-
-            write_mesh_picture(path, fields[f"{name}_torque"].mesh, TITLES[name])
-
-        return draw
-
-    def stress(name: str) -> Callable[[Path], None]:
-        def draw(path: Path) -> None:
-            from results.renders.stress_picture import write_torque_stress
-
-            write_torque_stress(path, fields[f"{name}_torque"], TITLES[name], design.load.torque_Nm)
-
-        return draw
-
-    def ellipse(path: Path) -> None:
-        from results.renders.ellipse_picture import write_ellipse_picture
-
-        write_ellipse_picture(path, fields["wave_generator"], w0)
-
-    def budget(path: Path) -> None:
-        from results.figures.budget import write_budget
-
-        write_budget(path, result.backlash, extended)
-
-    def line(path: Path) -> None:
-        from results.figures.torque_angle import write_torque_angle
-
-        def angle(torque_Nm: np.ndarray) -> np.ndarray:
-            return np.asarray(angle_rad(design, torque_Nm, K_b, K_e)) * ARCSEC_PER_RAD
-
-        write_torque_angle(path, angle, design.load.torque_Nm, result.backlash)
-
-    def convergence(path: Path) -> None:
-        from results.figures.convergence import write_convergence
-
-        write_convergence(path, bounded)
-
-    return [
-        ("flexspline_mesh", part("flexspline"), mesh("flexspline")),
-        ("shaft_mesh", part("shaft"), mesh("shaft")),
-        ("flexspline_torque", {**part("flexspline"), **torque}, stress("flexspline")),
-        ("shaft_torque", {**part("shaft"), **torque}, stress("shaft")),
-        ("wave_generator", {**part("flexspline"), "w0_mm": w0}, ellipse),
-        ("backlash_budget", {**sums, "extended": added}, budget),
-        ("torque_angle", {**sums, "K": [K_b, K_e]}, line),
-        ("convergence", {k: asdict(v) for k, v in bounded.items()}, convergence),
-    ]
+    added = None if extended is None else asdict(extended)
+    budget = partial(_here, write_budget, backlash, extended)
+    yield _Drawing("backlash_budget", {**sums, "extended": added}, budget)
+    line = partial(_here, write_torque_angle, angle, design.load.torque_Nm, backlash)
+    yield _Drawing("torque_angle", {**sums, "K": [K_b, K_e]}, line)
+    if settling:  # a single mesh shows no convergence
+        convergence = partial(_here, write_convergence, settling)
+        yield _Drawing("convergence", {k: asdict(v) for k, v in settling.items()}, convergence)

@@ -59,6 +59,11 @@ class Quantity:
             return grouped(value, self.decimals)
         return grouped(value, _decimals(value, self.digits))
 
+    def short(self, value: float, letters: int = 9) -> str:
+        """As `text`; where that takes more letters, three digits and a power of ten."""
+        text = self.text(value)
+        return text if len(text) <= letters else with_power(value, 3)
+
     def with_unit(self, value: float) -> str:
         """The number and its unit."""
         return f"{self.text(value)}{THIN}{self.unit}" if self.unit else self.text(value)
@@ -71,6 +76,11 @@ class Quantity:
         return f"{grouped(low, places)} to {grouped(high, places)}"
 
 
+def bounds_kind(guaranteed: bool) -> str:
+    """What bounds are: "guaranteed" where both ends are theorems, else "estimated"."""
+    return "guaranteed" if guaranteed else "estimated"
+
+
 def grouped(value: float, decimals: int) -> str:
     """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
     text = f"{abs(value):,.{decimals}f}"
@@ -78,6 +88,17 @@ def grouped(value: float, decimals: int) -> str:
     whole = whole.replace(",", "") if abs(value) < 9999.5 else whole.replace(",", THIN)
     negative = value < 0 and float(f"{abs(value):.{decimals}f}") > 0
     return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
+
+
+def with_power(value: float, digits: int = 1) -> str:
+    """So many significant digits and a power of ten: ``3·10⁻⁶``; ``0`` is 0."""
+    if not value:
+        return "0"
+    digit, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{digit}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "\N{MINUS SIGN}")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _decimals(value: float, digits: int) -> int:
@@ -193,6 +214,14 @@ QUANTITIES: tuple[Quantity, ...] = (
         digits=3,
     ),
     Quantity(
+        "wave_generator_peak_half_seat_mises_MPa",
+        "wave_generator_peak_half_seat_mises_MPa",
+        "MPa",
+        "Peak von Mises stress, ellipse, seat half as wide as the ring",
+        "σ_WG,half",
+        digits=3,
+    ),
+    Quantity(
         "torque_peak_mises_MPa",
         "torque_peak_mises_MPa",
         "MPa",
@@ -265,6 +294,21 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Backlash with the extended model",
         "Δ_ext",
         decimals=1,
+    ),
+    Quantity(
+        "linear_torque_limit_Nm",
+        "linear_torque_limit_Nm",
+        "N·m",
+        "Torque beyond which the linear model is not valid",
+        "T_lin",
+        digits=3,
+    ),
+    Quantity(
+        "linear_torque_limit_reason",
+        "linear_torque_limit_reason",
+        "",
+        "Reason for that limit",
+        kind="text",
     ),
     Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
     Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),

@@ -8,7 +8,13 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geometry.errors import readable
+from geometry.mass import masses
+from geometry.sanity import warnings
+from pipeline.stress_limits import PEAK_OF
 from results.atomic import write_bytes
+from results.quantities import bounds_kind
+from results.warned import all_warnings, shortfalls
 
 if TYPE_CHECKING:
     from fea.toothed_ring.equivalent import EquivalentRing
@@ -17,6 +23,8 @@ if TYPE_CHECKING:
     from pipeline.backlash import Backlash
     from pipeline.chain import RunResult, Stiffnesses
     from pipeline.diagnosis.extended_backlash import ExtendedBacklash
+    from pipeline.linear_limit import LinearLimit
+    from pipeline.live import Bounded
 
 Record = dict[str, Any]
 
@@ -37,27 +45,36 @@ def heading(design: Design) -> Record:
 def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Record:
     """K of every load case that was solved, with bounds, and how it was solved."""
     record: Record = {}
-    for name in ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e"):
-        stiffness: Stiffness | None = getattr(found, name)
-        if stiffness is not None:
-            record[f"{name}_Nm_per_rad"] = stiffness.K_Nm_per_rad
-            record[f"{name}_bounds_Nm_per_rad"] = [
-                stiffness.lower_Nm_per_rad,
-                stiffness.upper_Nm_per_rad,
-            ]
+    for name, stiffness in found.named.items():
+        record |= bounded_record(name, stiffness)
     if found.wave_generator_peak is not None:
-        record |= _peak("wave_generator_peak", found.wave_generator_peak)
+        record |= peak_record("wave_generator_peak", found.wave_generator_peak)
         record["stress_excluded"] = found.wave_generator_peak.excluded
+    if found.half_seat_peak is not None:
+        record["wave_generator_seat_width_mm"] = design.flexspline.ring_width_mm
+        half = found.half_seat_peak.mises_MPa
+        record["wave_generator_peak_half_seat_mises_MPa"] = half
     if found.ring is not None:
         record |= _ring(design, found.ring)
-    if found.K_b is not None and found.K_e is not None:
+    if found.has_sum(design):
         record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
     solver = {
         name: _solver(k) for name, k in (("flexspline", found.K_b), ("shaft", found.K_e)) if k
     }
     # the contract's flat figures are the flexspline's, or the shaft's where that alone was solved
-    record["solver"] = {**next(iter(solver.values())), "wall_s": round(wall_s, 3), "parts": solver}
+    flat = next(iter(solver.values()), {})
+    record["solver"] = {**flat, "wall_s": round(wall_s, 3), "parts": solver}
+    record["warnings"] = [*warnings(design), *shortfalls(design, found)]
     return record
+
+
+def bounded_record(name: str, stiffness: Stiffness | Bounded) -> Record:
+    """One stiffness, its bounds, and what they are."""
+    return {
+        f"{name}_Nm_per_rad": stiffness.K_Nm_per_rad,
+        f"{name}_bounds_Nm_per_rad": list(stiffness.bounds_Nm_per_rad),
+        f"{name}_bounds_kind": bounds_kind(stiffness.guaranteed),
+    }
 
 
 def _ring(design: Design, ring: EquivalentRing) -> Record:
@@ -83,27 +100,64 @@ def _solver(stiffness: Stiffness) -> Record:
 
 
 def backlash_record(total: Backlash) -> Record:
-    """The four terms, their sum and its standard deviation."""
-    terms = ("shaft", "flexspline", "flank_clearance", "bearing_play", "total", "std")
-    record: Record = {
-        "backlash_arcsec": {term: getattr(total, f"{term}_arcsec") for term in terms},
-        "backlash_std_by_source_arcsec": dict(total.std_by_source_arcsec),
-    }
+    """The four terms, their sum, and its standard deviation where the design states one."""
+    terms = ("shaft", "flexspline", "flank_clearance", "bearing_play", "total")
+    sums = {term: getattr(total, f"{term}_arcsec") for term in terms}
+    record: Record = {"backlash_arcsec": sums}
+    if total.std_arcsec is not None:
+        sums["std"] = total.std_arcsec
+        record["backlash_std_by_source_arcsec"] = dict(total.std_by_source_arcsec)
     if total.model_form_arcsec is not None:
         record["backlash_other_play_model_arcsec"] = total.model_form_arcsec
     return record
 
 
 def stress_record(fields: Mapping[str, SolidField]) -> Record:
-    """The peaks under torque."""
-    return {
-        **_peak("torque_peak", fields["flexspline_torque"].peak),
-        **_peak("shaft_torque_peak", fields["shaft_torque"].peak),
+    """The peaks under torque, of the fields that there are."""
+    record: Record = {}
+    for name in ("flexspline_torque", "shaft_torque"):
+        if name in fields:
+            record |= peak_record(PEAK_OF[name], fields[name].peak)
+    return record
+
+
+def peak_record(name: str, peak: StressPeak) -> Record:
+    """A peak stress, its place, and whether it is the part's or hangs on how far edges are left out."""
+    record: Record = {
+        f"{name}_mises_MPa": peak.mises_MPa,
+        f"{name}_at_mm": list(peak.at_mm),
+        f"{name}_at_excluded_border": peak.at_excluded_border,
+        f"{name}_excluded_mm": peak.exclusion_mm,
     }
+    if peak.mises_at_twice_MPa is not None:
+        record[f"{name}_mises_at_twice_excluded_MPa"] = peak.mises_at_twice_MPa
+    return record
 
 
-def _peak(key: str, peak: StressPeak) -> Record:
-    return {f"{key}_mises_MPa": peak.mises_MPa, f"{key}_at_mm": list(peak.at_mm)}
+def linear_limit_record(limit: LinearLimit) -> Record:
+    """Beyond which torque the linear model is not valid."""
+    return {"linear_torque_limit_Nm": limit.torque_Nm, "linear_torque_limit_reason": limit.reason}
+
+
+def mass_record(design: Design) -> Record:
+    """What both parts weigh, without teeth."""
+    found = masses(design)
+    return {"flexspline_mass_g": found.flexspline_g, "shaft_mass_g": found.shaft_g}
+
+
+def peak_of(name: str, record: Mapping[str, Any]) -> StressPeak:
+    """The peak that `peak_record` wrote."""
+    from fea.types import StressPeak
+
+    x, y, z = record[f"{name}_at_mm"]
+    return StressPeak(
+        record[f"{name}_mises_MPa"],
+        (x, y, z),
+        "",
+        record[f"{name}_excluded_mm"],
+        record[f"{name}_at_excluded_border"],
+        record.get(f"{name}_mises_at_twice_excluded_MPa"),
+    )
 
 
 def run_record(result: RunResult, wall_s: float) -> Record:
@@ -112,8 +166,10 @@ def run_record(result: RunResult, wall_s: float) -> Record:
         **heading(result.design),
         **stiffness_record(result.design, result.stiffnesses, wall_s),
         **stress_record(result.fields),
+        **mass_record(result.design),
         **backlash_record(result.backlash),
-        "warnings": list(result.warnings),
+        **linear_limit_record(result.linear_limit),
+        "warnings": list(all_warnings(result)),
         "stage_s": {name: round(s, 3) for name, s in result.stage_seconds.items()},
     }
 
@@ -131,8 +187,11 @@ def extended_record(extended: ExtendedBacklash, model: str) -> Record:
 
 
 def as_json(record: Record) -> str:
-    """Text of a record; refuses NaN and infinity, which JSON does not have."""
-    return json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False)
+    """Text of a record; refuses NaN and infinity, which JSON does not have.
+
+    Names of files are written as UTF-8 has them, whatever the locale.
+    """
+    return readable(json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def write_record(folder: Path, record: Record) -> None:

@@ -1,12 +1,21 @@
-"""The validation page: every verification test hands in its case, one command writes them down."""
+"""The validation page: every verification test hands in its case, one command writes them down.
+
+And what a machine may lack: a test marked `opengl` is skipped, with the reason, where VTK cannot draw, one
+marked `cad` where the CAD kernel cannot be loaded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from cad_kernel import why_no_cad
+from opengl import why_no_pictures
 from validation_page import TOPICS, Row, has_case, markdown
+
+from geometry.kernel import CadKernelError
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 WRITERS = ("--write-validation", "--write-reliability")
@@ -41,6 +50,32 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[ROWS] = []
     if config.getoption("--write-validation"):
         config.option.markexpr = ""  # the long ones too: the page is whole or not written
+
+
+@contextmanager
+def skipped_without_cad() -> Iterator[None]:
+    """A test that comes to the CAD kernel where that cannot be loaded is skipped: many do, inside."""
+    try:
+        yield
+    except CadKernelError:
+        if not (reason := why_no_cad()):
+            raise
+        pytest.skip(reason)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
+    for marker, why in (("opengl", why_no_pictures), ("cad", why_no_cad)):
+        if item.get_closest_marker(marker) and (reason := why()):
+            pytest.skip(reason)
+    with skipped_without_cad():
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    with skipped_without_cad():
+        return (yield)
 
 
 @pytest.fixture

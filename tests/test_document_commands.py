@@ -19,8 +19,8 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 RUN = [p for p in PAGES if any(b.commands for b in blocks(p))]
 
 NOT_RUN = {
-    "python3 -m pip install . && flexspline run": "installs; .ci/run runs this very line",
-    "python3 -m pip install '.[test]' && python3 -m pytest": "installs; .ci/run runs this very line",
+    "python3 -m venv .venv && .venv/bin/pip install . &&": "installs; .ci/run runs this very line",
+    "python3 -m venv .venv && .venv/bin/pip install '.[test]' &&": "installs; .ci/run runs this one",
     "python3 -m venv .venv && . .venv/bin/activate": "leads to the next",
     "python3 -m pip install -e '.[test,docs]'": "installs; what it installs, tests/package/ installs",
     "python3 -m pytest": "this is it",

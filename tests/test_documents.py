@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from opengl import why_no_pictures
 
 from geometry.load import load_design
 from geometry.sanity import warnings
@@ -22,6 +23,10 @@ MODULES = sorted(
     for p in (ROOT / room).rglob("*.py")
     if ">>>" in p.read_text(encoding="utf-8")
 )
+PICTURES = {
+    "flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator",
+    "backlash_budget", "torque_angle",
+}  # fmt: skip
 DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
 
 
@@ -36,8 +41,11 @@ def test_readme_opens_with_two_commands_in_order() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
     assert len(blocks) == 2
-    assert "flexspline run examples/" in blocks[0]
-    assert "pytest" in blocks[1]
+    for block in blocks:  # Debian refuses to install beside its own packages: an environment first
+        assert block.startswith("python3 -m venv .venv && .venv/bin/pip install ")
+        assert block.count("\n") == 1
+    assert ".venv/bin/flexspline run examples/" in blocks[0]
+    assert ".venv/bin/python -m pytest" in blocks[1]
     assert re.search(r"!\[.*\]\((.*?)\)", text).start() < text.index("```sh")
     for target in re.findall(r"\]\(([^)#]+)\)", text):
         assert (ROOT / target).exists(), target
@@ -51,7 +59,12 @@ def test_readme_names_every_command() -> None:
         assert f"`flexspline {command.callback.__name__}" in text
 
 
-@pytest.mark.parametrize("path", DESIGNS, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "path",
+    # a keyway is cut by the CAD kernel; the others are meshed from their meridian
+    [pytest.param(p, marks=pytest.mark.cad) if p.stem == "keyed-shaft" else p for p in DESIGNS],
+    ids=lambda p: p.stem,
+)
 def test_example_runs(path: Path, tmp_path: Path) -> None:
     """The whole main job on every example; they are the size of real work."""
     out = subprocess.run(
@@ -72,4 +85,6 @@ def test_example_runs(path: Path, tmp_path: Path) -> None:
         > result["K_b_lobes_unsupported_Nm_per_rad"]
     )
     assert (tmp_path / "report.pdf").stat().st_size > 10_000
-    assert len(list(tmp_path.glob("*.png"))) == 8
+    missing = set(result.get("pictures_missing", {}))
+    assert {p.stem for p in tmp_path.glob("*.png")} - {"convergence"} == PICTURES - missing
+    assert not missing or why_no_pictures()

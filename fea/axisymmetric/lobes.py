@@ -18,9 +18,12 @@ import numpy as np
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, HarmonicModel, Wave
 from fea.axisymmetric.recovery import recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
+from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from fea.axisymmetric.triangulate import triangulate
+from fea.deadline import NO_DEADLINE, Deadline, Pace
+from fea.shortfall import largest_mesh, next_mesh_failed
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
+from geometry.errors import ComputationError
 from geometry.outline import Meridian
 
 HALF_WIDTH = pi / 6
@@ -80,25 +83,40 @@ def lobe_coefficient(n: int) -> float:
 
 
 def lobe_stiffness(
-    outline: Meridian, material: Elastic, supported: bool, tolerance: float
+    outline: Meridian,
+    material: Elastic,
+    supported: bool,
+    tolerance: float,
+    deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
 
     `tolerance` is the wanted relative distance of the bounds. A given load stores too little
     energy in too few unknowns and harmonics, so K_h is an upper bound (but for the fillets, which
     quadratic edges follow closely, not exactly). The lower one is an estimate: twice the recovery
-    error, scaled by what the last two meshes say of it, and the bound on missing harmonics.
+    error, scaled by what the last two meshes say of it, and the bound on missing harmonics. Where a
+    mesh fails, is too large or would end after the deadline, the answer is that of the meshes before,
+    and `shortfall` says why.
 
     Raises
     ------
-    MeshingError, SolveError, ToleranceError
+    MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
     mesh = triangulate(outline)
     levels: list[MeshLevel] = []
     estimates: list[float] = []
+    shortfall = ""
+    pace = Pace(deadline)
     while True:
-        model = HarmonicModel(mesh, material)
-        found = solve_lobes(model, supported, TAIL_SHARE * tolerance)
+        try:
+            pace.begin(len(mesh.triangles))
+            model = HarmonicModel(mesh, material)
+            found = solve_lobes(model, supported, TAIL_SHARE * tolerance)
+        except (ComputationError, MemoryError) as fault:
+            if not levels:
+                raise
+            shortfall = next_mesh_failed(fault)
+            break
         upper = found.K
         levels.append(_level(model, found))
         estimates.append(found.estimate * upper)
@@ -108,13 +126,15 @@ def lobe_stiffness(
         if len(levels) > 1 and 2 * error + missing < tolerance:
             break
         if len(mesh.triangles) > MOST_TRIANGLES:
-            raise ToleranceError(tolerance, 2 * error + missing, len(mesh.triangles))
+            shortfall = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
+            break
         mesh = refined(mesh, bulk(found.error, BULK))
     last = 2 * (len(found.energies) - 1)
     return Stiffness(
         K_Nm_per_rad=upper / (1 + error + missing / 2),
         lower_Nm_per_rad=upper / (1 + 2 * error + missing),
         upper_Nm_per_rad=upper,
+        guaranteed=False,  # the lower end is an estimate, and curved edges only follow the fillets
         model="axisymmetric",
         symmetry="body of revolution",
         method=(
@@ -123,11 +143,14 @@ def lobe_stiffness(
         ),
         levels=tuple(levels),
         error_scale=scale,
+        shortfall=shortfall,
     )
 
 
-def solve_lobes(model: HarmonicModel, supported: bool, tail: float) -> LobeSolution:
-    """Add even harmonics until the rest cannot add more than `tail` of the energy."""
+def solve_lobes(
+    model: HarmonicModel, supported: bool, tail: float, held: tuple[str, ...] = ("mount",)
+) -> LobeSolution:
+    """Add even harmonics until the rest cannot add more than `tail` of the energy; `held`: patches."""
     radius = model.space.places[model.on("mesh"), 0]
     width = np.ptp(model.space.places[model.on("mesh"), 1])
     # torque of a traction t0·t(φ): t0 R² width ∫ t dφ = t0 R² width 2 φ0
@@ -141,7 +164,7 @@ def solve_lobes(model: HarmonicModel, supported: bool, tail: float) -> LobeSolut
         wave = Wave(n, torsion=n == 0)
         coefficient = lobe_coefficient(n)
         load = peak * model.pressed("mesh", TANGENTIAL, wave)
-        fixed = [*model.held("mount")]
+        fixed = [f for patch in held for f in model.held(patch)]
         if supported:
             fixed.append(Fixed(model.on("seat"), RADIAL))
         solved = model.solve(wave, fixed, load)
@@ -167,14 +190,11 @@ def _efficiency(K: list[float], estimates: list[float]) -> float:
 
 
 def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:
-    points, edges = model.mesh.points, model.mesh.edges
     return MeshLevel(
-        edge_length_mm=float(
-            np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1).min()
-        ),
+        shortest_edge_mm=model.mesh.shortest_edge_mm,
         elements=len(model.mesh.triangles),
         dofs=found.unknowns,
         K_Nm_per_rad=found.K,
-        K_reaction_Nm_per_rad=TORQUE**2 / found.work / NMM_PER_NM,
+        K_check_Nm_per_rad=TORQUE**2 / found.work / NMM_PER_NM,
         residual=found.residual,
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.types import shortest_edge_mm
 from geometry.errors import ComputationError
 from geometry.outline import SAME, Meridian
 
@@ -77,6 +78,11 @@ class MeridianMesh:
     def on_axis(self) -> np.ndarray:
         """Mask (n,) of vertices on r = 0."""
         return self.points[:, 0] < SAME
+
+    @property
+    def shortest_edge_mm(self) -> float:
+        """Of all triangles."""
+        return shortest_edge_mm(self.points, self.triangles)
 
     def segments_of(self, patch: str) -> np.ndarray:
         """Indices of the outline's segments that carry a patch name."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from math import inf
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from fea.axisymmetric.harmonics import HarmonicModel
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.points import VALUE, reference
 from fea.axisymmetric.recovery import mises_parts
+from fea.stress_rule import Largest
 from geometry.errors import ComputationError
 
 STEPS = 8
@@ -37,6 +39,7 @@ class Peak:
     at_sine : whether it stands where sin² nφ = 1 rather than cos² nφ = 1.
     counted : (m,) mask of triangles with a point that counts.
     local_mises : (m,) largest value that counts in each triangle, 0 if none [MPa].
+    largest : the largest value at other distances from sharp corners and patch edges.
     """
 
     mises_MPa: float
@@ -44,13 +47,24 @@ class Peak:
     at_sine: bool
     counted: np.ndarray
     local_mises: np.ndarray
+    largest: Largest
 
 
-def peak_stress(model: HarmonicModel, nodal: np.ndarray, clearance_mm: float) -> Peak:
-    """Search all angles and all points at least `clearance_mm` from sharp corners and patch edges.
+@dataclass(frozen=True)
+class _Found:
+    """Largest squared stress at a distance, where, and which lattice points (m, q) count."""
+
+    square: float
+    place: np.ndarray
+    at_sine: bool
+    counts: np.ndarray
+
+
+def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) -> Peak:
+    """Search all angles and all points at least `exclusion_mm` from sharp corners and patch edges.
 
     The squared stress is A cos² nφ + B sin² nφ, so the largest over φ is the larger of A and B.
-    Beside the lattice, the points of the outline at exactly the clearance are looked at: there
+    Beside the lattice, the points of the outline at exactly that distance are looked at: there
     the stress is often largest.
 
     Raises
@@ -60,38 +74,56 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, clearance_mm: float) ->
     """
     s, singular = model.space, _singular(model.mesh)
     values = _lattice_values()
-    counts = _counting(s.places[s.dofs], values, singular, clearance_mm)
-    if not counts.any():
-        raise StressError(f"no point of the part is {clearance_mm:g} mm away from its sharp edges")
     acting = np.flatnonzero(nodal.any(axis=0))
-    direct, shear = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
-    square = np.where(counts, np.maximum(direct, shear), 0.0)
-    at = np.unravel_index(square.argmax(), square.shape)
-    best, at_sine = square[at], bool(shear[at] > direct[at])
-    place = values[:, at[1]] @ s.places[s.dofs[at[0]]]
-    for rim_place, rim_stress in _at_clearance(model, nodal, singular, clearance_mm):
-        direct, shear = mises_parts(dict(enumerate(rim_stress)))
-        if max(direct, shear) > best:
-            best, place, at_sine = max(direct, shear), rim_place, bool(shear > direct)
+    parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
+    either = np.maximum(*parts)
+
+    places = np.matmul(values.T, s.places[s.dofs])
+
+    def search(distance_mm: float, at: np.ndarray, within_mm: float) -> _Found | None:
+        counts = _counting(s.places[s.dofs], values, singular, distance_mm)
+        if within_mm < inf:
+            counts &= np.linalg.norm(places - at, axis=2) <= within_mm
+        if not counts.any():
+            return None
+        top = np.unravel_index(np.where(counts, either, 0.0).argmax(), either.shape)
+        best, place, at_sine = float(either[top]), places[top], bool(parts[1][top] > parts[0][top])
+        for rim_place, rim_stress in _at_distance(model, nodal, singular, distance_mm):
+            direct, shear = mises_parts(dict(enumerate(rim_stress)))
+            if max(direct, shear) > best and np.linalg.norm(rim_place - at) <= within_mm:
+                best, place = float(max(direct, shear)), rim_place
+                at_sine = bool(shear > direct)
+        return _Found(best, place, at_sine, counts)
+
+    found = search(exclusion_mm, np.zeros(2), inf)
+    if found is None:
+        raise StressError(f"no point of the part is {exclusion_mm:g} mm away from its sharp edges")
+    peak_at = found.place
+
+    def largest(distance_mm: float, within_mm: float = inf) -> float | None:
+        other = search(distance_mm, peak_at, within_mm)
+        return None if other is None else float(np.sqrt(other.square))
+
     return Peak(
-        float(np.sqrt(best)),
-        (float(place[0]), float(place[1])),
-        at_sine,
-        np.asarray(counts.any(axis=1)),
-        np.sqrt(square.max(axis=1)),
+        float(np.sqrt(found.square)),
+        (float(found.place[0]), float(found.place[1])),
+        found.at_sine,
+        np.asarray(found.counts.any(axis=1)),
+        np.sqrt(np.where(found.counts, either, 0.0).max(axis=1)),
+        largest,
     )
 
 
-def coarse_at_clearance(mesh: MeridianMesh, clearance_mm: float) -> np.ndarray:
-    """Mask (m,) of triangles too large to keep the singular stresses within the clearance.
+def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
+    """Mask (m,) of triangles too large to keep the singular stresses within the distance.
 
-    A triangle that reached from the singular point past the clearance would carry its false peak
+    A triangle that reached from the singular point past the distance would carry its false peak
     along; so those near by may be no larger than half of it.
     """
     corner = mesh.points[mesh.triangles]
     longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
-    near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * clearance_mm
-    return near & (longest > clearance_mm / 2)
+    near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
+    return near & (longest > exclusion_mm / 2)
 
 
 def _singular(mesh: MeridianMesh) -> np.ndarray:
@@ -107,14 +139,14 @@ def _lattice_values() -> np.ndarray:
 
 
 def _counting(
-    nodes: np.ndarray, values: np.ndarray, singular: np.ndarray, clearance_mm: float
+    nodes: np.ndarray, values: np.ndarray, singular: np.ndarray, exclusion_mm: float
 ) -> np.ndarray:
-    """Mask (m, q) of lattice points at the clearance or farther; nodes (m, 6, 2).
+    """Mask (m, q) of lattice points at the distance or farther; nodes (m, 6, 2).
 
     Most triangles lie wholly on one side of it; only the others' points are looked at.
     """
-    # a point at the clearance but for rounding is at the clearance
-    limit = clearance_mm * (1 - 1e-9)
+    # a point at the distance but for rounding is at the distance
+    limit = exclusion_mm * (1 - 1e-9)
     corner = _distance(nodes[:, 0], singular)
     reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
     counts = np.repeat((corner > limit)[:, None], values.shape[1], axis=1)
@@ -131,14 +163,14 @@ def _distance(places: np.ndarray, singular: np.ndarray) -> np.ndarray:
     return cKDTree(singular).query(places)[0]
 
 
-def _at_clearance(
-    model: HarmonicModel, nodal: np.ndarray, singular: np.ndarray, clearance_mm: float
+def _at_distance(
+    model: HarmonicModel, nodal: np.ndarray, singular: np.ndarray, exclusion_mm: float
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Places and stresses where the outline leaves the excluded neighbourhoods."""
     s = model.space
     t = np.linspace(0, 1, STEPS + 1)
     shape = _edge_shape(t)
-    beyond = _distance(np.einsum("qi,kid->kqd", shape, s.places[s.rim]), singular) - clearance_mm
+    beyond = _distance(np.einsum("qi,kid->kqd", shape, s.places[s.rim]), singular) - exclusion_mm
     edge, step = np.nonzero(beyond[:, 1:] * beyond[:, :-1] < 0)
     before, after = beyond[edge, step], beyond[edge, step + 1]
     crossing = _edge_shape((step + before / (before - after)) / STEPS)

@@ -21,8 +21,9 @@ from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.harmonics import TANGENTIAL, Fixed, HarmonicModel, Wave
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.recovery import recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
+from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from fea.axisymmetric.triangulate import triangulate
+from fea.shortfall import ToleranceError, largest_mesh
 from fea.types import NMM_PER_NM, Elastic
 from geometry.errors import ComputationError
 from geometry.outline import SAME, Meridian
@@ -64,7 +65,8 @@ def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -
         if error < tolerance:
             break
         if len(mesh.triangles) > MOST_TRIANGLES:
-            raise ToleranceError(tolerance, error, len(mesh.triangles))
+            why = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
+            raise ToleranceError(f"the energy is off by {error:.2g}: {why}")
         mesh = refined(mesh, bulk(found.error, BULK))
     r = model.space.places[:, 0]
     turned = solved.values.reshape(-1, 3)[:, TANGENTIAL]

@@ -1,24 +1,28 @@
 """Peak von Mises stress under the wave generator's ellipse and under torque, on the meridian.
 
 At sharp corners and patch edges the linear solution is singular and no stress converges; points
-nearer to them than one wall thickness do not count (the contract's rule). Fillets count in full.
+nearer to them than `exclusion_mm` do not count. Fillets count in full.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
 import numpy as np
 
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Amplitudes, Fixed, HarmonicModel, Wave
-from fea.axisymmetric.peak import Peak, coarse_at_clearance, peak_stress
+from fea.axisymmetric.peak import Peak, coarse_at_border, peak_stress
 from fea.axisymmetric.recovery import Recovered, mises_parts, recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, ToleranceError, bulk
+from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from fea.axisymmetric.triangulate import triangulate
+from fea.deadline import NO_DEADLINE, Deadline, Pace
+from fea.shortfall import largest_mesh, next_mesh_failed
+from fea.stress_rule import judged
 from fea.types import NMM_PER_NM, Elastic, StressPeak
+from geometry.errors import ComputationError
 from geometry.outline import Meridian
 
 BULK = 0.5
@@ -79,30 +83,42 @@ class RevolvedField:
 
 
 def ellipse_stress(
-    outline: Meridian, material: Elastic, w0_mm: float, wall_mm: float, tolerance: float
+    outline: Meridian,
+    material: Elastic,
+    w0_mm: float,
+    exclusion_mm: float,
+    tolerance: float,
+    deadline: Deadline = NO_DEADLINE,
 ) -> RevolvedField:
     """Peak stress with `mount` held and `seat` moved radially by w0 cos 2φ, otherwise free.
 
-    `tolerance`: the peak may change by no more than this fraction over two refinements.
+    `tolerance`: the peak may change by no more than this fraction over two refinements. Where a mesh
+    fails, is too large or would end after the deadline, the peak is that of the mesh before, and its
+    `shortfall` says why.
 
     Raises
     ------
-    MeshingError, HarmonicError, StressError, ToleranceError
+    MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
     """
-    *_, last = ellipse_refinements(outline, material, w0_mm, wall_mm, tolerance)
+    *_, last = ellipse_refinements(outline, material, w0_mm, exclusion_mm, tolerance, deadline)
     return last
 
 
 def ellipse_refinements(
-    outline: Meridian, material: Elastic, w0_mm: float, wall_mm: float, tolerance: float
+    outline: Meridian,
+    material: Elastic,
+    w0_mm: float,
+    exclusion_mm: float,
+    tolerance: float,
+    deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[RevolvedField]:
-    """What `ellipse_stress` finds on each of its meshes, the last one within the tolerance."""
+    """What `ellipse_stress` finds on each of its meshes; the last one is the answer."""
 
     def solve(model: HarmonicModel) -> Amplitudes:
         fixed = [Fixed(model.on("seat"), RADIAL, w0_mm), *model.held("mount")]
         return model.solve(Wave(2), fixed, np.zeros(3 * model.space.count))
 
-    return _refinements(outline, material, Wave(2), solve, wall_mm, tolerance)
+    return _refinements(outline, material, Wave(2), solve, exclusion_mm, tolerance, deadline)
 
 
 def torsion_stress(
@@ -110,8 +126,9 @@ def torsion_stress(
     material: Elastic,
     driven: str,
     torque_Nm: float,
-    wall_mm: float,
+    exclusion_mm: float,
     tolerance: float,
+    deadline: Deadline = NO_DEADLINE,
 ) -> RevolvedField:
     """Peak stress with `mount` held and `driven` turned rigidly by a torque.
 
@@ -127,7 +144,8 @@ def torsion_stress(
             unit.values * angle, unit.twice_energy * angle**2, 0.0, unit.residual, unit.unknowns
         )
 
-    *_, last = _refinements(outline, material, Wave(0, torsion=True), solve, wall_mm, tolerance)
+    wave = Wave(0, torsion=True)
+    *_, last = _refinements(outline, material, wave, solve, exclusion_mm, tolerance, deadline)
     return last
 
 
@@ -136,33 +154,50 @@ def _refinements(
     material: Elastic,
     wave: Wave,
     solve: Callable[[HarmonicModel], Amplitudes],
-    wall_mm: float,
+    exclusion_mm: float,
     tolerance: float,
+    deadline: Deadline,
 ) -> Iterator[RevolvedField]:
     """Refine where the energy is wrong, and where a stress that counts is, until neither is."""
     mesh = triangulate(outline)
-    while (coarse := coarse_at_clearance(mesh, wall_mm)).any():
+    while (coarse := coarse_at_border(mesh, exclusion_mm)).any():
         mesh = refined(mesh, coarse)
     levels: list[StressLevel] = []
+    field: RevolvedField | None = None
+    pace = Pace(deadline)
     while True:
-        model = HarmonicModel(mesh, material)
-        solved = solve(model)
-        found = recovered(model, wave, solved.values)
-        peak = peak_stress(model, found.nodal, wall_mm)
+        try:
+            pace.begin(len(mesh.triangles))
+            model = HarmonicModel(mesh, material)
+            solved = solve(model)
+            found = recovered(model, wave, solved.values)
+            peak = peak_stress(model, found.nodal, exclusion_mm)
+        except (ComputationError, MemoryError) as fault:
+            if field is None:
+                raise
+            yield _ended(field, next_mesh_failed(fault))
+            return
         energy_error = float(found.error.sum() / found.energy.sum())
         levels.append(
             StressLevel(len(mesh.triangles), solved.unknowns, peak.mises_MPa, energy_error)
         )
         change = _change(levels)
-        yield _field(model, wave, solved, found, peak, change, wall_mm, levels)
-        if change < tolerance and energy_error < tolerance:
+        field = _field(model, wave, solved, found, peak, change, exclusion_mm, levels)
+        met = change < tolerance and energy_error < tolerance
+        if not met and len(mesh.triangles) > MOST_TRIANGLES:
+            yield _ended(field, largest_mesh(len(mesh.triangles), MOST_TRIANGLES))
             return
-        if len(mesh.triangles) > MOST_TRIANGLES:
-            raise ToleranceError(tolerance, change, len(mesh.triangles))
+        yield field
+        if met:
+            return
         wrong = peak.counted & (found.misfit > LOCAL * tolerance * peak.mises_MPa)
         # no smaller than needed where the peak is not: those far below it may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
         mesh = refined(mesh, bulk(found.error, BULK) | (wrong & near))
+
+
+def _ended(field: RevolvedField, shortfall: str) -> RevolvedField:
+    return replace(field, peak=replace(field.peak, shortfall=shortfall))
 
 
 def _change(levels: list[StressLevel]) -> float:
@@ -179,22 +214,18 @@ def _field(
     found: Recovered,
     peak: Peak,
     change: float,
-    wall_mm: float,
+    exclusion_mm: float,
     levels: list[StressLevel],
 ) -> RevolvedField:
     phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
     r, z = peak.rz
-    excluded = (
-        f"points nearer than {wall_mm:g} mm to a sharp edge or a patch edge, where the linear "
-        "solution is singular and no stress converges"
-    )
     return RevolvedField(
         n=wave.n,
         places=model.space.places,
         triangles=model.space.dofs,
         displacement=solved.values.reshape(-1, 3),
         stress=found.nodal,
-        peak=StressPeak(peak.mises_MPa, (r * cos(phi), r * sin(phi), z), excluded),
+        peak=judged(peak.mises_MPa, (r * cos(phi), r * sin(phi), z), exclusion_mm, peak.largest),
         peak_rz=peak.rz,
         peak_phi=phi,
         peak_change=change,

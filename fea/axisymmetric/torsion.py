@@ -9,6 +9,8 @@ from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.patches import sorted_boundary
 from fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
 from fea.axisymmetric.triangulate import triangulate
+from fea.deadline import NO_DEADLINE, Deadline, Pace
+from fea.shortfall import largest_mesh, next_mesh_failed
 from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from geometry.errors import ComputationError
 from geometry.outline import Meridian
@@ -16,38 +18,29 @@ from geometry.outline import Meridian
 BULK = 0.75
 """Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""
 MOST_TRIANGLES = 400_000
-
-
-class ToleranceError(ComputationError):
-    """The wanted tolerance was not met; carries how far the bounds came.
-
-    Attributes
-    ----------
-    reached : (upper - lower)/K of the last mesh.
-    triangles : of that mesh.
-    """
-
-    def __init__(self, tolerance: float, reached: float, triangles: int) -> None:
-        self.reached, self.triangles = reached, triangles
-        super().__init__(
-            f"bounds of K are {reached:.3g} apart on {triangles} triangles, wanted {tolerance:.3g}"
-        )
+"""A mesh with more of them is the last one."""
 
 
 def torsional_stiffness(
-    outline: Meridian, material: Elastic, driven: str, tolerance: float
+    outline: Meridian,
+    material: Elastic,
+    driven: str,
+    tolerance: float,
+    deadline: Deadline = NO_DEADLINE,
 ) -> Stiffness:
     """Torsional stiffness K = torque/angle with `mount` held and `driven` turned rigidly.
 
     `driven` is "mesh" for a flexspline, "grip" for a shaft. `tolerance` is the wanted
     (upper - lower)/K as a fraction (0.001 is 0.1 %); the mesh is refined where the two fields
-    disagree until it is met.
-    The bounds hold for the outline with its exact arcs; `torsion_fields` says why. K is their mean.
+    disagree until it is met, or until a mesh fails, is too large or would end after the deadline: then
+    the bounds are those of the meshes before, and `shortfall` says why.
+    The bounds are theorems, for the outline with its exact arcs too, which straight edges pushed
+    outwards enclose above and inwards below: `torsion_fields` says why. K is their mean.
     `levels` holds each mesh's displacement solution (its upper bound), by energy and by reaction.
 
     Raises
     ------
-    PatchError, MeshingError, ToleranceError
+    PatchError, MeshingError, OutOfTimeError : of the first mesh.
 
     Source: J. H. Michell, Proc. London Math. Soc. 31 (1899) 130-146, for the two fields.
     """
@@ -57,9 +50,17 @@ def torsional_stiffness(
         mesh = refined(mesh, near)
     per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
     levels: list[MeshLevel] = []
-    lower, upper = 0.0, np.inf
+    lower, upper, shortfall = 0.0, np.inf, ""
+    pace = Pace(deadline)
     while True:
-        found = bracket(mesh, boundary)
+        try:
+            pace.begin(len(mesh.triangles))
+            found = bracket(mesh, boundary)
+        except (ComputationError, MemoryError) as fault:
+            if not levels:
+                raise
+            shortfall = next_mesh_failed(fault)
+            break
         # every mesh's bounds hold, so the best of all do
         lower, upper = max(lower, found.lower), min(upper, found.upper)
         levels.append(_level(mesh, found, per_G))
@@ -67,19 +68,22 @@ def torsional_stiffness(
         if reached < tolerance:
             break
         if len(mesh.triangles) > MOST_TRIANGLES:
-            raise ToleranceError(tolerance, reached, len(mesh.triangles))
+            shortfall = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
+            break
         mesh = refined(mesh, bulk(found.share, BULK))
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2 * per_G,
         lower_Nm_per_rad=lower * per_G,
         upper_Nm_per_rad=upper * per_G,
+        guaranteed=True,
         model="axisymmetric",
         symmetry="body of revolution",
         method=(
-            "guaranteed bounds: minimum potential energy above, minimum complementary energy "
+            "energy bounds from both sides: minimum potential energy above, minimum complementary energy "
             "below (Michell's two fields), exact fillet arcs enclosed"
         ),
         levels=tuple(levels),
+        shortfall=shortfall,
     )
 
 
@@ -93,12 +97,11 @@ def bulk(share: np.ndarray, fraction: float) -> np.ndarray:
 
 
 def _level(mesh: MeridianMesh, found: Bracket, per_G: float) -> MeshLevel:
-    shortest = np.linalg.norm(np.diff(mesh.points[mesh.edges], axis=1)[:, 0], axis=1).min()
     return MeshLevel(
-        edge_length_mm=float(shortest),
+        shortest_edge_mm=mesh.shortest_edge_mm,
         elements=len(mesh.triangles),
         dofs=found.unknowns,
         K_Nm_per_rad=found.upper * per_G,
-        K_reaction_Nm_per_rad=found.reaction * per_G,
+        K_check_Nm_per_rad=found.reaction * per_G,
         residual=found.residual,
     )

@@ -61,13 +61,15 @@ class Column:
         """Radius [mm] within which the plan is a fan about the axis; 0 for a column off the axis."""
         return CORE * (self.bolt_circle - self.hole_radius) if self.inner == 0 else 0.0
 
-    def plan(self, sector_rad: float) -> Meridian:
+    def plan(self, sector_rad: float, arc_rad: float = LARGEST_ARC) -> Meridian:
         """Outline in (x, y) between the angles 0 and `sector_rad`, half a hole cut out at 0.
+
+        No arc about the axis is longer than `arc_rad`.
 
         Its inner end is named CORE_RIM where the core lies within it.
         """
         rc, rh = self.bolt_circle, self.hole_radius
-        turns = np.linspace(0, sector_rad, ceil(sector_rad / LARGEST_ARC) + 1)
+        turns = np.linspace(0, sector_rad, ceil(sector_rad / min(arc_rad, LARGEST_ARC)) + 1)
         outer = [(self.outer * cos(a), self.outer * sin(a)) for a in turns]
         within = self.inner or self.core
         inner = [(within * cos(a), within * sin(a)) for a in turns[::-1]]

@@ -1,14 +1,16 @@
-"""The contract's stress figure: the largest von Mises stress away from edges where it is singular."""
+"""The stress figure: the largest von Mises stress away from edges where it is singular."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
 from fea.solid.errors import SolveError
 from fea.solid.stress import nodal_stress, von_mises
 from fea.solid.unfold import folded
+from fea.stress_rule import judged
 from fea.types import Elastic, SolidField, StressPeak, TetMesh
 
 LATTICE = 6
@@ -20,12 +22,12 @@ that the figure does not depend on where nodes happen to lie."""
 class SharpEdges:
     """Points (k, 3) mm along the sharp edges and patch edges of a sector, and how far they reach.
 
-    Stresses nearer to them than `clearance_mm` are not counted. A larger sector is folded onto this.
+    Stresses nearer to them than `exclusion_mm` are not counted. A larger sector is folded onto this.
     """
 
     points: np.ndarray
     sector_deg: float
-    clearance_mm: float
+    exclusion_mm: float
 
 
 def stress_field(
@@ -56,16 +58,19 @@ def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:
     points = np.vstack([mesh.nodes, surface])
     mises = np.concatenate([von_mises(stress), von_mises(on_surface)])
     away, _ = cKDTree(edges.points).query(folded(points, edges.sector_deg))
-    counted = np.flatnonzero(away >= edges.clearance_mm)
+    counted = np.flatnonzero(away >= edges.exclusion_mm)
     if not len(counted):
-        raise SolveError(f"no point of the part is {edges.clearance_mm:g} mm away from its edges")
+        raise SolveError(f"no point of the part is {edges.exclusion_mm:g} mm away from its edges")
     top = counted[mises[counted].argmax()]
     x, y, z = (float(v) for v in points[top])
-    excluded = (
-        f"points nearer than {edges.clearance_mm:g} mm to a sharp edge or a patch edge,"
-        " where the linear solution is singular"
-    )
-    return StressPeak(float(mises[top]), (x, y, z), excluded)
+
+    from_peak = np.linalg.norm(points - points[top], axis=1)
+
+    def largest(distance_mm: float, within_mm: float = inf) -> float | None:
+        found = mises[(away >= distance_mm) & (from_peak <= within_mm)]
+        return float(found.max()) if len(found) else None
+
+    return judged(float(mises[top]), (x, y, z), edges.exclusion_mm, largest)
 
 
 def _facet_lattice() -> np.ndarray:

@@ -85,8 +85,12 @@ def _prisms(
         refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
     else:
-        far = grading.far if finer is None else min(grading.far, step * column.interface)
-        plan = plan_mesh(column, sector, far)
+        if finer is None:
+            plan = plan_mesh(column, sector, grading.far)
+        elif finer.even:
+            plan = plan_mesh(column, sector, grading.far, 2 * step)  # an arc begins as two chords
+        else:
+            plan = plan_mesh(column, sector, min(grading.far, step * column.interface))
         seam = along(plan, INTERFACE)
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)

@@ -10,7 +10,7 @@ import numpy as np
 from fea.axisymmetric.bisection import refined
 from fea.axisymmetric.meridian_mesh import MeridianMesh
 from fea.axisymmetric.triangulate import triangulate
-from fea.solid.column import CORE_RIM, Column
+from fea.solid.column import CORE_RIM, LARGEST_ARC, Column
 from fea.solid.errors import MeshQualityError, SolidError
 from fea.solid.sizing import Grading
 from geometry.outline import Meridian
@@ -24,19 +24,24 @@ MOST_ELEMENTS = 500_000
 
 @dataclass(frozen=True)
 class Finer:
-    """What a stress that varies about the axis asks of a mesh, beyond the grading.
+    """What a load that varies about the axis asks of a mesh, beyond the grading.
 
     Attributes
     ----------
     step_rad : the largest step about the axis.
     places : points (r, z) of the meridian [mm].
     within_mm, edge_mm : edges of the meridian are at most so long, so near to one of the places.
+    adapted : what else refines the meridian, or its part beside the column of the holes.
+    even : the steps are as good as equal, and the holes' plan is as fine as the grading asks away from the
+        interface; else the plan is as fine as the step throughout.
     """
 
     step_rad: float
-    places: tuple[tuple[float, float], ...]
-    within_mm: float
-    edge_mm: float
+    places: tuple[tuple[float, float], ...] = ()
+    within_mm: float = 0.0
+    edge_mm: float = np.inf
+    adapted: Callable[[MeridianMesh], MeridianMesh] = lambda mesh: mesh
+    even: bool = False
 
 
 def graded_mesh(
@@ -49,15 +54,18 @@ def graded_mesh(
 
     def wanted(points: np.ndarray) -> np.ndarray:
         edge = np.minimum(grading.far, grading.near + grading.growth * nearest(critical, points))
-        if finer is None:
+        if finer is None or not finer.places:
             return edge
         beyond = np.maximum(0.0, nearest(np.array(finer.places), points) - finer.within_mm)
         return np.minimum(edge, finer.edge_mm + grading.growth * beyond)
 
-    return _sized(mesh, wanted)
+    sized = _sized(mesh, wanted)
+    return sized if finer is None else finer.adapted(sized)
 
 
-def plan_mesh(column: Column, sector: float, far: float) -> MeridianMesh:
+def plan_mesh(
+    column: Column, sector: float, far: float, arc_rad: float = LARGEST_ARC
+) -> MeridianMesh:
     """The column's plan, finer beside the hole; a core on the axis is a fan."""
     centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius
 
@@ -65,7 +73,7 @@ def plan_mesh(column: Column, sector: float, far: float) -> MeridianMesh:
         away = np.linalg.norm(points - centre, axis=1) - hole
         return np.minimum(far, np.maximum(PLAN_EDGE * hole, away))
 
-    plan = _sized(triangulate(column.plan(sector)), wanted)
+    plan = _sized(triangulate(column.plan(sector, arc_rad)), wanted)
     rim = plan.edges[np.isin(plan.edge_segment, plan.segments_of(CORE_RIM))]
     if not len(rim):
         return plan

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from geometry.input_file import InputFileError, read_input
 from geometry.toml_read import TomlError, toml_tables
 from pipeline.diagnosis.effects import causes
 from pipeline.diagnosis.effects.cause import Element, Shape
@@ -133,14 +134,8 @@ def read_model_file(path: Path) -> ModelFile:
 
 def _toml(path: Path) -> dict[str, Any]:
     try:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise ModelFileError(path, f"at most {LARGEST_BYTES // 1000} kB are read")
-        raw = path.read_bytes()
-    except OSError as error:
-        raise ModelFileError(path, error.strerror or "cannot be read") from None
-    try:
-        return toml_tables(raw)
-    except TomlError as error:
+        return toml_tables(read_input(path, LARGEST_BYTES, "an extended model"))
+    except (InputFileError, TomlError) as error:
         raise ModelFileError(path, str(error)) from None
 
 

@@ -54,5 +54,5 @@ def prediction_of(
         compliance,
         compliance * hypot(design.uncertainty.youngs_modulus_pct / 100, K_error),
         gap_rad(design) * ARCSEC_PER_RAD,
-        hypot(doubt["flank_clearance"], doubt["radial_clearance"]),
+        hypot(doubt.get("flank_clearance", 0.0), doubt.get("radial_clearance", 0.0)),
     )

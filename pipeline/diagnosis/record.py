@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
 from pipeline.diagnosis.table import Table, read_table
 
 LARGEST_CYCLE = 1_000_000
@@ -79,6 +80,7 @@ class Sweep:
     line: np.ndarray
     cycles_recorded: bool
     ignored: tuple[str, ...] = ()
+    sha256: str = ""
 
     def __len__(self) -> int:
         return len(self.angle_arcsec)
@@ -93,6 +95,7 @@ class EndPoints:
     torque_Nm: np.ndarray
     angle_plus_arcsec: np.ndarray
     angle_minus_arcsec: np.ndarray
+    sha256: str = ""
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,7 @@ class Specimens:
     overrides: dict[str, np.ndarray]
     line: np.ndarray
     part_recorded: bool = True
+    sha256: str = ""
 
 
 Measurement = Sweep | EndPoints | Specimens
@@ -144,10 +148,13 @@ def _sweep(table: Table) -> Sweep:
         raise table.refuse(
             n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}"
         )
+    if np.any(table.numbers["torque_Nm"]):  # none at all is too little data, and no error
+        _refuse_empty(table, "torque_Nm", TORQUE_Nm.low)
+    _refuse_empty(table, "angle_arcsec", SMALLEST_ANGLE_arcsec)
     found = history_of(table)
     return Sweep(
         table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
-        table.line, "cycle" in table.numbers, table.ignored,
+        table.line, "cycle" in table.numbers, table.ignored, table.sha256,
     )  # fmt: skip
 
 
@@ -236,18 +243,33 @@ def _refuse_backward(table: Table, name: str, unit: np.ndarray, reason: str) -> 
             raise table.refuse(int(row), f"{reason}: {name} = {values[row]:g} after {was:g}")
 
 
+def _refuse_empty(table: Table, name: str, least: float) -> None:
+    """Readings that are all nothing: a channel that was not connected, or a slipped exponent."""
+    largest = np.abs(table.numbers[name]).max()
+    if largest < least:
+        unit = name.rpartition("_")[2].replace("Nm", "N·m")
+        raise table.refuse(
+            None,
+            f"the largest {name} is {largest:g}: a measurement needs at least {least:g} {unit}; "
+            "is the unit right, was the channel connected?",
+        )
+
+
 def _end_points(table: Table) -> EndPoints:
     for name in ("unit", "torque_Nm"):
         if not table.has(name):
             raise table.refuse(None, f"column {name} is missing for end points")
     torque = table.numbers["torque_Nm"]
-    bad = np.flatnonzero(torque <= 0)
+    bad = np.flatnonzero(~((torque >= TORQUE_Nm.low) & (torque <= TORQUE_Nm.high)))
     if len(bad):
-        reason = f"torque_Nm = {torque[bad[0]]:g}: must be above 0; both signs are meant"
+        reason = f"torque_Nm = {torque[bad[0]]:g}: must be {TORQUE_Nm} N·m; both signs are meant"
         raise table.refuse(int(bad[0]), reason)
+    angles = np.abs([table.numbers[f"angle_{way}_arcsec"] for way in ("plus", "minus")])
+    if angles.max() < SMALLEST_ANGLE_arcsec:
+        _refuse_empty(table, "angle_plus_arcsec", SMALLEST_ANGLE_arcsec)
     return EndPoints(
         table.path, table.labels["unit"], torque,
-        table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"],
+        table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"], table.sha256,
     )  # fmt: skip
 
 
@@ -262,11 +284,14 @@ def _specimens(table: Table) -> Specimens:
             raise table.refuse(i, f'part = "{p[:40]}": must be one of {", ".join(PARTS)}')
     for name in ("stiffness_Nm_per_rad", "stiffness_std_Nm_per_rad"):
         values = table.numbers.get(name, np.ones(n))
-        bad = np.flatnonzero(values <= 0)
+        low, high = STIFFNESS_Nm_per_rad
+        bad = np.flatnonzero(~((values >= low) & (values <= high)))
         if len(bad):
-            raise table.refuse(int(bad[0]), f"{name} = {values[bad[0]]:g}: must be above 0")
+            reason = f"{name} = {values[bad[0]]:g}: must be {STIFFNESS_Nm_per_rad} N·m/rad"
+            raise table.refuse(int(bad[0]), reason)
     return Specimens(
         table.path, table.labels["specimen"], part,
         table.numbers["stiffness_Nm_per_rad"], table.numbers.get("stiffness_std_Nm_per_rad"),
-        {k: v for k, v in table.numbers.items() if "." in k}, table.line, "part" in table.labels,
+        {k: v for k, v in table.numbers.items() if "." in k}, table.line,
+        "part" in table.labels, table.sha256,
     )  # fmt: skip

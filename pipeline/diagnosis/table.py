@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite, pi
@@ -10,10 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.input_file import InputFileError, read_input
+from geometry.ranges import SMALLEST_NUMBER
 from pipeline.diagnosis.errors import MeasurementError
 
 LARGEST_BYTES = 200_000_000
+"""Two million rows of 100 letters; a file beyond this is some other file, or never ends."""
 LARGEST_ROWS = 2_000_000
+"""Ten readings a second fill them in two days and a half; a fit takes minutes and GB on them."""
 LARGEST_NUMBER = 1e12
 """Beyond this no rig reads; a slipped column or exponent does."""
 
@@ -50,6 +55,8 @@ class Table:
     labels: Mapping[str, tuple[str, ...]]
     line: np.ndarray
     ignored: tuple[str, ...]
+    sha256: str
+    """Of the file's bytes."""
 
     def __len__(self) -> int:
         return len(self.line)
@@ -73,7 +80,8 @@ def read_table(path: Path) -> Table:
     ------
     MeasurementError : anything that cannot be read without guessing.
     """
-    lines, numbers_of = _lines(path)
+    raw = _bytes(path)
+    lines, numbers_of = _lines(path, raw)
     if not lines:
         raise MeasurementError(
             path, None, "holds no header line; expected columns such as torque_Nm"
@@ -113,9 +121,14 @@ def read_table(path: Path) -> Table:
             if len(large):
                 found = f"{header[j]} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
                 raise MeasurementError(path, int(line[large[0]]), found)
-            numbers[column.name] = values * column.factor + column.shift
+            largest = np.abs(values).max()
+            if 0 < largest < SMALLEST_NUMBER:
+                reason = f"the largest {header[j]} is {largest:g}: no rig reads that; is an exponent wrong?"
+                raise MeasurementError(path, None, reason)
+            values = values * column.factor + column.shift
+            numbers[column.name] = np.where(np.abs(values) < SMALLEST_NUMBER, 0.0, values)
     ignored = tuple(h for h, c in zip(header, columns, strict=True) if c is None)
-    return Table(path, numbers, labels, line, ignored)
+    return Table(path, numbers, labels, line, ignored, hashlib.sha256(raw).hexdigest())
 
 
 @dataclass(frozen=True)
@@ -125,16 +138,14 @@ class _Column:
     shift: float = 0.0
 
 
-def _lines(path: Path) -> tuple[list[str], list[int]]:
+def _bytes(path: Path) -> bytes:
     try:
-        size = path.stat().st_size
-        if size > LARGEST_BYTES:
-            raise MeasurementError(
-                path, None, f"{size / 1e6:.0f} MB; at most {LARGEST_BYTES / 1e6:.0f} MB are read"
-            )
-        raw = path.read_bytes()
-    except OSError as error:
-        raise MeasurementError(path, None, error.strerror or "cannot be read") from None
+        return read_input(path, LARGEST_BYTES, "a measured file")
+    except InputFileError as error:
+        raise MeasurementError(path, None, str(error)) from None
+
+
+def _lines(path: Path, raw: bytes) -> tuple[list[str], list[int]]:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

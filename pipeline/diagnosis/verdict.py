@@ -162,7 +162,9 @@ def notes_of(explained: Explained) -> tuple[str, ...]:
     dropped = int(prepared.outlier.sum())
     if dropped:
         notes.append(f"{dropped} isolated outliers were left out")
-    notes.append(f"rows with |T| below {prepared.band_Nm:.3g} N·m cross the gap and name no cause")
+    notes.append(
+        f"rows with |T| < {prepared.band_Nm:.3g} N·m (backlash crossing) were not used for identification"
+    )
     if prepared.sweep.history.time_s is None:
         notes.append("no time was recorded: friction cannot be told from rate dependence")
     notes += _fleet_notes(explained)

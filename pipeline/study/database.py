@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from geometry.errors import DesignError
-from pipeline.study.store import Ledger, said, this_process
+from pipeline.process_id import this_process
+from pipeline.study.store import Ledger, said
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler
@@ -42,6 +44,8 @@ def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSam
     from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
     optuna.logging.set_verbosity(optuna.logging.ERROR)
+    # an interrupt amid a query: the pool would print how closing the connection failed
+    logging.getLogger("sqlalchemy.pool").setLevel(logging.CRITICAL + 1)
     args = {"connect_args": {"timeout": LOCK_S}} if url.startswith("sqlite") else SERVER
     for attempt in range(OPENINGS):
         try:
@@ -53,7 +57,7 @@ def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSam
                 sampler=sampler,
                 load_if_exists=True,
             )
-            return Ledger(trials, storage, this_process())
+            return Ledger(trials, storage, str(this_process()))
         except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
             # two processes that make the tables at once: the second finds them on its next try
             again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)

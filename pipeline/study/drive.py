@@ -8,8 +8,9 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from pipeline.study.cluster import WORKER_DIED, Hands
+from pipeline.study.cluster import Hands
 from pipeline.study.evaluate import Outcome, Task
+from pipeline.study.local_workers import WORKER_DIED
 from pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
 
 if TYPE_CHECKING:
@@ -82,7 +83,6 @@ def carry_out(
 
     ledger.beat()
     while True:
-        hands.replace_lost()
         while len(pending) < hands.width() + source.ahead:
             job = _next(source, ledger)
             if job is None:

@@ -19,10 +19,13 @@ from fea.axisymmetric.contact import contact_stiffness
 from fea.axisymmetric.lobes import lobe_stiffness
 from fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from fea.axisymmetric.torsion import torsional_stiffness
-from fea.types import Elastic, Stiffness
+from fea.shortfall import settled_peak
+from fea.types import Elastic, Stiffness, StressPeak
 from geometry.design import Cup, Design, Hat, Shaft
 from geometry.errors import ComputationError, DesignError
+from geometry.exclusion import exclusion_mm
 from geometry.load import design_from
+from geometry.mass import masses
 from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from geometry.outline import Meridian
 from pipeline.backlash import StiffnessValueError, backlash
@@ -34,7 +37,6 @@ from pipeline.progress import Progress
 from pipeline.storage import cache_folder
 from pipeline.study.figures import SIZES, Solve
 from pipeline.study.holes import Holes, with_holes
-from pipeline.study.mass import part_mass_g
 
 TORSION_TOLERANCE = 2e-3
 LOBE_TOLERANCE = 1e-2
@@ -86,7 +88,7 @@ def figures_of(
     DesignError, ComputationError, BearingPlayDomainError
     """
     plain = without_holes(with_equivalent_ring(design))
-    f, wall = plain.flexspline, plain.flexspline.wall_thickness_mm
+    f = plain.flexspline
     own, nu = plain.material.flexspline, plain.material.flexspline.poissons_ratio
     E = own.youngs_modulus_GPa
     found: dict[str, float] = {}
@@ -99,11 +101,11 @@ def figures_of(
         found |= _stiffness("K_b_lobes_contact", _contact(f, nu), E)
     if "ellipse" in solves:
         w0 = plain.gear.centre_distance_mm
-        found["wave_generator_peak_mises_MPa"] = _ellipse(f, nu, wall) * w0 * E
+        found |= _peak("wave_generator_peak", _ellipse(f, nu).times(w0 * E))
     if "torque" in solves:
         torque, shaft_nu = design.load.torque_Nm, plain.shaft_material.poissons_ratio
-        found["torque_peak_mises_MPa"] = _twisted(f, nu, wall) * torque
-        found["shaft_torque_peak_mises_MPa"] = _twisted(plain.shaft, shaft_nu, wall) * torque
+        found |= _peak("torque_peak", _twisted(f, nu).times(torque))
+        found |= _peak("shaft_torque_peak", _twisted(plain.shaft, shaft_nu).times(torque))
     if "torsion" in solves:
         shaft = plain.shaft_material
         found |= _stiffness("K_b", _torsion(f, nu), E)
@@ -112,9 +114,9 @@ def figures_of(
         )
         found = with_holes(found, design, holes)
         found |= _sum(design, found["K_b_lobes_Nm_per_rad" if lobed else "K_b_Nm_per_rad"], found)
+    mass = masses(design)
     sizes = (
-        part_mass_g(design, "flexspline"), design.flexspline.length_mm,
-        part_mass_g(design, "shaft"), design.shaft.length,
+        mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
     )  # fmt: skip
     return found | dict(zip(SIZES, sizes, strict=True))
 
@@ -131,7 +133,8 @@ def revolved_torsion(design: Design, name: str) -> tuple[float, float, float]:
 def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, float]:
     K_e = found["K_e_Nm_per_rad"]
     total = backlash(design, K_b, K_e)
-    terms = ("shaft", "flexspline", "flank_clearance", "bearing_play", "total", "std")
+    terms = ["shaft", "flexspline", "flank_clearance", "bearing_play", "total"]
+    terms += ["std"] if total.std_arcsec is not None else []
     return {
         "K_series_Nm_per_rad": 1 / (1 / K_e + 1 / K_b),
         **{f"backlash_arcsec.{t}": float(getattr(total, f"{t}_arcsec")) for t in terms},
@@ -150,6 +153,14 @@ def _ring_types() -> tuple[type, ...]:
     from pipeline.chain import CACHED_TYPES
 
     return CACHED_TYPES
+
+
+def _peak(name: str, peak: StressPeak) -> dict[str, float]:
+    """The figure, and 1 where it lies at the border of the excluded zone, else 0."""
+    return {
+        f"{name}_mises_MPa": peak.mises_MPa,
+        f"{name}_at_excluded_border": float(peak.at_excluded_border),
+    }
 
 
 def _silent(line: str) -> None:
@@ -206,15 +217,16 @@ def _contact(part: Part, nu: float) -> tuple[float, float, float]:
 
 
 @_remembered
-def _ellipse(part: Part, nu: float, wall_mm: float) -> float:
-    """MPa per mm of w0 and GPa of E."""
-    peak = ellipse_stress(_outline(part), _unit(nu), 1.0, wall_mm, STRESS_TOLERANCE).peak
-    return peak.mises_MPa
+def _ellipse(part: Cup | Hat, nu: float) -> StressPeak:
+    """Per mm of w0 and GPa of E."""
+    apart = exclusion_mm(part)
+    found = ellipse_stress(_outline(part), _unit(nu), 1.0, apart, STRESS_TOLERANCE)
+    return settled_peak(found.peak)
 
 
 @_remembered
-def _twisted(part: Part, nu: float, wall_mm: float) -> float:
-    """MPa per N·m."""
-    driven = DRIVEN[_name(part)]
-    field = torsion_stress(_outline(part), _unit(nu), driven, 1.0, wall_mm, STRESS_TOLERANCE)
-    return field.peak.mises_MPa
+def _twisted(part: Part, nu: float) -> StressPeak:
+    """Per N·m."""
+    driven, apart = DRIVEN[_name(part)], exclusion_mm(part)
+    found = torsion_stress(_outline(part), _unit(nu), driven, 1.0, apart, STRESS_TOLERANCE)
+    return settled_peak(found.peak)

@@ -16,7 +16,13 @@ from geometry.load import load_design, read_toml
 from geometry.schema import Location, allowed, node_at
 from pipeline.diagnosis.specimens.designs import STEP, value_at
 from pipeline.study.figures import FIGURES, not_a_figure
-from pipeline.study.schema import KEYS, WORDS, Span, StudyFile, pattern
+from pipeline.study.schema import KEYS, WORDS, Span, Spread, StudyFile, pattern
+
+SPREAD = "backlash_arcsec.std"
+
+
+SMALLEST_SPREAD = 1e-6
+"""Of the value: no gauge tells a part in a million, and differences of K drown in rounding."""
 
 
 class StudyError(DesignError):
@@ -44,7 +50,7 @@ def load_study(path: Path) -> Study:
     ------
     DesignError : the study file (`StudyError`) or its design is wrong; one line.
     """
-    return study_from(read_toml(path), path.parent, path.stem)
+    return study_from(read_toml(path, "study"), path.parent, path.stem)
 
 
 def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
@@ -96,10 +102,14 @@ def _check(study: Study) -> None:
         _check_design_key(study, "tolerance", key)
         if (spread.plus_minus is None) == (spread.std is None):
             raise StudyError(f'tolerance."{key}"', spread.model_dump(), WORDS["tolerance.*"])
+        _check_spread(study, key, spread)
     for table in ("objective", "constraint"):
         for key in getattr(file, table):
             if key not in FIGURES:
                 raise StudyError(f'{table}."{key}"', getattr(file, table)[key], not_a_figure(key))
+            if key == SPREAD and not _always_stated(study):
+                reason = "needs a standard deviation above 0 in the design's [uncertainty]"
+                raise StudyError(f'{table}."{key}"', {}, reason)
     for key, limit in file.constraint.items():
         low, high = limit.min, limit.max
         if low is None and high is None:
@@ -124,6 +134,17 @@ def _check(study: Study) -> None:
         raise StudyError("objective", MISSING, 'method "optimize" needs at least one figure')
 
 
+def _always_stated(study: Study) -> bool:
+    """Whether some source of doubt is above 0 in every design of the study."""
+    file = study.file
+    for key, std in study.design.uncertainty:
+        name = f"uncertainty.{key}"
+        least = file.vary[name].ends[0] if name in file.vary else std
+        if name not in file.link and least > 0:
+            return True
+    return False
+
+
 def _check_design_key(study: Study, table: str, key: str) -> None:
     kind = study.design.flexspline.kind
     node = node_at(location_of(key), kind)
@@ -133,6 +154,20 @@ def _check_design_key(study: Study, table: str, key: str) -> None:
     near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
     reason = f"did you mean {near[0]}?" if near and near[0] != key else f"e.g. {known[0]}"
     raise StudyError(f'{table}."{key}"', {}, f"is no number of the design file; {reason}")
+
+
+def _check_spread(study: Study, key: str, spread: Spread) -> None:
+    """Neither lost in rounding beside the value, nor beyond all that the key may hold."""
+    name, amount = (
+        ("std", spread.std) if spread.plus_minus is None else ("plus_minus", spread.plus_minus)
+    )
+    node = node_at(location_of(key), study.design.flexspline.kind)
+    value = value_at(study.design, key)
+    least = SMALLEST_SPREAD * max(abs(float(value or 0)), float(node["minimum"])) or SMALLEST_SPREAD
+    most = float(node["maximum"])
+    if amount is None or not least <= amount <= most:
+        reason = f"must be a number from {least:g} to {most:g}"
+        raise StudyError(f'tolerance."{key}".{name}', amount, reason)
 
 
 def _numeric_keys(design: Design) -> list[str]:
@@ -167,7 +202,7 @@ def _check_span(study: Study, key: str, span: Span) -> None:
     for value in span.values or span.ends:
         if is_whole(study.design, key) and value != int(value):
             raise StudyError(name, value, "must hold whole numbers")
-        least = float(node["minimum"] if "minimum" in node else node["exclusiveMinimum"])
+        least = float(node["minimum"])
         most = float(node.get("maximum", value))
         if not least <= value <= most:
             words = allowed(location_of(key), study.design.flexspline.kind)

@@ -27,8 +27,15 @@ class StudyResult:
     rows: tuple[Row, ...]
     scatter: tuple[Scatter, ...] = ()
     """Of a tolerance study, by figure."""
+    unscattered: str = ""
+    """Why a tolerance study tells nothing of its figures."""
     verified: tuple[Verified, ...] = ()
     """Of the best designs, by rank."""
+
+    @property
+    def about_scatter(self) -> bool:
+        """Whether its designs are one gear's scatter, none better than another."""
+        return self.study.file.run.method == "tolerance"
 
     def design_of(self, row: Row) -> Design:
         """The whole design of a row."""

@@ -19,9 +19,9 @@ from pipeline.study.load import Study
 from pipeline.study.plan import Sobol, grid
 from pipeline.study.result import StudyResult
 from pipeline.study.samplers import sampler_of
-from pipeline.study.scatter import Scatter, scatter_of
+from pipeline.study.scatter import ScatterError, scatter_of
 from pipeline.study.source import Planned, Sampled, solves_of, study_name
-from pipeline.study.store import Ledger, LedgerError, Row
+from pipeline.study.store import Ledger, LedgerError
 from pipeline.study.tolerance import Scattered, outputs_of, scattered
 from pipeline.study.verify import verify
 
@@ -101,12 +101,17 @@ def run_study(
         if not is_complete(source, ledger):
             carry_out(source, ledger, opened(), evaluation, watch)
         rows = tuple(ledger.rows()[: source.size])
-        result = StudyResult(study, rows, _scatter(study, source, rows))
+        result = _scattered(StudyResult(study, rows), source)
         return replace(result, verified=verify(result, ledger, opened, source.task, say))
 
 
-def _scatter(study: Study, source: Source, rows: tuple[Row, ...]) -> tuple[Scatter, ...]:
+def _scattered(result: StudyResult, source: Source) -> StudyResult:
+    """With what a tolerance study tells; too many designs that fail cost that, not the rows."""
     if not isinstance(source, Scattered):
-        return ()
-    seed = study.file.run.seed
-    return tuple(scatter_of(k, source.inputs, rows, seed) for k in outputs_of(study))
+        return result
+    seed, keys = result.study.file.run.seed, outputs_of(result.study)
+    try:
+        found = tuple(scatter_of(k, source.inputs, result.rows, seed) for k in keys)
+    except ScatterError as fault:
+        return replace(result, unscattered=str(fault))
+    return replace(result, scatter=found)

@@ -1,4 +1,8 @@
-"""What a tolerance study tells: distribution, Sobol indices, and what a tighter tolerance buys."""
+"""What a tolerance study tells: distribution, Sobol indices, and what a tighter tolerance buys.
+
+All three come from one quadratic surface where that leaves every index known; else the distribution and
+the indices come from the sample, and there is no tightening; indices that neither knows are not given.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.errors import ComputationError
+from pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
 from pipeline.study.store import Row
-from pipeline.study.tolerance import Input, problem
+from pipeline.study.surface import Surface, surface_through
+from pipeline.study.tolerance import Input
 
-CONFIDENCE = 0.95
-RESAMPLES = 200
 FACTORS = (0.75, 0.5, 0.25, 0.0)
 """A tolerance times this; 0 is a perfect part."""
 SURFACE_POINTS = 2**13
+LEAST_BLOCKS = 4
+"""Sample blocks from which a distribution says something: eight independent designs."""
+CONSTANT = 1e-9
+"""Of a figure's size: a range below it is rounding."""
 
 
 class ScatterError(ComputationError):
@@ -28,16 +36,6 @@ class ScatterError(ComputationError):
 
 
 @dataclass(frozen=True)
-class Indices:
-    """Sobol indices of each input (k,), first order and total, with ± of CONFIDENCE."""
-
-    first: np.ndarray
-    first_conf: np.ndarray
-    total: np.ndarray
-    total_conf: np.ndarray
-
-
-@dataclass(frozen=True)
 class Tightened:
     """One input with its scatter times `factor`: width of the 95 % range, and what that saves."""
 
@@ -48,30 +46,70 @@ class Tightened:
 
 
 @dataclass(frozen=True)
+class Attribution:
+    """What share of the variance is whose.
+
+    Attributes
+    ----------
+    indices : by input; None where neither surface nor sample knows them well enough.
+    surface : where it gives the indices.
+    explained : Q² of the surface tried, used or not; None where the designs were too few for one.
+    enough : so many evaluations may give indices from the sample, where there are none.
+    """
+
+    indices: Indices | None = None
+    surface: Surface | None = None
+    explained: float | None = None
+    enough: int | None = None
+
+
+@dataclass(frozen=True)
 class Scatter:
     """One figure's scatter, in the figure's unit.
 
     Attributes
     ----------
-    values : (2N,) of the two independent samples.
+    values : of the independent designs of the sample.
+    drawn : what the distribution is taken from: the surface with its errors, or `values`.
     low, high : ends of the 95 % range.
-    indices : by input.
-    tightened : by input and factor, from a quadratic surface through all designs.
-    surface_rms : what that surface misses, root mean square.
-    dropped : sample blocks left out because a design of theirs could not be built.
+    shares : of the variance, by input; None where the figure is constant.
+    tightened : by input and factor, where there is a surface.
+    dropped : designs that could not be built or solved.
     """
 
     key: str
     inputs: tuple[Input, ...]
     values: np.ndarray
-    mean: float
-    std: float
+    drawn: np.ndarray
     low: float
     high: float
-    indices: Indices
-    tightened: tuple[Tightened, ...]
-    surface_rms: float
-    dropped: int
+    shares: Attribution | None = None
+    tightened: tuple[Tightened, ...] = ()
+    dropped: int = 0
+
+    @property
+    def indices(self) -> Indices | None:
+        return self.shares.indices if self.shares else None
+
+    @property
+    def surface(self) -> Surface | None:
+        return self.shares.surface if self.shares else None
+
+    @property
+    def mean(self) -> float:
+        return float(self.drawn.mean())
+
+    @property
+    def std(self) -> float:
+        return float(self.drawn.std(ddof=1))
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Inputs, the most important first; as they come where nobody knows."""
+        if self.indices is None:
+            return tuple(range(len(self.inputs)))
+        total = self.indices.total
+        return tuple(sorted(range(len(self.inputs)), key=lambda i: -total[i]))
 
 
 def scatter_of(key: str, inputs: tuple[Input, ...], rows: tuple[Row, ...], seed: int) -> Scatter:
@@ -84,72 +122,86 @@ def scatter_of(key: str, inputs: tuple[Input, ...], rows: tuple[Row, ...], seed:
     k = len(inputs)
     points = np.array([[r.values[x.key] for x in inputs] for r in rows])
     values = np.array([r.outcome.figures.get(key, np.nan) for r in rows])
-    blocks = values.reshape(-1, k + 2)
+    blocks, solved = values.reshape(-1, k + 2), np.isfinite(values)
     whole = np.isfinite(blocks).all(axis=1)
-    if whole.sum() < 4:
+    if whole.sum() < LEAST_BLOCKS:
         raise ScatterError(int(whole.sum()), len(blocks))
-    kept = np.repeat(whole, k + 2)
-    points, values, blocks = points[kept], values[kept], blocks[whole]
-    independent = np.concatenate([blocks[:, 0], blocks[:, -1]])
-    low, high = np.quantile(independent, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
-    tightened, rms = tightening(inputs, points, values, seed)
-    return Scatter(
-        key, inputs, independent, float(independent.mean()), float(independent.std(ddof=1)),
-        float(low), float(high), sobol_indices(inputs, values, seed), tightened, rms,
-        int((~whole).sum()),
-    )  # fmt: skip
+    independent = blocks[:, [0, -1]].ravel()
+    independent = independent[np.isfinite(independent)]
+    dropped = int((~solved).sum())
+    if np.ptp(values[solved]) <= CONSTANT * np.abs(values[solved]).max():
+        same = float(independent.mean())
+        return Scatter(key, inputs, independent, independent, same, same, dropped=dropped)
 
-
-def sobol_indices(inputs: tuple[Input, ...], values: np.ndarray, seed: int) -> Indices:
-    """From values at the points of `saltelli`, by SALib."""
-    from SALib.analyze import sobol
-
-    if np.ptp(values) == 0:
-        nothing = np.zeros(len(inputs))
-        return Indices(nothing, nothing, nothing, nothing)
-    found = sobol.analyze(
-        problem(inputs), values, calc_second_order=False, num_resamples=RESAMPLES,
-        conf_level=CONFIDENCE, seed=seed,
-    )  # fmt: skip
-    names = ("S1", "S1_conf", "ST", "ST_conf")
-    return Indices(*(np.asarray(found[n], float) for n in names))
-
-
-def tightening(
-    inputs: tuple[Input, ...], points: np.ndarray, values: np.ndarray, seed: int
-) -> tuple[tuple[Tightened, ...], float]:
-    """What every input's tightening buys of the 95 % range, and the surface's rms error.
-
-    A quadratic in the standardised inputs is drawn through all designs; its range is taken over
-    SURFACE_POINTS Sobol points of the tightened inputs, the same points each time, so that the
-    differences are the tightening's own.
-    """
-    from scipy.stats import qmc
-
-    def terms(x: np.ndarray) -> np.ndarray:
-        z = (x - np.array([i.nominal for i in inputs])) / np.array([i.std for i in inputs])
-        columns = [np.ones(len(z)), *z.T]
-        if len(values) >= 2 * (len(inputs) + 1) * (len(inputs) + 2) // 2:
-            columns += [z[:, i] * z[:, j] for i in range(z.shape[1]) for j in range(i + 1)]
-        return np.column_stack(columns)
-
-    surface, *_ = np.linalg.lstsq(terms(points), values, rcond=None)
-    rms = float(np.sqrt(np.mean((terms(points) @ surface - values) ** 2)))
-    unit = qmc.Sobol(len(inputs), scramble=True, seed=seed).random(SURFACE_POINTS)
-
-    def width(changed: tuple[Input, ...]) -> float:
-        x = np.column_stack(
-            [i.at(unit[:, c]) if i.std else np.full(len(unit), i.nominal)
-             for c, i in enumerate(changed)]
+    found = attributed(inputs, points, values)
+    if found.surface is None:
+        return Scatter(
+            key, inputs, independent, independent, *_ends(independent), found, (), dropped
         )  # fmt: skip
-        ends = np.quantile(terms(x) @ surface, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
-        return float(ends[1] - ends[0])
+    cloud = Cloud(found.surface, seed)
+    drawn = cloud.values(inputs)
+    return Scatter(
+        key, inputs, independent, drawn, *_ends(drawn), found, tightening(cloud), dropped
+    )
 
-    now = width(inputs)
+
+def attributed(inputs: tuple[Input, ...], points: np.ndarray, values: np.ndarray) -> Attribution:
+    """Shares of the variance from points (n, k) and values (n,) of Saltelli's scheme, nan where unsolved."""
+    k = len(inputs)
+    blocks, solved = values.reshape(-1, k + 2), np.isfinite(values)
+    block = np.repeat(np.arange(len(blocks)), k + 2)
+    surface = surface_through(inputs, points[solved], values[solved], block[solved])
+    explained = surface.explained if surface else None
+    if surface and (found := surface.indices()).told:
+        return Attribution(found, surface, explained)
+    whole = blocks[np.isfinite(blocks).all(axis=1)]
+    if len(whole) < LEAST_BLOCKS or np.ptp(whole[:, [0, -1]]) == 0:
+        return Attribution(explained=explained)
+    found, half = sampled_indices(whole)
+    if half <= WIDEST:
+        return Attribution(found, explained=explained)
+    more = np.ceil(np.log2(len(blocks) * (half / WIDEST) ** 2))
+    return Attribution(explained=explained, enough=int(2**more) * (k + 2))
+
+
+class Cloud:
+    """A surface over SURFACE_POINTS Sobol points, and its errors at designs left out, dealt at random.
+
+    The same points and errors whatever the inputs' scatter, so that differences are the scatter's own.
+    """
+
+    def __init__(self, surface: Surface, seed: int) -> None:
+        from scipy.stats import qmc
+
+        self.surface = surface
+        self._unit = qmc.Sobol(len(surface.inputs), scramble=True, seed=seed).random(SURFACE_POINTS)
+        dealt = np.resize(surface.errors, SURFACE_POINTS)
+        self._errors = np.random.default_rng(seed).permutation(dealt)
+
+    def values(self, inputs: tuple[Input, ...]) -> np.ndarray:
+        """The figure for inputs that scatter less than the surface's own, or as they do."""
+        x = np.column_stack([i.at(u) for i, u in zip(inputs, self._unit.T, strict=True)])
+        return np.asarray(self.surface.at(x) + self._errors)
+
+    def ends(self, inputs: tuple[Input, ...]) -> tuple[float, float]:
+        """Of the 95 % range."""
+        return _ends(self.values(inputs))
+
+
+def tightening(cloud: Cloud) -> tuple[Tightened, ...]:
+    """What every input's tightening buys of the 95 % range."""
+    inputs = cloud.surface.inputs
+    now = float(np.ptp(cloud.ends(inputs)))
     found = []
     for i, own in enumerate(inputs):
         for factor in FACTORS:
-            changed = (*inputs[:i], own.tightened(factor), *inputs[i + 1 :])
-            wide = width(changed)
-            found.append(Tightened(own.key, factor, wide, now - wide))
-    return tuple(found), rms
+            width = float(
+                np.ptp(cloud.ends((*inputs[:i], own.tightened(factor), *inputs[i + 1 :])))
+            )
+            found.append(Tightened(own.key, factor, width, now - width))
+    return tuple(found)
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    low, high = np.quantile(values, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
+    return float(low), float(high)

@@ -7,7 +7,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 Method = Literal["grid", "sobol", "optimize", "tolerance"]
-Number = Annotated[float, Field(allow_inf_nan=False)]
+LARGEST = 1e18
+"""No figure of a gear comes near: stiffness ends at 1e15 N·m/rad. Squares stay within a double."""
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 
 
 class _Frozen(BaseModel):
@@ -51,7 +53,8 @@ class Limit(_Frozen):
     @property
     def size(self) -> float:
         """Of its limits: what an excess is compared with."""
-        return max(abs(x) for x in (self.min, self.max) if x is not None) or 1.0
+        size = max(abs(x) for x in (self.min, self.max) if x is not None)
+        return size if size > 1 / LARGEST else 1.0
 
     def excess(self, value: float) -> float:
         """How far outside, at most 0 inside; in the figure's unit."""
@@ -91,6 +94,7 @@ class StudyFile(_Frozen):
     run: Run = Run()
 
 
+WITHIN = f"from {-LARGEST:g} to {LARGEST:g}"
 WORDS: dict[str, str] = {
     "design": 'the path of a design file, e.g. "xb1-40.toml"',
     "vary": "a table [vary] of design keys",
@@ -102,8 +106,8 @@ WORDS: dict[str, str] = {
     "link": "a table [link] of design keys",
     "link.*": '{ of = "design key", times = 1.0, plus = 0.0 }',
     "link.*.of": "a design key",
-    "link.*.times": "a number",
-    "link.*.plus": "a number",
+    "link.*.times": f"a number {WITHIN}",
+    "link.*.plus": f"a number {WITHIN}",
     "tolerance": "a table [tolerance] of design keys",
     "tolerance.*": "{ plus_minus = … } or { std = … }",
     "tolerance.*.plus_minus": "a number above 0",
@@ -112,8 +116,8 @@ WORDS: dict[str, str] = {
     "objective.*": '"minimize" or "maximize"',
     "constraint": "a table [constraint] of figures",
     "constraint.*": "{ min = … }, { max = … } or both",
-    "constraint.*.min": "a number",
-    "constraint.*.max": "a number",
+    "constraint.*.min": f"a number {WITHIN}",
+    "constraint.*.max": f"a number {WITHIN}",
     "run": "a table [run]",
     "run.method": '"grid", "sobol", "optimize" or "tolerance"',
     "run.evaluations": "a whole number from 1 to 1000000",

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
 from fea.axisymmetric.torsion import torsional_stiffness
+from fea.shortfall import settled
 from fea.types import Elastic
 from geometry.design import Design
 from geometry.errors import DesignError
@@ -93,7 +94,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
         def K(values: dict[str, float], part: str = part, material: Elastic = material) -> float:
             shape = meridian(with_values(plain, values), part)
             bounds = torsional_stiffness(shape, material, DRIVEN[part], K_TOLERANCE)
-            return bounds.K_Nm_per_rad
+            return settled(bounds).K_Nm_per_rad
 
         here = K({})
         slopes = []

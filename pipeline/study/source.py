@@ -46,7 +46,7 @@ class _Asked:
         return distributions(self.study)
 
     def task(self, values: Mapping[str, float]) -> Task:
-        return Task(self._tables, linked(self.study, values), self.solves, self.holes)
+        return Task(self._tables, linked(self.study, values), self.solves, dict(self.holes))
 
     def objectives(self, outcome: Outcome) -> list[float] | None:
         if outcome.reason:

@@ -9,8 +9,6 @@ trial.) A trial whose owner is gone is closed and its slot's next attempt is fre
 
 from __future__ import annotations
 
-import os
-import socket
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -18,6 +16,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from geometry.errors import ComputationError, one_line
+from pipeline.process_id import parsed
 from pipeline.study.evaluate import Outcome
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ CLAIM, ROW = "claim", "row"
 BEAT_S = 10.0
 """How often a process says that it lives."""
 SILENT_S = 60.0
-"""A process of another machine that said nothing for so long is gone."""
+"""A process that cannot be seen from here, and that said nothing for so long, is gone."""
 
 
 class LedgerError(ComputationError):
@@ -185,32 +184,14 @@ class Ledger:
         self.trials.set_user_attr(name, value)
 
     def beat(self) -> None:
-        """Say that this process lives, for those on other machines."""
+        """Say that this process lives, for those that cannot see it."""
         self.note(f"beat {self.owner}", time.time())
 
     def gone(self, trial: FrozenTrial) -> bool:
         """Whether the process that claimed a trial is no more."""
         owner = trial.user_attrs[CLAIM]["owner"]
-        host, pid, born = owner.rsplit("/", 2)
-        if host == socket.gethostname():
-            return not _lives(int(pid), born)
+        process = parsed(owner)
+        if process is not None and process.fate != "unknown":
+            return process.fate == "gone"
         beat = self.notes().get(f"beat {owner}", 0.0)
         return bool(time.time() - beat > SILENT_S)
-
-
-def this_process() -> str:
-    """host/pid/second of birth: a number that the system gives twice is still told apart."""
-    import psutil
-
-    return f"{socket.gethostname()}/{os.getpid()}/{psutil.Process().create_time():.0f}"
-
-
-def _lives(pid: int, born: str) -> bool:
-    import psutil
-
-    try:
-        process = psutil.Process(pid)
-        alive = process.status() != psutil.STATUS_ZOMBIE
-        return alive and f"{process.create_time():.0f}" == born
-    except psutil.NoSuchProcess:
-        return False

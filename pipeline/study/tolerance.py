@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -51,6 +51,8 @@ class Input:
 
     def at(self, unit: np.ndarray) -> np.ndarray:
         """Values for uniform numbers in [0, 1], any shape."""
+        if self.low == self.high:
+            return np.full(np.shape(unit), self.nominal)
         if not self.normal:
             return self.low + unit * (self.high - self.low)
         from scipy.stats import truncnorm
@@ -143,16 +145,16 @@ def base_size(study: Study, k: int) -> int:
 
 def saltelli(inputs: tuple[Input, ...], base: int, seed: int) -> np.ndarray:
     """Points (base·(k + 2), k), block by block: A, A with each input from B, B."""
-    from SALib.sample import sobol
+    from scipy.stats import qmc
 
-    unit = sobol.sample(problem(inputs), base, calc_second_order=False, seed=seed)
-    return np.column_stack([x.at(unit[:, i]) for i, x in enumerate(inputs)])
-
-
-def problem(inputs: tuple[Input, ...]) -> dict[str, Any]:
-    """SALib's word for k numbers in [0, 1]."""
-    names = [x.key for x in inputs]
-    return {"num_vars": len(inputs), "names": names, "bounds": [[0.0, 1.0]] * len(inputs)}
+    k = len(inputs)
+    both = qmc.Sobol(2 * k, scramble=True, seed=seed).random(base)
+    blocks = np.repeat(both[:, None, :k], k + 2, axis=1)
+    own = np.arange(k)
+    blocks[:, own + 1, own] = both[:, k:]
+    blocks[:, -1] = both[:, k:]
+    unit = blocks.reshape(-1, k)
+    return np.column_stack([x.at(u) for x, u in zip(inputs, unit.T, strict=True)])
 
 
 def outputs_of(study: Study) -> tuple[str, ...]:
@@ -180,7 +182,7 @@ class Scattered(Planned):
         if MODULUS in values and material.shaft is not None:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
-        return Task(self._tables, changed, self.solves, self.holes)
+        return Task(self._tables, changed, self.solves, dict(self.holes))
 
 
 def scattered(study: Study, holes: Holes) -> Scattered:

@@ -13,9 +13,10 @@ from pipeline.diagnosis.specimens.designs import with_values
 from pipeline.parts import Workshop
 from pipeline.progress import Progress
 from pipeline.storage import cache_folder
-from pipeline.study.cluster import WORKER_DIED, Hands
+from pipeline.study.cluster import Hands
 from pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from pipeline.study.figures import GIVEN_BY
+from pipeline.study.local_workers import WORKER_DIED
 from pipeline.study.result import StudyResult
 from pipeline.study.store import Ledger, Row
 from pipeline.study.verified import Check, Verified

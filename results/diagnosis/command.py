@@ -13,6 +13,7 @@ from results.diagnosis.console import diagnosis_table
 from results.diagnosis.files import write_diagnosis
 from results.diagnosis.record import diagnosis_record
 from results.records import as_json
+from results.report.attached import Attachment
 from results.report.compared import Stiffnesses
 
 
@@ -22,6 +23,7 @@ def diagnose_and_write(
     given: tuple[float | None, float | None],
     folder: Path,
     json: bool,
+    attached: tuple[Attachment, ...] = (),
 ) -> str:
     """Diagnose, write all files, and return what is printed; `given` are K_b and K_e, None: FEA.
 
@@ -37,7 +39,7 @@ def diagnose_and_write(
         )  # fmt: skip
     record = diagnosis_record(found)
     with shop.progress.stage("figures and report"):
-        write_diagnosis(folder, found, record, used)
+        write_diagnosis(folder, found, record, used, attached)
     return as_json(record) if json else diagnosis_table(found, folder)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from results.atomic import write_bytes
 from results.diagnosis.record import EXTENDED_MODEL, Record
 from results.figures.diagnosis.draw import draw_figures
 from results.records import as_json, program_version
+from results.report.attached import Attachment
 from results.report.both import reports_of
 from results.report.compared import Stiffnesses
 from results.report.diagnosis import diagnosis_document
@@ -22,7 +22,11 @@ DIAGNOSIS = "diagnosis.json"
 
 
 def write_diagnosis(
-    folder: Path, diagnosis: Diagnosis, record: Record, used: Stiffnesses
+    folder: Path,
+    diagnosis: Diagnosis,
+    record: Record,
+    used: Stiffnesses,
+    attached: tuple[Attachment, ...] = (),
 ) -> list[Path]:
     """Write diagnosis.json, the extended model, the figures and the reports into `folder`.
 
@@ -34,7 +38,7 @@ def write_diagnosis(
     with tempfile.TemporaryDirectory(prefix="flexspline-diagnosis-") as scratch:
         figures = draw_figures(diagnosis, Path(scratch))
         made |= {f.path.name: f.path.read_bytes() for f in figures}
-        document = diagnosis_document(diagnosis, figures, used)
+        document = diagnosis_document(diagnosis, figures, used, attached)
         made |= reports_of(document, {f.path.stem: f.path for f in figures})
     for name, data in made.items():
         write_bytes(folder / name, data)
@@ -57,7 +61,7 @@ def _model(diagnosis: Diagnosis, used: Stiffnesses) -> str:
         program=f"flexspline {program_version()}",
         design=diagnosis.design.name,
         measurement=measurement.path.name,
-        measurement_sha256=hashlib.sha256(measurement.path.read_bytes()).hexdigest(),
+        measurement_sha256=measurement.sha256,
         verdict=diagnosis.outcome.verdict,
         K_b_Nm_per_rad=used.K_b_Nm_per_rad,
         K_e_Nm_per_rad=used.K_e_Nm_per_rad,

@@ -11,8 +11,11 @@ import numpy as np
 
 from geometry.design import Design
 from geometry.errors import one_line
+from geometry.input_file import InputFileError, read_input
+from pipeline.diagnosis.errors import MeasurementError
 from pipeline.diagnosis.model_file import read_model_file
 from pipeline.diagnosis.predict import predict_file
+from pipeline.diagnosis.table import LARGEST_BYTES
 from results.atomic import write_bytes
 from results.records import as_json
 
@@ -57,7 +60,10 @@ def with_column(path: Path, angle_arcsec: np.ndarray) -> str:
 
     A column of that name, from an earlier prediction, is replaced.
     """
-    text = path.read_bytes().decode("utf-8-sig")
+    try:
+        text = read_input(path, LARGEST_BYTES, "a measured file").decode("utf-8-sig")
+    except InputFileError as error:  # it was there a moment ago
+        raise MeasurementError(path, None, str(error)) from None
     kept = [s for s in text.splitlines() if s.strip() and not s.lstrip().startswith("#")]
     rows = list(csv.reader(kept))
     at = [i for i, name in enumerate(rows[0]) if name.strip() != COLUMN]

@@ -32,11 +32,11 @@ SPECIMENS = {
 }
 """Causes that only specimens show."""
 VERDICTS = {
-    "consistent": "The simulation holds",
-    "named": "Found, and named",
-    "ambiguous": "Something is missing; these data cannot tell what",
-    "unknown": "Something is there that no known cause explains",
-    "insufficient": "Too little data to say",
+    "consistent": "The measurement agrees with the simulation",
+    "named": "Causes identified",
+    "ambiguous": "Several causes are possible; these data cannot tell them apart",
+    "unknown": "An effect that no known cause explains",
+    "insufficient": "Too little data for a verdict",
 }
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""

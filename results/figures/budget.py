@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.backlash import Backlash
 from pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from results.doubt import NOT_STATED, SOURCES
+from results.figures.words import fit, wrapped
 from results.quantities import quantity
 from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -14,136 +18,160 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play")
-SOURCES = {
-    "youngs_modulus": "Young's modulus",
-    "flank_clearance": "flank clearance",
-    "radial_clearance": "bearing clearance",
-}
-
-
 ADDED = "#b9a3cf"
+SUM = "#dfe3e7"
 CALIBRATION = "Calibration by measurement"
+ROW, ABOVE, BELOW = 0.62, 0.52, 0.62
+"""Inches: of a row of the waterfall, above the rows and below them."""
+LETTERS = 20
+"""Of a row's name on one line."""
+VALUES, SHARES = 1.31, 1.36
+"""Where the figures' column ends and the shares' begins, in widths of the waterfall."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A bar from `start` over `size` [arcsec], and the words beside it."""
+
+    name: str
+    start: float
+    size: float
+    colour: str
+    value: str
+    share: str = ""
+    is_sum: bool = False
 
 
 def write_budget(path: Path, backlash: Backlash, extended: ExtendedBacklash | None = None) -> None:
     """Write the chart: a waterfall of the terms with the total's 1σ bar, and 1σ by source.
 
-    With `extended`, the terms that a measurement added follow the simulated total.
+    The figures stand in a column of their own, so that no bar meets them. With `extended`, the
+    terms that a measurement added follow the simulated total.
     """
-    added = _added(extended) if extended else []
+    rows = _simulated(backlash, extended is not None)
+    if extended is not None:
+        rows += _measured(extended)
     with styled():
-        height = 4.3 + 0.52 * (len(added) + bool(added))
+        height = ABOVE + ROW * len(rows) + BELOW
         figure = new_figure(8.0, height)
-        fixed = 4.3 / height
-        terms = figure.add_axes((0.205, 0.14 * fixed, 0.46, 1 - 0.26 * fixed))
-        sources = figure.add_axes((0.835, 1 - 0.62 * fixed, 0.135, 0.50 * fixed))
-        _waterfall(terms, backlash, extended, added)
+        terms = figure.add_axes((0.205, BELOW / height, 0.325, ROW * len(rows) / height))
+        _waterfall(terms, rows, backlash)
+        figure.text(
+            0.012, 1 - 0.27 / height, "Backlash between $\\mathbf{−T_L}$ and $\\mathbf{+T_L}$",
+            fontsize=12, weight="bold", va="center",
+        )  # fmt: skip
+        deep = 0.66 * len(SOURCES)
+        sources = figure.add_axes((0.855, 1 - (ABOVE + deep) / height, 0.07, deep / height))
         _sources(sources, backlash)
+        unit = quantity("backlash_arcsec.std").unit
+        figure.text(
+            0.75,
+            1 - 0.27 / height,
+            f"1σ by source, {unit}",
+            fontsize=12,
+            weight="bold",
+            va="center",
+        )
         save_png(figure, path)
 
 
-def _added(extended: ExtendedBacklash) -> list[tuple[str, float]]:
-    """Name and size of each added term; ids are the short names of causes."""
+def _simulated(backlash: Backlash, more: bool) -> list[Row]:
+    """The four terms and their sum."""
+    total, start, rows = backlash.total_arcsec, 0.0, []
+    for term, colour in zip(TERMS, PALETTE, strict=True):
+        entry, size = quantity(f"backlash_arcsec.{term}"), getattr(backlash, f"{term}_arcsec")
+        share = f"{100 * size / total:.0f} %"
+        rows.append(Row(entry.name, start, size, colour, entry.short(size), share))
+        start += size
+    entry, std = quantity("backlash_arcsec.total"), backlash.std_arcsec
+    spread = "" if std is None else f"± {entry.short(std)}"
+    name = ("Simulated" if more else "Backlash") + (" ± 1σ" if spread else "")
+    rows.append(Row(name, 0.0, total, SUM, entry.short(total), spread, is_sum=True))
+    return rows
+
+
+def _measured(extended: ExtendedBacklash) -> list[Row]:
+    """What the extended model adds, and the new sum; ids are the short names of causes."""
+    entry, start, rows = quantity("backlash_arcsec.total"), extended.nominal.total_arcsec, []
     terms = {CALIBRATION: extended.calibration_arcsec, **extended.causes_arcsec}
-    return [(_wrapped(n.replace("_", " ").capitalize()), v) for n, v in terms.items()]
+    for cause, size in terms.items():
+        plus = "+" if size >= 0 else ""
+        name = cause.replace("_", " ").capitalize()
+        rows.append(Row(name, start, size, ADDED, f"{plus}{entry.short(size)}"))
+        start += size
+    rows.append(Row("Extended", 0.0, start, SUM, entry.short(start), is_sum=True))
+    return rows
 
 
-def _wrapped(name: str) -> str:
-    """Two lines, broken near the middle."""
-    words, first = name.split(), ""
-    if len(name) <= 18:
-        return name
-    while words and len(first) + len(words[0]) <= (len(name) + 1) // 2 + 1:
-        first += ("" if not first else " ") + words.pop(0)
-    return f"{first}\n{' '.join(words)}"
-
-
-def _waterfall(
-    axes: Axes,
-    backlash: Backlash,
-    extended: ExtendedBacklash | None,
-    added: list[tuple[str, float]],
-) -> None:
-    values = [getattr(backlash, f"{t}_arcsec") for t in TERMS]
-    total, std = backlash.total_arcsec, backlash.std_arcsec
-    peak, level = total, total
-    for _, value in added:
-        level += value
-        peak = max(peak, level)
-    reach = max(total + std, sum(values), peak)
-    entry = quantity("backlash_arcsec.total")
-    start = 0.0
-    for row, (term, value, colour) in enumerate(zip(TERMS, values, PALETTE, strict=True)):
-        words = f"{quantity(f'backlash_arcsec.{term}').text(value)}  ({100 * value / total:.0f} %)"
-        _step(axes, row, start, value, colour, words, reach)
-        start += value
-    row = len(TERMS)
-    _sum(axes, row, total, f"{entry.text(total)} ± {entry.text(std)} (1σ)", reach)
-    axes.errorbar(total, row, xerr=std, color=ACCENT, lw=2, capsize=6, capthick=2)
-    names = [quantity(f"backlash_arcsec.{t}").name for t in (*TERMS, "total")]
-    names = [n.replace(", total", "") for n in names]
-    bold = [row]
-    if extended:
-        names[-1] = "Simulated"
-        axes.plot([total, total], [row + 0.31, row + 0.69], color=MUTED, lw=0.8)
-        for _, value in added:
-            row += 1
-            plus = "+" if value >= 0 else ""
-            _step(axes, row, start, value, ADDED, f"{plus}{entry.text(value)}", reach)
-            start += value
-        bold.append(row + 1)
-        _sum(axes, row + 1, start, f"{entry.text(start)}, with what was measured", reach)
-        names += [*(n for n, _ in added), "Extended"]
-    axes.set_yticks(range(len(names)), names)
-    for row in bold:
-        axes.get_yticklabels()[row].set_fontweight("bold")
-    axes.invert_yaxis()
+def _waterfall(axes: Axes, rows: Sequence[Row], backlash: Backlash) -> None:
+    ends = [0.0, *(r.start + r.size for r in rows)]
+    std = backlash.std_arcsec
+    for i, row in enumerate(rows):
+        axes.barh(
+            i, row.size, left=row.start, height=0.62, color=row.colour, edgecolor=INK,
+            linewidth=0.9 if row.is_sum else 0.6,
+        )  # fmt: skip
+        if i + 1 < len(rows):
+            end = row.start + row.size
+            axes.plot([end, end], [i + 0.31, i + 0.69], color=MUTED, lw=0.8)
+    if std is not None:
+        at, total = len(TERMS), backlash.total_arcsec
+        axes.errorbar(total, at, xerr=std, color=ACCENT, lw=2, capsize=6, capthick=2)
+        ends += [total - std, total + std]
+    low, high = min(ends), max(ends)
+    axes.set_xlim(low - 0.04 * (high - low) if low < 0 else 0, high + 0.04 * (high - low))
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set_yticks(range(len(rows)), [wrapped(r.name, LETTERS) for r in rows])
+    for i, row in enumerate(rows):
+        if row.is_sum:
+            axes.get_yticklabels()[i].set_fontweight("bold")
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
+    axes.axvline(0, color=MUTED, lw=0.8)
+    axes.locator_params(axis="x", nbins=4)
+    _figures(axes, rows)
     axes.grid(axis="x")
-    axes.set_xlim(0, 1.04 * reach)
-    axes.set_xlabel(f"angle at the output in {entry.unit}")
-    axes.set_title("Backlash between $\\mathbf{−T_L}$ and $\\mathbf{+T_L}$", x=-0.42)
+    axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}")
 
 
-def _step(
-    axes: Axes, row: int, start: float, value: float, colour: str, words: str, reach: float
-) -> None:
-    """One bar from `start` on, its figure on the side that has room, a thread to the next."""
-    axes.barh(row, value, left=start, height=0.62, color=colour, edgecolor=INK, linewidth=0.6)
-    low, high = sorted((start, start + value))
-    inside = high > 0.75 * reach
-    axes.annotate(
-        words,
-        (low if inside else high, row),
-        (-6 if inside else 6, 0),
-        textcoords="offset points",
-        ha="right" if inside else "left",
-        va="center",
-    )
-    end = start + value
-    axes.plot([end, end], [row + 0.31, row + 0.69], color=MUTED, lw=0.8)
-
-
-def _sum(axes: Axes, row: int, total: float, words: str, reach: float) -> None:
-    axes.barh(row, total, height=0.62, color="#dfe3e7", edgecolor=INK, linewidth=0.9)
-    axes.text(0.04 * reach, row, words, va="center", weight="bold")
+def _figures(axes: Axes, rows: Sequence[Row]) -> None:
+    """Each row's value and share in two columns, of one size."""
+    across = axes.get_yaxis_transform()
+    values, shares = [], []
+    for i, row in enumerate(rows):
+        weight = "bold" if row.is_sum else "normal"
+        values.append(axes.text(
+            VALUES, i, row.value, transform=across, weight=weight, ha="right", va="center"
+        ))  # fmt: skip
+        shares.append(axes.text(
+            SHARES, i, row.share, transform=across, weight=weight, ha="left", va="center"
+        ))  # fmt: skip
+    fit(values, (VALUES - 1) * axes.bbox.width - 6)
+    fit(shares, 1.02 * (VALUES - 1) * axes.bbox.width)
 
 
 def _sources(axes: Axes, backlash: Backlash) -> None:
+    """A bar for each source of doubt; which is not stated says so."""
     stds = backlash.std_by_source_arcsec
-    names = [SOURCES.get(name, name.replace("_", " ")) for name in stds]
     entry = quantity("backlash_arcsec.std")
-    axes.barh(range(len(stds)), list(stds.values()), height=0.55, color=ACCENT)
-    for row, value in enumerate(stds.values()):
-        axes.annotate(
-            entry.text(value), (value, row), (5, 0), textcoords="offset points", va="center"
-        )
-    axes.set_yticks(range(len(stds)), [n.replace(" ", "\n", 1) for n in names])
-    axes.invert_yaxis()
+    said = []
+    for row, source in enumerate(SOURCES):
+        axes.barh(row, stds.get(source, 0.0), height=0.55, color=ACCENT)
+        stated = source in stds
+        said.append(axes.annotate(
+            entry.short(stds[source]) if stated else NOT_STATED.replace(" ", "\n"),
+            (stds.get(source, 0.0), row),
+            (5, 0),
+            textcoords="offset points",
+            va="center",
+            color=INK if stated else MUTED,
+        ))  # fmt: skip
+    axes.set_yticks(range(len(SOURCES)), [wrapped(n, 10) for n in SOURCES.values()])
+    axes.set_ylim(len(SOURCES) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    axes.set_xlim(0, 1.45 * max(max(stds.values(), default=0.0), 1e-9))
+    axes.set_xlim(0, max(max(stds.values(), default=0.0), 1e-9))
     axes.set_xticks([])
     axes.spines["bottom"].set_visible(False)
-    axes.set_title(f"1σ by source, {entry.unit}", x=-1.0)
+    for text in said:
+        fit([text], 0.9 * axes.bbox.width)

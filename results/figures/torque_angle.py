@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pipeline.backlash import Backlash
+from results.figures.words import GROUND, keep_inside
 from results.quantities import quantity
 from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -43,13 +44,14 @@ def write_torque_angle(
             spread = band(t, torque_Nm, backlash)
             axes.fill_between(
                 t, angle - spread, angle + spread, color=PALETTE[1], alpha=0.22, lw=0,
-                label="1σ" if sign > 0 else None,
+                label="1σ" if sign > 0 and backlash.std_arcsec is not None else None,
             )  # fmt: skip
             axes.plot(
                 t, angle, color=PALETTE[0], lw=2.4, solid_capstyle="round",
                 label="model" if sign > 0 else None,
             )  # fmt: skip
         _annotate(axes, angle_arcsec, torque_Nm, backlash)
+        keep_inside(axes)
         save_png(figure, path)
 
 
@@ -90,23 +92,24 @@ def _annotate(
     axes.plot([load, 1.16 * load], [high, high], color=MUTED, lw=0.8, ls=(0, (4, 3)))
     _span(axes, 1.13 * load, low, high)
     axes.annotate(
-        f"lost motion\n{arcsec.text(backlash.total_arcsec)} ± {arcsec.text(backlash.std_arcsec)}"
-        f" {arcsec.unit}",
+        f"lost motion\n{_total(backlash)} {arcsec.unit}",
         (0.97 * load, 0),
         (0, -24),
         textcoords="offset points",
         ha="right",
         va="center",
         weight="bold",
+        bbox=GROUND,
     )
     _span(axes, -0.09 * load, -gap / 2, gap / 2)
     axes.annotate(
-        f"gap {arcsec.text(gap)} {arcsec.unit}",
+        f"gap {arcsec.short(gap)} {arcsec.unit}",
         (-0.09 * load, 0),
         (-8, 14),
         textcoords="offset points",
         ha="right",
         va="center",
+        bbox=GROUND,
     )
     axes.set_xlim(-REACH * load, REACH * load)
     axes.set_ylim(-top, top)
@@ -115,6 +118,12 @@ def _annotate(
     axes.set_ylabel(f"output angle θ in {arcsec.unit}")
     axes.set_title("Angle at the output, wave generator locked")
     axes.legend(loc="upper left", ncols=2)
+
+
+def _total(backlash: Backlash) -> str:
+    arcsec, std = quantity("backlash_arcsec.total"), backlash.std_arcsec
+    spread = "" if std is None else f" ± {arcsec.short(std)}"
+    return f"{arcsec.short(backlash.total_arcsec)}{spread}"
 
 
 def _span(axes: Axes, x: float, low: float, high: float) -> None:

@@ -67,6 +67,11 @@ def turning_ellipse(name: str, field: SolidField, amplitude_mm: float) -> bytes:
     return turning(name, drawn, scene.said)
 
 
+def write_turning_ellipse(path: Path, name: str, field: SolidField, amplitude_mm: float) -> None:
+    """Write that view."""
+    path.write_bytes(turning_ellipse(name, field, amplitude_mm))
+
+
 @dataclass(frozen=True)
 class _Scene:
     """Both views, the edges (k, 3) that move, and the words."""
@@ -93,7 +98,7 @@ def _scene(field: SolidField, amplitude_mm: float) -> _Scene:
         title="Flexspline on the wave generator: stress",
         subtitle=f"von Mises; seat moved radially by w₀ cos 2φ, w₀ = {amplitude_mm:.3g} mm",
         note=f"Displacements drawn {factor:g} times as large. Red: edges before deformation.\n"
-        + stress_note(beyond),
+        + stress_note(field.peak, beyond),
         bar=stress_bar(field.peak, beyond),
         mark=mark,
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from results.renders.opengl import choose_opengl
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -63,7 +63,12 @@ class Shot:
 
 
 def shoot(layers: Sequence[Layer], view: View, size: tuple[int, int], margin: float = 0.03) -> Shot:
-    """Draw the layers so that they fill `size` (width, height) pixels up to the margin."""
+    """Draw the layers so that they fill `size` (width, height) pixels up to the margin.
+
+    Raises
+    ------
+    OpenGLError : there is nothing to draw with.
+    """
     pv = _pyvista()
     axes = view.axes
     seen = np.concatenate([np.asarray(layer.mesh.points) @ axes.T for layer in layers])
@@ -114,9 +119,7 @@ def _light(plotter: Any, axes: np.ndarray) -> None:
 
 
 def _pyvista() -> Any:
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        # else VTK first looks for an X server and complains on stderr that there is none
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    choose_opengl()
     import pyvista as pv
 
     return pv

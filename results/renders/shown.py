@@ -63,8 +63,10 @@ def stress_bar(peak: StressPeak, beyond: bool) -> Bar:
     return Bar(f"von Mises\nin {stress.unit}", peak.mises_MPa, top, beyond)
 
 
-def stress_note(beyond: bool) -> str:
+def stress_note(peak: StressPeak, beyond: bool) -> str:
     """One line about the colour range."""
+    if peak.at_excluded_border:
+        return f"Colours end {peak.exclusion_mm:.3g} mm from sharp edges, where the stress still rises."
     if beyond:
         return "Colours end at the peak; beyond it, sharp corners are singular."
     return "Colours end at the peak."
@@ -96,7 +98,8 @@ def peak_mark(
     """
     places = _copies(np.array(peak.at_mm), sector_deg)
     copies = [int(np.argmin(((nodes - place) ** 2).sum(axis=1))) for place in places]
-    text = "peak\n" + quantity("torque_peak_mises_MPa").with_unit(peak.mises_MPa)
+    name = "peak, at border\nof what is left out" if peak.at_excluded_border else "peak"
+    text = f"{name}\n" + quantity("torque_peak_mises_MPa").with_unit(peak.mises_MPa)
     for seen in (main, inset):
         drawn = surface(seen.points, seen.shown.facets)
         eye = seen.view.axes[2]

@@ -51,6 +51,13 @@ def turning_torque_stress(name: str, field: SolidField, part_name: str, torque_N
     return turning(name, drawn, _said(field, whole, main, inset, part_name, torque_Nm))
 
 
+def write_turning_torque_stress(
+    path: Path, name: str, field: SolidField, part_name: str, torque_Nm: float
+) -> None:
+    """Write that view."""
+    path.write_bytes(turning_torque_stress(name, field, part_name, torque_Nm))
+
+
 def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:
     whole = whole_part(field.mesh, field.displacement, field.mises, "antisymmetric")
     cut = opening(field.mesh.sector_deg)
@@ -68,7 +75,7 @@ def _said(
     return Said(
         title=f"{part_name}: stress under load torque",
         subtitle=f"von Mises stress, torque {torque_Nm:.4g} N·m; cut open, not deformed",
-        note=stress_note(beyond),
+        note=stress_note(field.peak, beyond),
         bar=stress_bar(field.peak, beyond),
         mark=peak_mark(field.peak, field.mesh.sector_deg, whole.nodes, main, inset),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from results.quantities import quantity
+from results.doubt import spread_sentence
 from results.report import tables
 from results.report.content import ReportContent
 from results.report.document import Block, Column, Formula, Heading, Node, Paragraph, Picture, Table
@@ -40,8 +40,6 @@ TERMS: dict[str, Words] = {
 
 def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
     """Formula, table, waterfall and torque–angle line."""
-    entry = quantity("backlash_arcsec.total")
-    std = entry.text(content.backlash.std_arcsec)
     yield Heading("The backlash budget")
     yield Paragraph(
         plain(
@@ -63,7 +61,7 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Column("Share", "right"),
         ),
         rows=tuple((b["name"], TERMS[b["term"]], b["value"], b["unit"], b["share"]) for b in rows),
-        caption=f"The four terms and their sum; one standard deviation of the sum is {std} {entry.unit}.",
+        caption=f"The four terms and their sum; {spread_sentence(content.backlash)}.",
         strong=len(rows) - 1,
     )  # fmt: skip
     extended = (
@@ -73,10 +71,11 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         if content.extended_model
         else ()
     )
+    stated = content.backlash.std_arcsec is not None
     terms = plain(
-        "The terms as they add up, the total with one standard deviation, and the sources of that "
-        "deviation."
+        "The terms as they add up"
+        + (", the total with one standard deviation, and its sources." if stated else ".")
     )
     line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture("budget", terms + extended, 80))
-    yield from shown(content, roomy, Picture("torque_angle", line, 74))
+    yield from shown(content, roomy, Picture("budget", terms + extended, 70))
+    yield from shown(content, roomy, Picture("torque_angle", line, 62))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pipeline.diagnosis.diagnose import Diagnosis
+from pipeline.diagnosis.prediction import Prediction
 from pipeline.diagnosis.record import EndPoints, Specimens, Sweep
 from results.diagnosis.words import channel_words, figures_text
 from results.quantities import grouped
@@ -76,16 +77,41 @@ def compared(diagnosis: Diagnosis, used: Stiffnesses) -> str:
     return (
         f"Compared with the simulation: K_b = {grouped(used.K_b_Nm_per_rad, 0)} and "
         f"K_e = {grouped(used.K_e_Nm_per_rad, 0)} N·m/rad ({source}), a gap of "
-        f"{grouped(p.gap_arcsec, 1)} ± {grouped(p.gap_std_arcsec, 1)} arcsec, and an elastic twist of "
-        f"{figures_text(p.compliance, 4)} ± {figures_text(p.compliance_std, 2)} arcsec for each N·m. A "
-        "stiffness or gap that differs within these limits is no finding."
+        f"{_with_std(grouped(p.gap_arcsec, 1), p.gap_std_arcsec, 1)} arcsec, and an elastic twist of "
+        f"{_twist(p)} arcsec for each N·m. {_what_counts(p)}"
     )
+
+
+def _with_std(value: str, std: float, places: int) -> str:
+    return f"{value} ± {grouped(std, places)}" if std else value
+
+
+def _twist(p: Prediction) -> str:
+    value = figures_text(p.compliance, 4)
+    return f"{value} ± {figures_text(p.compliance_std, 2)}" if p.compliance_std else value
+
+
+def _what_counts(p: Prediction) -> str:
+    """What the standard deviations mean, and what it means that one is missing."""
+    missing = [
+        name
+        for name, std in (("the gap", p.gap_std_arcsec), ("the stiffness", p.compliance_std))
+        if not std
+    ]
+    if not missing:
+        return "A stiffness or gap that differs within these limits is no finding."
+    return f"No uncertainty of {' or '.join(missing)} is stated, so any difference beyond the noise counts."
 
 
 def _compared_specimens(diagnosis: Diagnosis, used: Stiffnesses) -> str:
     doubt = diagnosis.design.uncertainty.youngs_modulus_pct
+    modulus = (
+        f"Young's modulus may be off by {doubt:g} % (1σ)"
+        if doubt
+        else "No uncertainty of Young's modulus is stated; it counts as exact"
+    )
     source = "scaled from K_b and K_e as given" if used.given else "solved for each specimen"
     return (
-        f"Compared with the simulated stiffness, {source}. Young's modulus may be off by {doubt:g} % (1σ), "
-        "and a dimension by the general tolerance ISO 2768-m, without that being a finding."
+        f"Compared with the simulated stiffness, {source}. {modulus}. A dimension may be off "
+        "by the general tolerance ISO 2768-m without that being a finding."
     )

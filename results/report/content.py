@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from fea.toothed_ring.equivalent import EquivalentRing
 from fea.types import Stiffness, StressPeak
 from geometry.design import Design
 from pipeline.backlash import Backlash
+from pipeline.linear_limit import LinearLimit
+from results.report.attached import Attachment
 
 
 @dataclass(frozen=True)
@@ -35,15 +37,18 @@ class ReportContent:
     version : of this program.
     K_b, K_e : flexspline (load case "uniform") and shaft.
     K_series_Nm_per_rad : of the K_b that enters the sum and K_e.
+    missing_pictures : why, by the names in `pictures`, of those that could not be drawn.
     K_b_lobes, K_b_lobes_contact, K_b_lobes_unsupported : the other load cases, None where not
         solved.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
+    half_seat_peak : the ellipse's on a seat half as wide as the ring.
+    linear_limit : beyond which torque the figures are not valid.
     ring : the plain ring that stands for drawn teeth, None where none are drawn.
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
     versions : name and version of the libraries that computed and drew.
     extended_model : name of the extended model's file whose terms the budget shows; "" for none.
-    issued : date as it shall be printed; "" prints none, and the same content gives the same file.
+    attached : the files that the report carries, the design file first.
     """
 
     design: Design
@@ -53,18 +58,21 @@ class ReportContent:
     K_series_Nm_per_rad: float
     backlash: Backlash
     pictures: Pictures = Pictures()
+    missing_pictures: Mapping[str, str] = field(default_factory=dict)
     K_b_lobes: Stiffness | None = None
     K_b_lobes_contact: Stiffness | None = None
     K_b_lobes_unsupported: Stiffness | None = None
     flexspline_peak: StressPeak | None = None
     shaft_peak: StressPeak | None = None
     wave_generator_peak: StressPeak | None = None
+    half_seat_peak: StressPeak | None = None
+    linear_limit: LinearLimit | None = None
     ring: EquivalentRing | None = None
     warnings: tuple[str, ...] = ()
     stage_seconds: Mapping[str, float] | None = None
     versions: Mapping[str, str] | None = None
     extended_model: str = ""
-    issued: str = ""
+    attached: tuple[Attachment, ...] = ()
 
     @property
     def K_b_in_sum(self) -> Stiffness:

@@ -21,7 +21,7 @@ from results.diagnosis.words import (
 )
 from results.figures.diagnosis.draw import Drawn
 from results.quantities import grouped
-from results.records import program_version
+from results.report.attached import Attachment
 from results.report.compared import Stiffnesses, compared, measured
 from results.report.document import (
     Block,
@@ -37,6 +37,7 @@ from results.report.document import (
     Pictures,
     Table,
 )
+from results.report.issued import issued
 from results.report.spans import Text, bold, code, note, plain, worded
 
 OPEN = ("ambiguous", "unknown", "insufficient")
@@ -44,7 +45,10 @@ OPEN = ("ambiguous", "unknown", "insufficient")
 
 
 def diagnosis_document(
-    diagnosis: Diagnosis, figures: Sequence[Drawn], used: Stiffnesses
+    diagnosis: Diagnosis,
+    figures: Sequence[Drawn],
+    used: Stiffnesses,
+    attached: tuple[Attachment, ...] = (),
 ) -> Document:
     """The report; its figures go by the stems of their files."""
     blocks = (
@@ -61,7 +65,8 @@ def diagnosis_document(
         title="The simulation against a measurement",
         running="Measured against simulated",
         name=diagnosis.design.name,
-        issued=f"flexspline {program_version()}",
+        issued=issued(),
+        attached=attached,
         blocks=blocks,
     )
 
@@ -82,15 +87,14 @@ def _causes(outcome: Outcome) -> Iterable[Block]:
     yield Heading(f"What {'may be' if may else 'is'} missing from the simulation")
     yield Table(
         columns=(
-            Column("Cause", grow=1.35), Column("How large"), Column("How sure"),
-            Column("What else could explain it", grow=1.2),
+            Column("Cause", grow=1.35), Column("Magnitude"), Column("Confidence"),
+            Column("Alternatives", grow=1.2),
         ),
         rows=tuple(_cause(c) for c in outcome.causes),
     )  # fmt: skip
     yield Paragraph(
-        "After ± stands one standard deviation: the true figure lies within twice that in 95 of 100 "
-        "cases. The odds say how much better the record is explained with the cause than by anything "
-        "else without it.",
+        "± is one standard deviation; twice that covers 95 of 100 cases. The odds compare the best "
+        "explanation with the cause to the best one without it.",
         small=True,
     )
 
@@ -103,7 +107,7 @@ def _cause(cause: NamedCause) -> tuple[Text, ...]:
         bold(capital(cause.title)) + (note(f"unit {units}") if units else ()),
         magnitude_words(cause),
         plain(sure_words(cause)) + (note(odds) if odds else ()),
-        capital(others) or "Nothing that the program knows",
+        capital(others) or "No other known cause",
     )
 
 
@@ -113,8 +117,8 @@ def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
     yield Heading("What no known cause explains")
     yield Table(
         columns=(
-            Column("Lies in"), Column("What it looks like", grow=1), Column("Size, arcsec rms"),
-            Column("By chance"),
+            Column("Channel"), Column("Form", grow=1), Column("Size, arcsec rms"),
+            Column("Probability by chance"),
         ),
         rows=tuple(
             (
@@ -132,8 +136,8 @@ def _worth(outcome: Outcome) -> Iterable[Block]:
     gain, found = outcome.gain, bool(outcome.causes)
     if gain is None:
         return
-    yield Heading("What it is worth to know")
-    yield Paragraph(f"Error of the prediction on {gain.held_out}, which had no part in the fit:")
+    yield Heading("Prediction error on data not used in the fit")
+    yield Paragraph(f"Held out: {gain.held_out}.")
     yield Table(
         columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
         rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
@@ -142,18 +146,18 @@ def _worth(outcome: Outcome) -> Iterable[Block]:
     share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
     if found and share > 0:
         yield Paragraph(
-            f"Of the squared error above the noise, {_percent(share)}\N{NO-BREAK SPACE}% is gone. No "
-            "model can do better than the noise."
+            f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
+            "the noise, the least that any model can reach."
         )
 
 
 def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
-    yield f"The simulation as it stands{zeroed}", gain.rmse_before
+    yield f"The simulation as designed{zeroed}", gain.rmse_before
     yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
     if found:
         yield "With the causes found", gain.rmse_after
-    yield "Noise of the reading itself, the floor", gain.noise_floor
+    yield "Measurement noise, the lower limit", gain.noise_floor
 
 
 def _after(outcome: Outcome) -> Iterable[Block]:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from typing import Any, Literal
 
+from results.report.attached import Attachment
 from results.report.spans import Span, Text, words
 
 Node = Sequence[Any]
@@ -97,7 +98,9 @@ class Formula:
 
 @dataclass(frozen=True)
 class Picture:
-    """A numbered figure; `width_pct` of the page's text in print; `view` turns it in the browser."""
+    """A numbered figure; `width_pct` of the page's text in print; `view` turns it in the browser.
+    A dark page inverts it; one with a view, whose colours mean stress, it dims.
+    """
 
     name: str
     caption: Text
@@ -121,11 +124,40 @@ class Bullets:
 
 
 @dataclass(frozen=True)
+class File:
+    """A file that the report carries, by its name, with a word on what it is."""
+
+    name: str
+    about: str
+    size: str
+    digest: str
+
+
+@dataclass(frozen=True)
+class Files:
+    """What is attached, and how the files are known."""
+
+    files: tuple[File, ...]
+
+
+@dataclass(frozen=True)
 class Break:
-    """A new page in print."""
+    """A new page in print, where more than half of the present one is taken."""
 
 
-Block = Heading | Paragraph | Callout | Tiles | Facts | Table | Formula | Pictures | Bullets | Break
+Block = (
+    Heading
+    | Paragraph
+    | Callout
+    | Tiles
+    | Facts
+    | Table
+    | Formula
+    | Pictures
+    | Bullets
+    | Files
+    | Break
+)
 
 
 @dataclass(frozen=True)
@@ -138,6 +170,7 @@ class Document:
     name : of the design, the user's own letters; `heading` where more than it stands below the title.
     issued : version of the program, and a date where one is wanted.
     numbered : whether sections carry numbers.
+    attached : files that the report carries; they are listed at its end.
     """
 
     title: str
@@ -147,6 +180,7 @@ class Document:
     blocks: tuple[Block, ...]
     heading: str = ""
     numbered: bool = False
+    attached: tuple[Attachment, ...] = ()
 
     def payload(self) -> dict[str, Any]:
         """JSON values, numbers and references filled in; what both templates set.
@@ -155,7 +189,7 @@ class Document:
         ------
         KeyError : a reference names no section or table.
         """
-        blocks = [_encoded(b) for b in self.blocks]
+        blocks = [_encoded(b) for b in (*self.blocks, *_listed(self.attached))]
         _give_numbers(blocks, self.numbered)
         names = {b["target"]: b["number_words"] for b in blocks if b.get("target")}
         _fill_references(blocks, names)
@@ -167,6 +201,12 @@ class Document:
             "issued": self.issued,
             "blocks": blocks,
         }
+
+
+def _listed(attached: Sequence[Attachment]) -> Iterable[Block]:
+    if attached:
+        yield Heading("Files in this report")
+        yield Files(tuple(File(a.safe_name, a.about, a.size, a.sha256) for a in attached))
 
 
 def _encoded(block: Any) -> dict[str, Any]:

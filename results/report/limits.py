@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from pipeline.linear_limit import LinearLimit
+from pipeline.stress_limits import share_of_limit
+from results.doubt import spread_sentence
+from results.peaks import BORDER, MEANING
 from results.quantities import quantity
 from results.report.content import ReportContent
 
 
 def assumptions(content: ReportContent) -> list[list[str]]:
     """Pairs of heading and text."""
-    design, b = content.design, content.backlash
-    arcsec = quantity("backlash_arcsec.total")
+    b = content.backlash
     uniform = content.K_b_in_sum is content.K_b
     found = [
         [
@@ -27,18 +30,17 @@ def assumptions(content: ReportContent) -> list[list[str]]:
                 else "“lobes”, the torque at the two ends of the major axis."
             ),
         ],
-        [
-            "Wave generator",
-            f"A given ellipse, w₀ cos 2φ with w₀ = {design.gear.centre_distance_mm:.3g} mm, that "
-            "the seat follows without friction and without lifting off. In load case “lobes” the "
-            "seat is held radially both ways, so it cannot lift off either.",
-        ],
+        ["Wave generator", _ellipse(content)],
         ["Bearing play", _play(content)],
         [
             "Standard deviation",
-            f"The {arcsec.text(b.std_arcsec)} {arcsec.unit} contain only what the design file "
-            "states under “uncertainty”, taken as independent and normal. The error of the model "
-            "itself is not in it.",
+            f"{spread_sentence(b).capitalize()}. "
+            + (
+                "Only what the design file states under “uncertainty” enters, as independent and "
+                "normal; the error of the model itself does not."
+                if b.std_arcsec is not None
+                else "State it under “uncertainty”; nothing here says how far the figures may be off."
+            ),
         ],
         [
             "Left out of the sum",
@@ -47,15 +49,23 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "contains all of them and is as a rule larger and softer near zero torque.",
         ],
     ]
-    peaks = [content.wave_generator_peak, content.flexspline_peak, content.shaft_peak]
-    stated = {p.excluded for p in peaks if p is not None}
+    if content.linear_limit is not None:
+        found.append(["Largest torque", _linear(content, content.linear_limit)])
+    peaks = (content.wave_generator_peak or content.flexspline_peak, content.shaft_peak)
+    stated = [
+        f"{part}: {p.excluded}"
+        for part, p in zip(("flexspline", "shaft"), peaks, strict=True)
+        if p is not None
+    ]
     if stated:
         found.append(
             [
                 "Peak stress",
                 "Left out of the peaks: "
-                + "; ".join(sorted(stated))
-                + ". No number there converges. Fillets count in full.",
+                + "; ".join(stated)
+                + ". Values there do not converge with mesh refinement; fillets are included. The stress of "
+                "the wave generator and that of the torque act together in service; they are given one "
+                "by one and not added. " + f"“{BORDER}” says that {MEANING}.",
             ]
         )
     return found
@@ -63,16 +73,60 @@ def assumptions(content: ReportContent) -> list[list[str]]:
 
 def fatigue(content: ReportContent) -> str:
     """The wave generator's stress against the stated fatigue limit; "" without a limit."""
-    limit = content.design.material.flexspline.fatigue_limit_MPa
-    peak = content.wave_generator_peak
+    material, peak = content.design.material.flexspline, content.wave_generator_peak
+    limit = material.fatigue_limit_MPa
     if limit is None or peak is None:
         return ""
-    stress = quantity("wave_generator_peak_mises_MPa")
-    beyond = " It is above that limit." if peak.mises_MPa > limit else ""
+    stress = quantity("wave_generator_peak_mises_MPa").with_unit(peak.mises_MPa)
+    said = f"The wave generator's ellipse alternates twice per turn: its peak of {stress}"
+    share = share_of_limit(peak, material)
+    if share is not None:
+        beyond = " It is above that limit." if share > 1 else ""
+        return (
+            f"{said} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} Surface, "
+            "size and mean stress are not considered."
+        )
+    if peak.mises_MPa > limit:
+        return (
+            f"{said} is above the stated fatigue limit of {limit:g} MPa, and towards the edge nearby the "
+            "stress rises further."
+        )
     return (
-        f"The wave generator's ellipse alternates twice per turn: its peak of "
-        f"{stress.with_unit(peak.mises_MPa)} is {100 * peak.mises_MPa / limit:.0f} % of the stated "
-        f"fatigue limit of {limit:g} MPa.{beyond} Surface, size and mean stress are not considered."
+        f"{said} lies at the border of what is left out, {peak.exclusion_mm:.3g} mm from an edge, towards "
+        "which the stress rises further: whether it keeps to the stated fatigue limit of "
+        f"{limit:g} MPa it cannot say."
+    )
+
+
+def _ellipse(content: ReportContent) -> str:
+    """What the ellipse assumes of the seat, and how the stress moves with its width."""
+    design, half = content.design, content.half_seat_peak
+    width = design.flexspline.ring_width_mm
+    said = (
+        f"A given ellipse, w₀ cos 2φ with w₀ = {design.gear.centre_distance_mm:.3g} mm, that "
+        "the seat follows without friction and without lifting off. In load case “lobes” the "
+        "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
+        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. Its stress hangs on that."
+    )
+    if half is None or content.wave_generator_peak is None:
+        return said
+    stress = quantity("wave_generator_peak_half_seat_mises_MPa")
+    change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
+    return (
+        f"{said} On a seat half as wide, {width / 2:g} mm in the ring's middle, the peak would be "
+        f"{stress.with_unit(half.mises_MPa)} ({change:+.0f} %; bolt holes left out)."
+    )
+
+
+def _linear(content: ReportContent, limit: LinearLimit) -> str:
+    """Up to which torque the figures mean anything."""
+    torque = content.design.load.torque_Nm
+    least = quantity("linear_torque_limit_Nm").with_unit(limit.torque_Nm)
+    return (
+        f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
+        f"{limit.reason}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and the "
+        "bolts may end it earlier, and so may the wave generator's stress, which is there at no torque; "
+        "they are not in this figure."
     )
 
 
@@ -96,8 +150,8 @@ def _teeth(content: ReportContent) -> str:
     return (
         f"Drawn with {f.tooth_flank} flanks on a rim of {f.ring_thickness_mm:g} mm. Every K_b uses a "
         f"plain ring of {bending}, {difference} more than the rim: it is as stiff in "
-        f"bending. As stiff against growing all round would be {membrane}, against torsion about "
-        f"the axis {torsion}. The mesh leaves less than {100 * ring.change:.1g} %; root fillets "
+        f"bending. Equivalent thickness in hoop stiffness: {membrane}; in torsion about the axis: "
+        f"{torsion}. The mesh leaves less than {100 * ring.change:.1g} %; root fillets "
         "and the axial stiffness of the teeth are not in it. Stress at the tooth roots is not that "
         "of the plain ring."
     )

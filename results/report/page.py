@@ -17,6 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geometry.errors import readable
 from results.report.document import Document
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ TEMPLATE, STYLE, SCRIPT = "page.html", "page.css", "page.js"
 WORDS = {
     "turns": "3-D view. Arrow keys turn it, plus and minus zoom, Home resets it.",
     "reset": "Reset view",
+    "show": "Show its text",
     "help": "Drag to turn, Shift and drag to move, click and scroll to zoom; or use the arrow keys, "
     "+ and −.",
 }
@@ -85,6 +87,7 @@ def page_of(
         .render(
             d=document.payload(),
             pictures=pictures,
+            attached=document.attached,
             views=found,
             shown=shown,
             viewer=Markup(viewer),
@@ -94,7 +97,7 @@ def page_of(
             ui=WORDS,
         )
     )
-    return text.encode()
+    return readable(text).encode()
 
 
 def _policy(scripts: Sequence[str], style: str) -> str:

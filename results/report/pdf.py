@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 
-from geometry.errors import ComputationError
+from geometry.errors import ComputationError, readable
 from results.report.document import Document
+from results.report.letters import font_folder, notice, printable
 
 TEMPLATE = "document.typ"
 
@@ -23,7 +24,7 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
     """The PDF's bytes; `pictures` are PNG files by the names that the document's figures have.
 
     Words reach typst as strings in a JSON value, never as source: markup or calls in them print as
-    their letters.
+    their letters. Letters that no font has are replaced, and the first block says so.
 
     Raises
     ------
@@ -36,11 +37,20 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
         (root / TEMPLATE).write_bytes(files("results.report").joinpath(TEMPLATE).read_bytes())
         for name, source in pictures.items():
             shutil.copyfile(source, root / f"{name}.png")
+        for i, attachment in enumerate(document.attached):
+            (root / f"attached-{i}").write_bytes(attachment.data)
+        attached = [{"name": a.safe_name, "about": a.about} for a in document.attached]
+        payload, lacking = printable(document.payload())
+        if lacking:
+            payload["blocks"].insert(0, notice(lacking))
+        title = f"{document.running}: {document.name}"  # nothing draws it: its letters stay
+        report = json.dumps(payload | {"attached": attached, "about": title}, ensure_ascii=False)
         try:
             return typst.compile(
                 str(root / TEMPLATE),
                 root=str(root),
-                sys_inputs={"report": json.dumps(document.payload())},
+                sys_inputs={"report": readable(report)},
+                font_paths=[str(font_folder())],
                 timestamp=0,  # else the same content would give another file each time
             )
         except typst.TypstError as error:

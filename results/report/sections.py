@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
-from results.quantities import quantity
+from results.quantities import bounds_kind, quantity
 from results.report import limits, tables
 from results.report.budget import budget
 from results.report.content import ReportContent
+from results.report.dimensions import dimensions
 from results.report.document import (
     Block,
     Break,
@@ -23,12 +24,14 @@ from results.report.document import (
     Tile,
     Tiles,
 )
+from results.report.issued import issued
 from results.report.shown import shown
-from results.report.spans import Words, bold, note, plain, ref, symbol, worded
+from results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
 
 ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
-they follow each other and the report stays within six pages."""
+they follow each other and the report stays within seven pages."""
+GUARANTEED = bounds_kind(True)
 NBSP = "\N{NO-BREAK SPACE}"
 
 
@@ -47,14 +50,14 @@ def run_document(content: ReportContent) -> Document:
         if blocks and made and roomy:
             blocks.append(Break())
         blocks += made
-    issued = f"flexspline {content.version}"
     return Document(
         title="Stiffness and backlash of a strain wave gear",
         running="Stiffness and backlash report",
         name=content.design.name,
-        issued=f"{issued} · {content.issued}" if content.issued else issued,
+        issued=issued(content.version),
         blocks=tuple(blocks),
         numbered=True,
+        attached=content.attached,
     )
 
 
@@ -73,9 +76,8 @@ def _summary(content: ReportContent) -> Iterable[Block]:
     ]
     for row in rest:
         if row["symbol"] == wave:
-            tiles.append(
-                Tile("Peak stress, wave generator", row["value"], row["unit"], "von Mises")
-            )
+            beside = row["alarm"] or "von Mises"
+            tiles.append(Tile("Peak stress, wave generator", row["value"], row["unit"], beside))
     yield Tiles(tuple(tiles))
 
 
@@ -100,7 +102,9 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     yield Heading("The answer")
     rows = [
         (
-            (bold(a["name"]) if i == 0 else worded(a["name"])) + note(worded(a["note"])),
+            (bold(a["name"]) if i == 0 else worded(a["name"]))
+            + note(worded(a["note"]))
+            + (note(alarm(a["alarm"])) if a.get("alarm") else ()),
             symbol(a["symbol"]),
             bold(a["value"]),
             a["unit"],
@@ -116,7 +120,7 @@ def _answer(content: ReportContent) -> Iterable[Block]:
         rows=tuple(rows),
         caption=plain("Answers. Bounds of a stiffness are bounds of the discretisation error; ")
         + ref("solver")
-        + plain(" says how they were found and how far they are guaranteed."),
+        + plain(" says how they were found."),
         target="answers",
     )  # fmt: skip
     if fatigue := limits.fatigue(content):
@@ -156,8 +160,8 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
             plain("Stresses are averaged at the nodes. Colours end at the peak that ")
             + ref("answers")
             + plain(
-                " reports: the stress at sharp edges rises with every finer mesh, and no value there "
-                "means anything. Those places are left out of the peak and named in "
+                " reports. Linear-elastic stress is singular at sharp edges, so no value is reported there; "
+                "the places left out are named in "
             )
             + ref("limits")
             + plain(".")
@@ -173,7 +177,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         Picture("shaft_mesh", "Mesh of the output shaft and its named surfaces."),
     )
     solves = tables.solves(content)
-    heads = ("Meshes", "Elements", "Unknowns", "Bounds", "Residual", "Energy – reaction")
+    heads = ("Meshes", "Elements", "Unknowns", "Bounds", "Residual", "Energy – work")
     keys = ("meshes", "elements", "dofs", "half_width", "residual", "energy")
     yield Table(
         columns=(
@@ -184,11 +188,16 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
             (symbol(s["symbol"]), s["model"], s["symmetry"], *(s[k] for k in keys)) for s in solves
         ),
         caption="How each stiffness was solved. Elements and unknowns are those of the finest mesh; "
-        "“energy – reaction” is the relative difference of the stiffness from strain energy and from "
-        "reaction torque.",
+        "“energy – work” is the relative difference of the stiffness from strain energy and from the "
+        f"work of torque or loads; {tables.UNCHECKED} where a check was not made.",
     )  # fmt: skip
-    for method in dict.fromkeys(s["method"] for s in solves):
-        yield Paragraph(_bounds_of(content, method, [s for s in solves if s["method"] == method]))
+    for way in dict.fromkeys((s["method"], s["kind"]) for s in solves):
+        alike = [s for s in solves if (s["method"], s["kind"]) == way]
+        yield Paragraph(_bounds_of(content, way[0], alike))
+    if not any(len(s.levels) > 1 for s in (content.K_b, content.K_e)):
+        yield Paragraph(
+            worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
+        )
     convergence = "Stiffness against the number of unknowns, as difference from the value reported."
     yield from shown(content, roomy, Picture("convergence", convergence, 88))
     stages = content.stage_seconds or {}
@@ -207,13 +216,12 @@ def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> 
     said = (
         bold("Bounds of ") + _listed(s["symbol"] for s in these) + bold(": ") + plain(f"{method}. ")
     )
-    if these[0]["model"] == "axisymmetric":
-        return said + plain("These bounds hold without exception.")
+    if these[0]["kind"] == GUARANTEED:
+        said += plain("These bounds hold without exception. ")
+    else:
+        said += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
-    said += plain(
-        "This is an estimate, not a guarantee. The wanted tolerance of "
-        f"±{content.design.solver.tolerance_pct:g}{NBSP}% was "
-    )
+    said += plain(f"The wanted tolerance of ±{content.design.solver.tolerance_pct:g}{NBSP}% was ")
     return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 
 
@@ -228,8 +236,9 @@ def _limits(content: ReportContent) -> Iterable[Block]:
     for heading, text in limits.assumptions(content):
         yield Paragraph(bold(f"{heading}. ") + worded(text))
     if content.warnings:
-        yield Heading("Warnings about the design", "warnings")
+        yield Heading("Warnings", "warnings")
         yield Callout("amber", items=content.warnings)
+    yield from dimensions(content.design)
     if content.versions:
         yield Heading("Versions")
         pairs = {"flexspline": content.version, **content.versions}

@@ -1,4 +1,4 @@
-"""Which of a report's pictures there are."""
+"""Which of a report's pictures there are, and why one is not."""
 
 from __future__ import annotations
 
@@ -6,12 +6,20 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from results.report.content import ReportContent
-from results.report.document import Block, Picture, Pictures
+from results.report.document import Block, Callout, Picture, Pictures
+from results.report.spans import bold, plain
 
 
 def shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Block]:
-    """Those of the pictures that there are, side by side; a little smaller where room is short."""
+    """Those of the pictures that there are, side by side; a little smaller where room is short.
+
+    In place of those that could not be drawn stands what they would show, and the reason.
+    """
     there = [p for p in wanted if getattr(content.pictures, p.name) is not None]
     if there:
         share = 1.0 if roomy or len(wanted) > 1 else 0.85
         yield Pictures(tuple(replace(p, width_pct=share * p.width_pct) for p in there))
+    missing = content.missing_pictures
+    for reason in dict.fromkeys(missing[p.name] for p in wanted if p.name in missing):
+        these = tuple(p.caption for p in wanted if missing.get(p.name) == reason)
+        yield Callout("amber", text=bold("Not drawn: ") + plain(f"{reason}."), items=these)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from fea.types import Stiffness
-from geometry.design import Cup, Design, Material
-from results.quantities import Quantity, grouped, quantity
+from geometry.design import Cup, Design, Hat, Material
+from pipeline.stress_limits import PART_OF, limits_passed
+from results.doubt import plus_minus, spread_text
+from results.peaks import border_note, limit_note
+from results.quantities import Quantity, bounds_kind, grouped, quantity, with_power
 from results.report.content import ReportContent
+from results.report.dimensions import ratio, weights
 
 Row = dict[str, str]
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+UNCHECKED = "–"
+"""Stands where a check was not made."""
 
 
 def answers(content: ReportContent) -> list[Row]:
@@ -18,8 +23,13 @@ def answers(content: ReportContent) -> list[Row]:
     series = quantity("K_series_Nm_per_rad")
     low, high = content.K_series_bounds_Nm_per_rad
     case = "lobes" if lobes_in_sum else "uniform"
+    both = content.K_b_in_sum.guaranteed and content.K_e.guaranteed
     rows.append(
-        _row(series, content.K_series_Nm_per_rad, series.range_text(low, high))
+        _row(
+            series,
+            content.K_series_Nm_per_rad,
+            f"{series.range_text(low, high)}, {bounds_kind(both)}",
+        )
         | {"note": f"with K_b of load case “{case}”"}
     )
     notes = {
@@ -31,8 +41,9 @@ def answers(content: ReportContent) -> list[Row]:
     }
     for key, stiffness in stiffnesses(content).items():
         entry = quantity(key)
-        bounds = entry.range_text(stiffness.lower_Nm_per_rad, stiffness.upper_Nm_per_rad)
-        rows.append(_row(entry, stiffness.K_Nm_per_rad, bounds) | {"note": notes[key]})
+        bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
+        kind = bounds_kind(stiffness.guaranteed)
+        rows.append(_row(entry, stiffness.K_Nm_per_rad, f"{bounds}, {kind}") | {"note": notes[key]})
     return rows + _stress_rows(content)
 
 
@@ -65,7 +76,7 @@ def solves(content: ReportContent) -> list[Row]:
     rows = []
     for key, s in stiffnesses(content).items():
         last = s.levels[-1]
-        half = 50 * (s.upper_Nm_per_rad - s.lower_Nm_per_rad) / s.K_Nm_per_rad
+        half, check = 100 * s.half_width, last.K_check_Nm_per_rad
         rows.append(
             {
                 "symbol": quantity(key).symbol,
@@ -76,8 +87,11 @@ def solves(content: ReportContent) -> list[Row]:
                 "dofs": quantity("solver.dofs").text(last.dofs),
                 "half_width": f"±{half:.2g} %",
                 "wide": "yes" if half > content.design.solver.tolerance_pct else "",
-                "residual": _power(last.residual),
-                "energy": _power(abs(last.K_reaction_Nm_per_rad / last.K_Nm_per_rad - 1)),
+                "kind": bounds_kind(s.guaranteed),
+                "residual": UNCHECKED if last.residual is None else with_power(last.residual),
+                "energy": UNCHECKED
+                if check is None
+                else with_power(abs(check / last.K_Nm_per_rad - 1)),
                 "method": s.method[:1].upper() + s.method[1:].rstrip("."),
             }
         )
@@ -87,13 +101,16 @@ def solves(content: ReportContent) -> list[Row]:
 def design_facts(design: Design) -> list[list[str]]:
     """Pairs of name and value that say what was asked about."""
     f, gear = design.flexspline, design.gear
-    segments = design.shaft.segment
+    segments, doubt = design.shaft.segment, design.uncertainty
+    flanks = plus_minus(gear.flank_clearance_um, doubt.flank_clearance_um, "µm")
+    play = plus_minus(design.bearing.radial_clearance_um, doubt.radial_clearance_um, "µm")
+    spread = " (1σ)" if "±" in flanks + play else "; 1σ not stated"
     size = (
-        f"inner diameter {f.inner_diameter_mm:g}, wall {f.wall_thickness_mm:g}, "
+        f"{f.kind}; inner diameter {f.inner_diameter_mm:g}, wall {f.wall_thickness_mm:g}, "
         f"length {f.length_mm:g}, diaphragm {f.diaphragm_thickness_mm:g} mm"
     )
     return [
-        ["Flexspline", f"{'cup' if isinstance(f, Cup) else 'hat'}; {size}; {_holes(f.bolt_count)}"],
+        ["Flexspline", f"{size}; {_end(f)}; {_holes(f.bolt_count)}"],
         [
             "Toothed ring",
             f"{f.ring_thickness_mm:g} mm thick under the roots, {f.ring_width_mm:g} mm wide",
@@ -106,16 +123,15 @@ def design_facts(design: Design) -> list[list[str]]:
             f"{'; keyway' if design.shaft.keyway else ''}",
         ],
         *_materials(design),
+        ["Mass", weights(design)],
         [
             "Gear",
             f"module {gear.module_mm:g} mm, {gear.teeth_flexspline}/{gear.teeth_circular_spline} "
-            f"teeth, pressure angle {gear.pressure_angle_deg:g}°",
+            f"teeth, ratio {ratio(design)}, pressure angle {gear.pressure_angle_deg:g}°",
         ],
         [
             "Clearances",
-            f"flanks {gear.flank_clearance_um:g} ± {design.uncertainty.flank_clearance_um:g} µm "
-            f"normal, wave-generator bearing {design.bearing.radial_clearance_um:g} ± "
-            f"{design.uncertainty.radial_clearance_um:g} µm radial (1σ)",
+            f"flanks {flanks} normal, wave-generator bearing {play} radial{spread}",
         ],
         ["Load torque", f"±{design.load.torque_Nm:g} N·m at the output, wave generator locked"],
     ]
@@ -123,8 +139,7 @@ def design_facts(design: Design) -> list[list[str]]:
 
 def _backlash_row(content: ReportContent) -> Row:
     entry = quantity("backlash_arcsec.total")
-    std = quantity("backlash_arcsec.std").text(content.backlash.std_arcsec)
-    return _row(entry, content.backlash.total_arcsec, f"± {std} (1σ)") | {
+    return _row(entry, content.backlash.total_arcsec, spread_text(content.backlash)) | {
         "note": f"between −T_L and +T_L, T_L = {content.design.load.torque_Nm:g} N·m"
     }
 
@@ -132,15 +147,26 @@ def _backlash_row(content: ReportContent) -> Row:
 def _stress_rows(content: ReportContent) -> list[Row]:
     rows = []
     wave, torque = quantity("wave_generator_peak_mises_MPa"), quantity("torque_peak_mises_MPa")
-    for entry, part, peak in (
-        (wave, "flexspline", content.wave_generator_peak),
-        (torque, "flexspline", content.flexspline_peak),
-        (torque, "shaft", content.shaft_peak),
+    for entry, name, peak in (
+        (wave, "wave_generator_peak", content.wave_generator_peak),
+        (torque, "torque_peak", content.flexspline_peak),
+        (quantity("shaft_torque_peak_mises_MPa"), "shaft_torque_peak", content.shaft_peak),
     ):
         if peak is not None:
-            x, y, z = peak.at_mm
-            place = f"{part}, r = {(x * x + y * y) ** 0.5:.2f} mm, z = {z:.2f} mm"
-            rows.append(_row(entry, peak.mises_MPa, "") | {"note": place})
+            passed = [p.words for p in limits_passed(content.design, {name: peak})]
+            part, (x, y, z) = PART_OF[name], peak.at_mm
+            said = [f"{part}, r = {(x * x + y * y) ** 0.5:.2f} mm, z = {z:.2f} mm"]
+            if peak.at_excluded_border:
+                said.append(border_note(peak.exclusion_mm, peak.mises_at_twice_MPa))
+            if not (passed and peak.at_excluded_border):
+                said.append(limit_note(peak, content.design.material_of(part)))
+            if entry is wave and content.half_seat_peak is not None:
+                half = entry.with_unit(content.half_seat_peak.mises_MPa)
+                said.append(f"seat as wide as the ring; {half} on one half as wide")
+            rows.append(
+                _row(entry, peak.mises_MPa, "")
+                | {"note": "; ".join(said), "alarm": "; ".join(passed)}
+            )
     return rows
 
 
@@ -154,12 +180,14 @@ def _row(entry: Quantity, value: float, bounds: str) -> Row:
     }
 
 
-def _power(value: float) -> str:
-    """Order of magnitude of a rounding-size number, ``3·10⁻⁶``."""
-    if not value:
-        return "0"
-    digit, exponent = f"{value:.0e}".split("e")
-    return f"{digit}·10" + str(int(exponent)).translate(_RAISED)
+def _end(f: Cup | Hat) -> str:
+    """What bolts to the shaft."""
+    if isinstance(f, Cup):
+        return f"boss ⌀ {f.boss_diameter_mm:g} × {f.boss_thickness_mm:g}, bore ⌀ {f.bore_diameter_mm:g} mm"
+    return (
+        f"flange ⌀ {f.flange_inner_diameter_mm:g} to {f.flange_outer_diameter_mm:g} × "
+        f"{f.flange_thickness_mm:g} mm"
+    )
 
 
 def _holes(count: int) -> str:
@@ -178,4 +206,8 @@ def _materials(design: Design) -> list[list[str]]:
 
 def _material(m: Material) -> str:
     limit = f", fatigue limit {m.fatigue_limit_MPa:g} MPa" if m.fatigue_limit_MPa else ""
-    return f"{m.name}: E = {m.youngs_modulus_GPa:g} GPa, ν = {m.poissons_ratio:g}{limit}"
+    density = f"{m.density_kg_per_m3:g} kg/m³"
+    if not m.density_stated:
+        density += " (steel's, not stated)"
+    elastic = f"E = {m.youngs_modulus_GPa:g} GPa, ν = {m.poissons_ratio:g}"
+    return f"{m.name}: {elastic}{limit}, density {density}"

@@ -9,16 +9,21 @@ import numpy as np
 
 from geometry.design import Design
 from pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
+from pipeline.linear_limit import linear_limit
 from pipeline.live import left_out
-from results.figures.budget import SOURCES, TERMS
+from pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
+from results.doubt import NOT_STATED, SOURCES, spread_text
 from results.figures.torque_angle import REACH, band
-from results.quantities import quantity
-from results.records import backlash_record
+from results.peaks import BORDER, marked
+from results.quantities import bounds_kind, quantity
+from results.records import backlash_record, peak_of
 from results.style import PALETTE
 
 STIFFNESSES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e", "K_series")
 PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
 LINE_POINTS = 25
+ESTIMATED = "≈\u2009"
+"""Before bounds that are no theorems."""
 Found = Mapping[str, Any]
 Message = dict[str, Any]
 
@@ -38,7 +43,12 @@ def message(design: Design, found: Found) -> Message:
         figures["K_series_Nm_per_rad"] = 1 / (1 / K_b + 1 / K_e)
         total = backlash(design, K_b, K_e)
         figures |= backlash_record(total)
-        shown = {"budget": _budget(total), "line": _line(design, total, K_b, K_e)}
+        limit = linear_limit(design, figures["K_series_Nm_per_rad"])
+        shown = {
+            "budget": _budget(total),
+            "line": _line(design, total, K_b, K_e),
+            "beyond": list(limit.passed(design)),
+        }
     return {
         "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
@@ -81,7 +91,12 @@ def _stiffness(name: str, figures: Found) -> Message:
     if bounds in figures:
         low, high = figures[bounds]
         half = 50 * (high - low) / figures[key]
-        row |= {"bounds": quantity(bounds).range_text(low, high), "half_pct": f"± {half:.2g} %"}
+        kind = figures[f"{name}_bounds_kind"]
+        row |= {
+            "bounds": f"{ESTIMATED if kind == bounds_kind(False) else ''}"
+            f"{quantity(bounds).range_text(low, high)}",
+            "half_pct": f"± {half:.2g} %, {kind}",
+        }
     return row
 
 
@@ -92,10 +107,18 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
     r, z = float(np.hypot(*figures[f"{name}_at_mm"][:2])), figures[f"{name}_at_mm"][2]
     row = figure(key, figures[key]) | {"at": f"at r = {r:.2f}, z = {z:.2f} mm"}
     row["rough"] = bool(figures.get(f"{name}_rough"))
-    own = design.shaft_material if name == "shaft_torque_peak" else design.material.flexspline
-    if own.fatigue_limit_MPa is not None:
-        share = figures[key] / own.fatigue_limit_MPa
-        row |= {"limit": f"{100 * share:.3g} % of {own.fatigue_limit_MPa:g}", "over": share > 1}
+    peak = peak_of(name, figures)
+    if mark := marked(figures, key):
+        row |= {"more": mark, "limit": BORDER}
+    share = share_of_limit(peak, design.material_of(PART_OF[name]))
+    if share is not None:
+        limit = design.material_of(PART_OF[name]).fatigue_limit_MPa
+        row["limit"] = f"{100 * share:.3g} % of {limit:g}"
+    row["over"] = any(limits_passed(design, {name: peak}))
+    half = f"{name}_half_seat_mises_MPa"
+    if half in figures:
+        narrow = f"on a seat half as wide {quantity(half).with_unit(figures[half])}"
+        row["more"] = "; ".join(filter(None, [row.get("more"), narrow]))
     return row
 
 
@@ -106,14 +129,15 @@ def _waiting(key: str) -> Message:
 
 def _budget(total: Backlash) -> Message:
     values = backlash_record(total)["backlash_arcsec"]
-    rows = [figure(f"backlash_arcsec.{term}", values[term]) for term in (*TERMS, "total", "std")]
+    rows = [figure(f"backlash_arcsec.{term}", value) for term, value in values.items()]
     for row, colour in zip(rows, PALETTE, strict=False):
         row["colour"] = colour
+    stds = total.std_by_source_arcsec
     sources = [
-        [name, quantity("backlash_arcsec.std").text(total.std_by_source_arcsec[key])]
+        [name, quantity("backlash_arcsec.std").text(stds[key]) if key in stds else NOT_STATED]
         for key, name in SOURCES.items()
     ]
-    return {"rows": rows, "sources": sources}
+    return {"rows": rows, "sources": sources, "spread": spread_text(total)}
 
 
 def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
-from typing import Any, get_args
+from typing import Any
 
 from aiohttp import web
 
 from geometry.errors import DesignError
-from pipeline.live import View
 from results.studio.fields import received
-from results.studio.jobs import KINDS, Done, Job, Kind
+from results.studio.jobs import Done, Job, Kind
+from results.studio.notes import Start, Want, note_from
 from results.studio.results import told
 from results.studio.tab import Tab, Workers
 
@@ -42,16 +42,20 @@ class Desk:
     async def take(self, text: str) -> None:
         """A message of the tab; one that is not understood is answered, never fatal."""
         try:
-            note: Any = json.loads(text)
-            action = note["do"]
-            if action == "want" and note["view"] in get_args(View):
-                await self.tab.want(int(note["number"]), note["tables"], note["view"])
-            elif action == "job" and note["kind"] in KINDS:
-                self._start(note["kind"], note["tables"])
-            elif action == "stop" and note["kind"] in self._jobs:
-                self._jobs[note["kind"]].stop()
-        except (ValueError, KeyError, TypeError, RecursionError):
-            await self._send({"is": "refused", "text": "a message was not understood"})
+            note = note_from(text)
+        except ValueError:
+            await self.refuse()
+            return
+        if isinstance(note, Want):
+            await self.tab.want(note.number, note.tables, note.view)
+        elif isinstance(note, Start):
+            self._start(note.kind, note.tables)
+        elif note.kind in self._jobs:
+            self._jobs[note.kind].stop()
+
+    async def refuse(self) -> None:
+        """Answer a message that is not understood."""
+        await self._send({"is": "refused", "text": "a message was not understood"})
 
     def file(self, kind: str, name: str) -> bytes | None:
         """Of the newest job of a kind; None if there is no such job or file."""

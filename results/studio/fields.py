@@ -115,7 +115,7 @@ def slider(
 
     Where the value is 0 or absent the slider goes up to a tenth of the table's largest figure.
     """
-    least = float(node["minimum"] if "minimum" in node else node["exclusiveMinimum"])
+    least = float(node["minimum"])
     most = float(node["maximum"])
     low, high = (value * (1 - SPAN), value * (1 + SPAN)) if value else (0.0, scale / 10)
     step = _round_step((high - low) / STEPS)

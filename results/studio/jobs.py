@@ -22,12 +22,13 @@ from geometry.template import design_text
 from pipeline.live import left_out
 
 Kind = Literal["solid", "report", "step", "diagnose"]
-KINDS: tuple[Kind, ...] = ("solid", "report", "step", "diagnose")
 SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step",
           ".png": "image/png", ".toml": "application/toml", ".json": "application/json"}  # fmt: skip
 """What a tab may fetch of a job's folder, by ending."""
 GRACE_S = 3.0
 """From the wish to stop (Ctrl-C) to the end by force."""
+FORCE = getattr(signal, "SIGKILL", signal.SIGTERM)
+"""What no process withstands; Windows has one way to end a process, and no Ctrl-C for others."""
 _DESIGN, _MEASURED, _OUT = "design.toml", "measured.csv", "out"
 
 
@@ -87,12 +88,15 @@ class Job:
         if self._process is None or self._process.returncode is not None:
             return
         self._signal(signal.SIGINT)
-        asyncio.get_running_loop().call_later(GRACE_S, self._signal, signal.SIGKILL)
+        asyncio.get_running_loop().call_later(GRACE_S, self._signal, FORCE)
 
     def _signal(self, number: signal.Signals) -> None:
         if self._process is not None and self._process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(self._process.pid, number)
+            if hasattr(os, "killpg"):
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(self._process.pid, number)
+            else:
+                _terminate_tree(self._process.pid)
 
     def files(self) -> list[str]:
         """Names that a tab may fetch, figures in the order in which they were made."""
@@ -111,6 +115,17 @@ class Job:
         self.folder.cleanup()
 
 
+def _terminate_tree(pid: int) -> None:
+    """End a process and all that it started, where there are no process groups (Windows)."""
+    import psutil
+
+    with contextlib.suppress(psutil.NoSuchProcess):
+        process = psutil.Process(pid)
+        for one in (*process.children(recursive=True), process):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                one.terminate()
+
+
 @dataclass(frozen=True)
 class Done:
     """How a job ended, what it printed or why it failed, and its files."""
@@ -120,7 +135,7 @@ class Done:
     files: list[str] = field(default_factory=list)
 
 
-_CLI = "results.cli"
+_CLI = "results.entry"
 _COMMANDS: dict[Kind, tuple[str, ...]] = {
     "solid": (_CLI, "stiffness", _DESIGN, "--out", _OUT, "--json"),
     "report": (_CLI, "run", _DESIGN, "--out", _OUT, "--json"),

@@ -10,7 +10,6 @@ from geometry.design import Design
 from geometry.errors import ComputationError, DesignError
 from geometry.load import design_from
 from pipeline.live import (
-    Bounded,
     RimCase,
     View,
     field,
@@ -20,6 +19,7 @@ from pipeline.live import (
     rim,
     torsion,
 )
+from results.records import bounded_record, peak_record
 from results.studio.shape import field_message, profile_message
 from results.studio.worker import Fault
 
@@ -43,7 +43,7 @@ Found = dict[str, Any]
 def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
     """The figures, or why there are none; only our own errors become a Fault."""
     try:
-        return _QUESTIONS[question](revolved(design_from(tables)))
+        return _QUESTIONS[question](design_from(tables))
     except DesignError as fault:
         return Fault(fault.key, str(fault))
     except ComputationError as fault:
@@ -52,36 +52,28 @@ def answer(question: str, tables: Mapping[str, Any]) -> Found | Fault:
 
 def _torsion(design: Design) -> Found:
     K_b, K_e = torsion(design)
-    return {**_stiffness("K_b", K_b), **_stiffness("K_e", K_e)}
+    return bounded_record("K_b", K_b) | bounded_record("K_e", K_e)
 
 
 def _rim(case: RimCase) -> Callable[[Design], Found]:
-    return lambda design: _stiffness(case, rim(design, case))
-
-
-def _stiffness(name: str, found: Bounded) -> Found:
-    return {
-        f"{name}_Nm_per_rad": found.K_Nm_per_rad,
-        f"{name}_bounds_Nm_per_rad": [found.lower_Nm_per_rad, found.upper_Nm_per_rad],
-    }
+    return lambda design: bounded_record(case, rim(revolved(design), case))
 
 
 def _field(view: View) -> Callable[[Design], Found]:
     def ask(design: Design) -> Found:
-        return _solved(view, field(design, view), rough=False)
+        return _solved(view, field(revolved(design), view), rough=False)
 
     return ask
 
 
 def _first(design: Design) -> Found:
-    return _solved("wave_generator", first_field(design), rough=True)
+    return _solved("wave_generator", first_field(revolved(design)), rough=True)
 
 
 def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
     name = PEAK_KEYS[view]
     return {
-        f"{name}_mises_MPa": solved.peak.mises_MPa,
-        f"{name}_at_mm": list(solved.peak.at_mm),
+        **peak_record(name, solved.peak),
         f"{name}_rough": rough,
         "picture": field_message(view, solved),
     }
@@ -90,7 +82,7 @@ def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
 def _profile(view: View) -> Callable[[Design], Found]:
     def ask(design: Design) -> Found:
         chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
-        return {"picture": profile_message(view, profile(design, view, chord))}
+        return {"picture": profile_message(view, profile(revolved(design), view, chord))}
 
     return ask
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import logging
 import signal
+import socket
 import webbrowser
 from pathlib import Path
 from threading import Thread
@@ -19,6 +21,14 @@ from geometry.template import template
 from results.job import tell
 from results.studio.guard import Guard
 from results.studio.server import Studio, application
+
+LARGEST_PORT = 65535
+_REASONS = {
+    errno.EADDRINUSE: "another program does; --port 0 takes any free port",
+    errno.EACCES: "ports below 1024 are the system's; --port 0 takes any free port",
+    errno.EADDRNOTAVAIL: "this machine has no such address; --host 127.0.0.1 is this machine alone",
+    socket.EAI_NONAME: "no such host; --host 127.0.0.1 is this machine alone",
+}
 
 
 def starting_design(path: Path | None) -> Design:
@@ -35,33 +45,53 @@ def serve(design: Design, host: str, port: int, browser: bool) -> None:
     ------
     DesignError : the address cannot be listened on.
     """
+    if not host.strip("[]"):
+        raise DesignError("--host", host, "must be a name or an address, such as 127.0.0.1")
+    if not 0 <= port <= LARGEST_PORT:
+        raise DesignError("--port", port, f"must be from 0 to {LARGEST_PORT}; 0 takes any free one")
     logging.getLogger("aiohttp").setLevel(
         logging.CRITICAL
     )  # a broken upload is the browser's matter
     with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(_serve(Studio(Guard.of(host), design), host, port, browser))
+        asyncio.run(_serve(Studio(Guard(host), design), host, port, browser))
 
 
 async def _serve(studio: Studio, host: str, port: int, browser: bool) -> None:
     runner = web.AppRunner(application(studio), access_log=None, shutdown_timeout=1.0)
     await runner.setup()
     try:
-        site = web.TCPSite(runner, host.strip("[]"), port)
-        try:
-            await site.start()
-        except (OSError, OverflowError) as fault:
-            raise DesignError(
-                "--host, --port", f"{host}:{port}", f"cannot listen there ({fault})"
-            ) from None
-        address = studio.guard.address(runner.addresses[0][1])
-        print(f"flexspline studio: {address}", flush=True)
+        listening = await listen_at(runner, host, port)
+        print(f"flexspline studio: {studio.guard.address(listening)}", flush=True)
         tell("stop with Ctrl-C")
         if browser:
             # a browser in the terminal does not return before it is left
-            Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+            opened = studio.guard.opened_address(listening)
+            Thread(target=webbrowser.open, args=(opened,), daemon=True).start()
         ended = asyncio.Event()
         for number in (signal.SIGINT, signal.SIGTERM):
-            asyncio.get_running_loop().add_signal_handler(number, ended.set)
+            # Windows: Ctrl-C raises KeyboardInterrupt in asyncio.run instead
+            with contextlib.suppress(NotImplementedError):
+                asyncio.get_running_loop().add_signal_handler(number, ended.set)
         await ended.wait()
     finally:
         await runner.cleanup()
+
+
+async def listen_at(runner: web.AppRunner, host: str, port: int) -> int:
+    """The port, which the system has chosen if 0 was asked for.
+
+    Raises
+    ------
+    DesignError : as `serve`.
+    """
+    try:
+        await web.TCPSite(runner, host.strip("[]"), port).start()
+    except (OSError, UnicodeError) as fault:
+        code = fault.errno if isinstance(fault, OSError) else socket.EAI_NONAME
+        if code is None:  # asyncio since Python 3.13: no address of that name could be bound
+            code = errno.EADDRNOTAVAIL
+        reason = _REASONS.get(code or 0) or str(fault)
+        raise DesignError(
+            "--host, --port", f"{host}:{port}", f"cannot listen there: {reason}"
+        ) from None
+    return int(runner.addresses[0][1])

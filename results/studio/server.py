@@ -16,7 +16,7 @@ from geometry.load import LARGEST_BYTES, design_from, tables_from
 from geometry.template import design_text, template
 from results.studio.desk import Desk
 from results.studio.fields import form, received
-from results.studio.guard import HEADERS, Guard
+from results.studio.guard import Guard, add_headers
 from results.studio.jobs import SERVED
 from results.studio.looks import looks
 from results.studio.tab import Workers
@@ -53,6 +53,7 @@ def application(studio: Studio) -> web.Application:
     app.router.add_post("/text", _text)
     app.router.add_post("/measured/{tab}", _measured)
     app.router.add_get("/made/{tab}/{kind}/{name}", _made)
+    app.on_response_prepare.append(add_headers)
     app.cleanup_ctx.append(_workers)
     return app
 
@@ -81,16 +82,12 @@ async def _file(request: web.Request) -> web.Response:
     if found is None:
         raise web.HTTPNotFound
     body, kind = found
-    return web.Response(body=body, content_type=kind, charset="utf-8", headers=HEADERS)
+    return web.Response(body=body, content_type=kind, charset="utf-8")
 
 
 def _json(value: Any, status: int = 200) -> web.Response:
-    return web.Response(
-        text=json.dumps(value, allow_nan=False),
-        content_type="application/json",
-        status=status,
-        headers=HEADERS,
-    )
+    text = json.dumps(value, allow_nan=False)
+    return web.Response(text=text, content_type="application/json", status=status)
 
 
 def _opened(design: Design) -> dict[str, Any]:
@@ -124,7 +121,7 @@ async def _text(request: web.Request) -> web.Response:
         design = received(await _sent(request))
     except DesignError as fault:
         return _json({"key": fault.key, "text": str(fault)}, status=422)
-    return web.Response(text=design_text(design), headers=HEADERS)
+    return web.Response(text=design_text(design))
 
 
 async def _measured(request: web.Request) -> web.Response:
@@ -147,12 +144,17 @@ async def _sent(request: web.Request) -> Any:
 async def _body(request: web.Request, most: int) -> bytes:
     """At most so many bytes, whatever the request says of its length."""
     held = bytearray()
-    async for chunk in request.content.iter_chunked(1 << 16):
-        held += chunk
-        if len(held) > most:
-            raise web.HTTPRequestEntityTooLarge(
-                most, len(held), text=f"larger than {most // 1_000_000} MB"
-            )
+    try:
+        async for chunk in request.content.iter_chunked(1 << 16):
+            held += chunk
+            if len(held) > most:
+                raise web.HTTPRequestEntityTooLarge(
+                    most, len(held), text=f"larger than {most // 1_000_000} MB"
+                )
+    except web.RequestPayloadError:
+        refused = web.HTTPBadRequest(text="the body is not what its headers say")
+        refused.force_close()  # where the next request begins is anybody's guess
+        raise refused from None
     return bytes(held)
 
 
@@ -166,7 +168,7 @@ async def _made(request: web.Request) -> web.Response:
     kind = SERVED["." + name.rpartition(".")[2]]
     # a report is a document of its own: it is handed over to keep, never shown as part of this site
     shown = {} if kind == "image/png" else {"Content-Disposition": f'attachment; filename="{name}"'}
-    return web.Response(body=data, content_type=kind, headers={**HEADERS, **shown})
+    return web.Response(body=data, content_type=kind, headers=shown)
 
 
 async def _live(request: web.Request) -> web.WebSocketResponse:
@@ -181,6 +183,8 @@ async def _live(request: web.Request) -> web.WebSocketResponse:
         async for note in socket:
             if note.type == WSMsgType.TEXT:
                 await desk.take(note.data)
+            else:
+                await desk.refuse()
     finally:
         del studio.desks[desk.tab.key]
         await desk.close()

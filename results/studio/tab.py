@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from collections.abc import Awaitable, Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from geometry.design import Design
@@ -89,21 +89,31 @@ class Tab:
         await asyncio.gather(*self._lanes, return_exceptions=True)
 
     async def want(self, number: int, tables: Mapping[str, Any], view: str) -> None:
-        """Take a design: refuse it with its key and reason, or set the lanes on it."""
+        """Set the lanes on a design, or refuse it with its key and reason.
+
+        After a refusal the lanes go on with the design before, which the page still shows.
+        """
         try:
             design = received(tables)
             first = message(design, {})
         except (DesignError, BearingPlayDomainError) as fault:
-            self._wanted = None
+            self._look_at(view)
             key = fault.key if isinstance(fault, DesignError) else "bearing.radial_clearance_um"
             await self._send({"is": "fault", "number": number, "key": key, "text": str(fault)})
             return
-        self._wanted = Wanted(number, design, tables, view)
-        for event in self._news:
-            event.set()
+        self._set(Wanted(number, design, tables, view))
         await self._send({"is": "taken", "number": number, "left_out": left_out(design),
                           "agreement": agreement(design), "warnings": list(warnings(design)),
                           **first})  # fmt: skip
+
+    def _look_at(self, view: str) -> None:
+        if self._wanted is not None and self._wanted.view != view:
+            self._set(replace(self._wanted, view=view))
+
+    def _set(self, wanted: Wanted) -> None:
+        self._wanted = wanted
+        for event in self._news:
+            event.set()
 
     async def _lane(
         self,
@@ -144,7 +154,8 @@ class Tab:
             wanted.found |= found
             await self._send({"number": wanted.number, "done": question, **_said(wanted)})
         if picture is not None:  # after the figures: to draw it takes the browser longer
-            await self._send({"is": "picture", "number": wanted.number})  # whose the bytes are
+            whose = {"number": wanted.number, "name": wanted.design.name}
+            await self._send({"is": "picture", **whose})
             await self._send(picture)
 
 

@@ -69,25 +69,27 @@ class Worker:
     async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
         """The answer to a question of `results.studio.questions`, or a Fault.
 
-        Who stops waiting leaves the question to end by itself: the next one must not get its answer.
+        Who stops waiting before the turn leaves the queue; whose turn has come leaves the question to
+        end by itself: the next one must not get its answer.
         """
-        turn = asyncio.create_task(self._in_turn(question, tables))
-        self._asked.add(turn)
-        turn.add_done_callback(self._asked.discard)
-        return await asyncio.shield(turn)
+        await self._turn.acquire()
+        asked = asyncio.create_task(self._answered(question, tables))
+        self._asked.add(asked)
+        asked.add_done_callback(self._asked.discard)
+        asked.add_done_callback(lambda _: self._turn.release())
+        return await asyncio.shield(asked)
 
-    async def _in_turn(self, question: str, tables: Mapping[str, Any]) -> Any:
-        async with self._turn:
-            if self._process is None or not self._process.is_alive():
-                self.start()
-            assert self._pipe is not None
-            reply = asyncio.create_task(asyncio.to_thread(_exchange, self._pipe, question, tables))
-            done, _ = await asyncio.wait({reply}, timeout=SLOWEST_S)
-            if done:
-                return reply.result()
-            self.stop()
-            await reply
-            return Fault("", f"the fast model gave no answer within {SLOWEST_S:g} s")
+    async def _answered(self, question: str, tables: Mapping[str, Any]) -> Any:
+        if self._process is None or not self._process.is_alive():
+            self.start()
+        assert self._pipe is not None
+        reply = asyncio.create_task(asyncio.to_thread(_exchange, self._pipe, question, tables))
+        done, _ = await asyncio.wait({reply}, timeout=SLOWEST_S)
+        if done:
+            return reply.result()
+        self.stop()
+        await reply
+        return Fault("", f"the fast model gave no answer within {SLOWEST_S:g} s")
 
     def stop(self) -> None:
         """End the process at once."""
@@ -107,7 +109,8 @@ def _exchange(pipe: Connection, question: str, tables: Mapping[str, Any]) -> Any
 
 def _serve(pipe: Connection, niceness: int) -> None:
     """The process: load everything, then answer until the other end closes."""
-    os.nice(niceness)
+    if hasattr(os, "nice"):  # Windows has none: there slow questions share evenly with quick ones
+        os.nice(niceness)
     from results.studio.questions import answer
 
     while True:

@@ -1,4 +1,8 @@
-"""The best designs' flexsplines in section, over the design that the study began with."""
+"""The best designs' flexsplines in section, over the design that the study began with.
+
+A wall is a hundredth of a section's length, so two places are drawn again, enlarged: the closed end's
+corner and the beginning of the toothed ring. Everything is in proportion.
+"""
 
 from __future__ import annotations
 
@@ -11,39 +15,71 @@ from geometry.design import Design
 from geometry.meridian import meridian
 from pipeline.study.result import StudyResult
 from results.study.labels import entry
-from results.style import ACCENT, INK, MUTED, STEEL, new_figure, save_png, styled
+from results.style import ACCENT, INK, MUTED, RULE, STEEL, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 SHOWN = 3
+WIDE_IN, SECTION_IN, DETAIL_IN = 9.0, 4.7, (3.0, 0.95)
+"""The figure's width, the sections' width, a detail's width and height."""
+ROW_IN, LEFT_IN, FOOT_IN = 1.0, 0.75, 0.75
+DETAIL_WALLS = 3.2
+"""A detail's height in wall thicknesses of the thickest wall shown."""
+MARGIN_MM = 0.5
 
 
 def write_best(path: Path, result: StudyResult) -> None:
-    """Half sections of up to SHOWN designs, one below the other, to one scale."""
-    best = result.best(SHOWN)
-    base = _outline(result.study.design)
-    outlines = [_outline(result.design_of(r)) for r in best]
-    everything = np.concatenate([base, *outlines])
-    (r0, z0), (r1, z1) = everything.min(axis=0), everything.max(axis=0)
-    tall = 6.4 * (r1 - r0) / (z1 - z0)
+    """Half sections of up to SHOWN designs to one scale, and beside each its walls enlarged."""
     with styled():
-        figure = new_figure(8.0, len(best) * (tall + 0.75) + 0.5)
-        share = 1 / figure.get_figheight()
-        for i, (row, outline) in enumerate(zip(best, outlines, strict=True)):
-            bottom = 1 - share * ((i + 1) * (tall + 0.75))
-            axes = figure.add_axes((0.10, bottom, 0.80, share * tall))
-            _section(axes, base, outline)
-            axes.set_xlim(z0 - 0.5, z1 + 0.5)
-            axes.set_ylim(r0 - 0.5, r1 + 0.5)
-            axes.set_ylabel("r in mm")
-            figures = ", ".join(
-                f"{entry(k).mathtext} = {entry(k).with_unit(row.outcome.figures[k])}"
-                for k in result.study.file.objective
-            )
-            axes.set_title(f"design {row.slot}: {figures}", fontsize=10.5, color=INK, pad=6)
-        axes.set_xlabel("z in mm; dashed: the design the study began with", color=MUTED)
-        save_png(figure, path)
+        save_png(best_figure(result), path)
+
+
+def best_figure(result: StudyResult) -> Figure:
+    """One row for each design."""
+    best = result.best(SHOWN)
+    base = result.study.design
+    designs = [result.design_of(r) for r in best]
+    everything = np.concatenate([_outline(d) for d in (base, *designs)])
+    (r0, z0), (r1, z1) = everything.min(axis=0) - MARGIN_MM, everything.max(axis=0) + MARGIN_MM
+    tall = max(SECTION_IN * (r1 - r0) / (z1 - z0), 2 * DETAIL_IN[1] + 0.35)
+    high = len(best) * (tall + ROW_IN) + FOOT_IN
+    figure = new_figure(WIDE_IN, high)
+    walls = [d.flexspline.wall_thickness_mm for d in (base, *designs)]
+    window = DETAIL_WALLS * max(walls) * np.array([DETAIL_IN[0] / DETAIL_IN[1], 1.0])
+    times = DETAIL_IN[0] / window[0] / (SECTION_IN / (z1 - z0))
+    for i, (row, design) in enumerate(zip(best, designs, strict=True)):
+        bottom = high - (i + 1) * (tall + ROW_IN) + 0.25
+        axes = _axes(figure, LEFT_IN, bottom, SECTION_IN, tall)
+        _section(axes, base, design)
+        axes.set_xlim(z0, z1)
+        axes.set_ylim(r1 - tall * (z1 - z0) / SECTION_IN, r1)
+        axes.set_ylabel("r in mm")
+        figures = ", ".join(
+            f"{entry(k).mathtext} = {entry(k).with_unit(row.outcome.figures[k])}"
+            for k in result.study.file.objective
+        )
+        axes.set_title(f"design {row.slot}: {figures}", fontsize=10.5, color=INK, pad=8)
+        for name, corner, up in zip(
+            "ab", _places(design, window), (bottom + tall - DETAIL_IN[1], bottom), strict=True
+        ):
+            detail = _axes(figure, LEFT_IN + SECTION_IN + 0.35, up, *DETAIL_IN)
+            _section(detail, base, design)
+            _framed(axes, detail, name, corner, window, base.flexspline.kind == "hat")
+    axes.set_xlabel("z in mm")
+    figure.text(
+        LEFT_IN / WIDE_IN, 0.12 / high,
+        f"dashed: the design the study began with; a, b: enlarged {times:.1f} times",
+        color=MUTED, fontsize=9.5,
+    )  # fmt: skip
+    return figure
+
+
+def _axes(figure: Figure, left: float, bottom: float, wide: float, tall: float) -> Axes:
+    """Axes placed in inches."""
+    w, h = figure.get_size_inches()
+    return figure.add_axes((left / w, bottom / h, wide / w, tall / h))
 
 
 def _outline(design: Design) -> np.ndarray:
@@ -52,8 +88,45 @@ def _outline(design: Design) -> np.ndarray:
     return np.concatenate([s.at(t) for s in meridian(design, "flexspline").segments])
 
 
-def _section(axes: Axes, base: np.ndarray, outline: np.ndarray) -> None:
-    axes.fill(outline[:, 1], outline[:, 0], fc=STEEL, ec=INK, lw=0.9)
-    closed = np.concatenate([base, base[:1]])
+def _places(design: Design, window: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lower left corners (z, r) of both details: the closed end's corner, the ring's beginning."""
+    f = design.flexspline
+    inner = f.inner_diameter_mm / 2
+    if f.kind == "cup":
+        low = inner + f.ring_thickness_mm - 0.88 * window[1]
+    else:
+        low = inner - 0.12 * window[1]
+    ring = f.length_mm - f.ring_offset_mm - f.ring_width_mm
+    return np.array([-0.1 * window[0], low]), np.array([ring - window[0] / 2, low])
+
+
+def _section(axes: Axes, base: Design, design: Design) -> None:
+    shape, began = _outline(design), _outline(base)
+    axes.fill(shape[:, 1], shape[:, 0], fc=STEEL, ec=INK, lw=0.9)
+    closed = np.concatenate([began, began[:1]])
     axes.plot(closed[:, 1], closed[:, 0], "--", color=ACCENT, lw=0.8)
-    axes.set_aspect("equal", adjustable="box")
+
+
+def _framed(
+    axes: Axes, detail: Axes, name: str, corner: np.ndarray, window: np.ndarray, above: bool
+) -> None:
+    """The detail's limits and frame, and its place in the section; its letter on the free side."""
+    from matplotlib.patches import Rectangle
+
+    (z, r), (wide, high) = corner, window
+    axes.add_patch(Rectangle((z, r), wide, high, fc="none", ec=MUTED, lw=0.8))
+    axes.annotate(
+        name, (z + wide * (0.5 if name == "a" else 0.9), r + high if above else r),
+        xytext=(0, 2 if above else -2), textcoords="offset points", ha="center",
+        va="bottom" if above else "top", color=MUTED, fontsize=9.5,
+    )  # fmt: skip
+    detail.set_xlim(z, z + wide)
+    detail.set_ylim(r, r + high)
+    detail.set_xticks([])
+    detail.set_yticks([])
+    for side in detail.spines.values():
+        side.set_visible(True)
+        side.set_color(RULE)
+    detail.text(
+        1.02, 0.98, name, transform=detail.transAxes, ha="left", va="top", color=MUTED, fontsize=9.5
+    )

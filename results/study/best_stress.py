@@ -2,25 +2,48 @@
 
 from __future__ import annotations
 
-import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.study.best import BestField
 from results.atomic import write_bytes
-from results.renders.ellipse_picture import turning_ellipse, write_ellipse_picture
+from results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
+from results.renders.process import DrawingProcess, NotDrawnError
 
 PICTURE = "best_stress.png"
 VIEW = "best_stress"
 
 
-def write_best_stress(path: Path, best: BestField) -> None:
-    """The picture, whole or not at all."""
-    with tempfile.TemporaryDirectory(prefix="flexspline-picture-") as folder:
-        drawn = Path(folder) / PICTURE
-        write_ellipse_picture(drawn, best.field, best.w0_mm)
-        write_bytes(path, drawn.read_bytes())
+@dataclass(frozen=True)
+class BestStress:
+    """What was drawn; `missing` says in one line why something was not, "" if all was."""
+
+    picture: Path | None = None
+    view: bytes | None = None
+    missing: str = ""
+
+    @property
+    def views(self) -> dict[str, bytes]:
+        """The view by its name in the report."""
+        return {VIEW: self.view} if self.view is not None else {}
 
 
-def turning_best(best: BestField) -> dict[str, bytes]:
-    """The view by its name in the report."""
-    return {VIEW: turning_ellipse(VIEW, best.field, best.w0_mm)}
+def draw_best_stress(folder: Path, best: BestField | None) -> BestStress:
+    """Draw both in a process of their own, the picture into `folder`, whole or not at all.
+
+    A picture that an earlier run left and that cannot be drawn now is removed.
+    """
+    if best is None:
+        return BestStress()
+    path = folder / PICTURE
+    picture: Path | None = None
+    with DrawingProcess() as process:
+        try:
+            write_bytes(path, process.draw(write_ellipse_picture, best.field, best.w0_mm))
+            picture = path
+            view = process.draw(write_turning_ellipse, VIEW, best.field, best.w0_mm)
+            return BestStress(path, view)
+        except NotDrawnError as error:
+            if picture is None:
+                path.unlink(missing_ok=True)
+            return BestStress(picture, None, str(error))

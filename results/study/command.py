@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from results.job import DesignFile, Json, Out, answered, folder_of, tell
+from results.streams import show
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
 
@@ -22,11 +23,14 @@ def register(app: typer.Typer) -> None:
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
     with answered(file):
+        from geometry.load import read_raw, tables_from
         from pipeline.study.best import best_field
-        from pipeline.study.cluster import check_scheduler, dask_hands
-        from pipeline.study.load import load_study
+        from pipeline.study.cluster import check_scheduler, hands_of
+        from pipeline.study.load import study_from
         from pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
         from results.records import as_json
+        from results.report.attached import Attachment
+        from results.study.best_stress import draw_best_stress
         from results.study.figures import write_figures
         from results.study.progress import Watch
         from results.study.record import summary, words
@@ -34,10 +38,18 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from results.study.tables import table_of, write_csv, write_parquet
         from results.study.why import unfollowed
 
-        asked = load_study(file)
+        raw = read_raw(file, "study")
+        asked = study_from(tables_from(raw, file), file.parent, file.stem)
+        base = file.parent / asked.file.design
+        attached = (
+            Attachment(file.name, raw, "Study file"),
+            Attachment(base.name, read_raw(base), "Design file"),
+        )
         folder = folder_of(file, out)
         run = asked.file.run
-        source_of(asked)  # refuse before anything is written
+        size = source_of(asked).size  # refuse before anything is written
+        if run.method == "grid" and size != run.evaluations:
+            tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")
         if run.scheduler and not folder.exists():
             check_scheduler(run.scheduler)
         ledger = ledger_of(asked, folder)
@@ -45,19 +57,25 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
         if kept := len(ledger.rows()):
             tell(f"{kept} designs are finished already")
-        hands = partial(dask_hands, run.workers, run.scheduler)
+        hands = partial(hands_of, run.workers, run.scheduler)
         holes = nominal_holes(asked, ledger, tell)
         result = run_study(asked, ledger, hands, Watch(asked), say=tell, holes=holes)
         table = table_of(result)
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)
         record: dict[str, Any] = summary(result)
-        best = best_field(result, tell)
-        pictures = write_figures(folder, result, best)
+        shown = best_field(result, tell) if len(result.built) > 1 else None
+        best = draw_best_stress(folder, shown)
+        if best.missing:
+            record["pictures_missing"] = {"best_stress": best.missing}
+            tell(
+                f"warning: not drawn: {(best.picture and '3-D view ') or ''}best_stress: {best.missing}"
+            )
+        pictures = write_figures(folder, result, best.picture)
         record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
-        reports = write_study_reports(folder, result, pictures, best)
+        reports = write_study_reports(folder, result, pictures, best, attached)
         record["files"] += [str(p) for p in (*pictures, *reports)]
-        print(as_json(record) if json else words(result, record))
+        show(as_json(record) if json else words(result, record), json)
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
@@ -72,4 +90,4 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
         slopes = sensitivities(gear, tell)
         said = record(gear, slopes)
         write_sensitivity(folder, said)
-        print(as_json(said) if json else "\n".join(lines(slopes)))
+        show(as_json(said) if json else "\n".join(lines(slopes)), json)

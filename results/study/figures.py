@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.study.best import BestField
 from pipeline.study.result import StudyResult
 from pipeline.study.store import Row
 from results.study.best_figure import write_best
-from results.study.best_stress import PICTURE, write_best_stress
 from results.study.labels import axis_label, entry, lines_of
 from results.study.tolerance_figure import write_scatter
 from results.style import ACCENT, COLOUR_MAP, INK, MUTED, PALETTE, new_figure, save_png, styled
@@ -23,26 +21,25 @@ MOST_AXES = 9
 """Of parallel coordinates: beyond, the labels touch; objectives come first."""
 
 
-def write_figures(folder: Path, result: StudyResult, best: BestField | None = None) -> list[Path]:
-    """Every picture that the study has matter for; their paths. `best` is drawn with its stress."""
+def write_figures(folder: Path, result: StudyResult, best: Path | None = None) -> list[Path]:
+    """Every chart that the study has matter for; their paths, `best`'s (drawn already) in its place."""
     objectives = list(result.study.file.objective)
     written: list[Path] = []
     if len(result.built) < 2:
         return written
-    if len(objectives) >= 2 and not result.scatter and result.feasible:
+    if len(objectives) >= 2 and not result.about_scatter and result.feasible:
         written.append(folder / "pareto.png")
         write_pareto(written[-1], result)
-    if objectives and not result.scatter:
+    if objectives and not result.about_scatter:
         if result.pareto:
             written.append(folder / "best.png")
             write_best(written[-1], result)
         if best:
-            written.append(folder / PICTURE)
-            write_best_stress(written[-1], best)
-    if result.shown and not result.scatter:
+            written.append(best)
+    if result.shown and not result.about_scatter:
         written.append(folder / "parallel.png")
         write_parallel(written[-1], result)
-    if objectives and not result.scatter:
+    if objectives and not result.about_scatter:
         written.append(folder / "convergence.png")
         write_convergence(written[-1], result)
     for i, scatter in enumerate(result.scatter):

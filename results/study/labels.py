@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from results.peaks import BORDER
 from results.quantities import BY_KEY, Quantity
 
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
@@ -24,6 +27,17 @@ def entry(key: str) -> Quantity:
         q = BY_KEY[stem]
         return Quantity(key, key, q.unit, f"{q.name}, {bound}", q.symbol, digits=q.digits)
     return _design_key(key)
+
+
+def valued(key: str, figures: Mapping[str, float]) -> str:
+    """A row's figure with its unit, and a mark where it is a peak that hangs on the stress rule."""
+    said = entry(key).with_unit(figures[key])
+    return f"{said} ({BORDER})" if at_border(key, figures) else said
+
+
+def at_border(key: str, figures: Mapping[str, float]) -> bool:
+    """Whether a row's figure is a peak at the border of what is left out."""
+    return bool(figures.get(f"{key.removesuffix('_mises_MPa')}_at_excluded_border", 0.0))
 
 
 def _design_key(key: str) -> Quantity:

@@ -4,25 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from geometry.design import Design
+from pipeline.stress_limits import PART_OF
 from pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from pipeline.study.holes import DRIFT, pierced
-from pipeline.study.mass import DENSITY_KG_M3
 from pipeline.study.result import StudyResult
+from results.peaks import BORDER, MEANING
+from results.study.labels import at_border, entry
 from results.study.why import signed, unfollowed
+
+PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
 def notes(result: StudyResult) -> list[str]:
-    """Sentences of the section "What holds"."""
+    """Sentences of the section "Scope and limits"."""
     said = [
         f"Fast model: the axisymmetric one of the same meridian, without bolt holes and keyway; there K "
         f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
         f"{100 * LOBE_TOLERANCE:g} %.",
         *_holes(result),
-        f"Mass at {DENSITY_KG_M3:g} kg/m³ (steel), since the design file has no density.",
+        _mass(result.study.design),
     ]
+    said += _borders(result)
     if not result.verified:
         said.append("No design was solved again with the solid model (run.verify = 0).")
     return said
+
+
+def _borders(result: StudyResult) -> Iterable[str]:
+    """Which peaks hang on the stress rule, and in how many designs."""
+    for key in PEAKS:
+        rows = [r for r in result.built if key in r.outcome.figures]
+        if count := sum(at_border(key, r.outcome.figures) for r in rows):
+            yield f"{entry(key).name}: in {count} of {len(rows)} designs {BORDER} (†): {MEANING}."
+
+
+def _mass(design: Design) -> str:
+    """Which density weighs the parts, and who says so."""
+    said = []
+    for part in ("flexspline", "shaft"):
+        material = design.material_of(part)
+        source = "as stated" if material.density_stated else "steel's, since the file states none"
+        said.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")
+    if said[0] == said[1]:
+        return f"Mass at {said[0]}."
+    return f"Mass of the flexspline at {said[0]}, of the shaft at {said[1]}."
 
 
 def _holes(result: StudyResult) -> Iterable[str]:

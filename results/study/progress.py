@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from pipeline.study.drive import Progress
 from pipeline.study.load import Study
 from pipeline.study.result import StudyResult
-from results.study.labels import entry
+from results.study.labels import valued
 
 EVERY_S = 5.0
 """Between two lines where stderr is no terminal; on one the line is renewed in place."""
@@ -33,7 +34,8 @@ class Watch:
         text = line(self.study, progress)
         end = "\n" if finished or not terminal else ""
         start = "\r\x1b[K" if terminal else ""
-        print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
+        with suppress(OSError):  # whoever listened has gone: no reason to stop
+            print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
 
 
 def line(study: Study, progress: Progress) -> str:
@@ -47,7 +49,7 @@ def line(study: Study, progress: Progress) -> str:
     best = StudyResult(study, tuple(progress.rows)).pareto if study.file.objective else ()
     for i, key in enumerate(study.file.objective if best else ()):
         row = best[0] if i == 0 else min(best, key=lambda r: _cost(study, key, r.outcome.figures))
-        parts.append(f"best {entry(key).with_unit(row.outcome.figures[key])}")
+        parts.append(f"best {valued(key, row.outcome.figures)}")
     if rate > 0 and done < size:
         parts.append(f"{(size - done) / rate:.0f} s left")
     return " · ".join(parts)

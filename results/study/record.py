@@ -9,7 +9,8 @@ from pipeline.study.scatter import Scatter
 from pipeline.study.store import Row
 from pipeline.study.verified import Verified
 from results.records import program_version
-from results.study.labels import entry
+from results.study.labels import entry, valued
+from results.study.scatter_section import index_text, source_words
 from results.study.why import disagreement, misses, signed
 
 SHOWN = 5
@@ -30,6 +31,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "best": [_row(r) for r in best],
         **({"verified": [_verified(v) for v in result.verified]} if result.verified else {}),
         **({"tolerance": [_scatter(s) for s in result.scatter]} if result.scatter else {}),
+        **({"no_tolerance": result.unscattered} if result.unscattered else {}),
     }
 
 
@@ -48,34 +50,49 @@ def _verified(v: Verified) -> dict[str, Any]:
 
 
 def _scatter(s: Scatter) -> dict[str, Any]:
-    i = s.indices
-    by_input = zip(s.inputs, i.first, i.first_conf, i.total, i.total_conf, strict=True)
-    return {
+    """Indices, tightening and the surface's Q² are absent where they are not known."""
+    found: dict[str, Any] = {
         "figure": s.key,
         "mean": s.mean,
         "std": s.std,
         "range_95": [s.low, s.high],
-        "dropped_blocks": s.dropped,
-        "surface_rms": s.surface_rms,
-        "inputs": [
-            {
-                "key": x.key,
-                "nominal": x.nominal,
-                "std": x.std,
-                "distribution": "normal" if x.normal else "uniform",
-                "sobol_first": float(first),
-                "sobol_first_conf": float(first_conf),
-                "sobol_total": float(total),
-                "sobol_total_conf": float(total_conf),
-                "tightened": [
-                    {"factor": t.factor, "range_95_width": t.width, "bought": t.bought}
-                    for t in s.tightened
-                    if t.key == x.key
-                ],
-            }
-            for x, first, first_conf, total, total_conf in by_input
-        ],
+        "dropped_designs": s.dropped,
+        "inputs": [_input(s, i) for i in range(len(s.inputs))],
     }
+    if s.indices:
+        found["indices_from"] = "surface" if s.surface else "sample"
+    if s.surface:
+        found["surface_rms"] = s.surface.misfit**0.5
+    if s.shares and s.shares.explained is not None:
+        found["surface_explained"] = s.shares.explained
+    if s.shares and s.shares.enough is not None:
+        found["evaluations_that_would_do"] = s.shares.enough
+    return found
+
+
+def _input(s: Scatter, i: int) -> dict[str, Any]:
+    x, known = s.inputs[i], s.indices
+    found: dict[str, Any] = {
+        "key": x.key,
+        "nominal": x.nominal,
+        "std": x.std,
+        "distribution": "normal" if x.normal else "uniform",
+    }
+    if known:
+        for name, value, ends in (
+            ("sobol_first", known.first[i], known.first_ends[i]),
+            ("sobol_total", known.total[i], known.total_ends[i]),
+        ):
+            found[name] = float(value)
+            found[f"{name}_conf"] = float(max(value - ends[0], ends[1] - value))
+            found[f"{name}_95"] = [float(e) for e in ends]
+    if s.tightened:
+        found["tightened"] = [
+            {"factor": t.factor, "range_95_width": t.width, "bought": t.bought}
+            for t in s.tightened
+            if t.key == x.key
+        ]
+    return found
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -93,16 +110,17 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
         f"{len(result.feasible)} keep to the constraints"
     ]
-    for row in () if result.scatter else result.best(SHOWN):
+    for row in () if result.about_scatter else result.best(SHOWN):
         values = ", ".join(
             f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items()
         )
         figures = ", ".join(
-            f"{entry(k).symbol} = {entry(k).with_unit(row.outcome.figures[k])}"
-            for k in file.objective
+            f"{entry(k).symbol} = {valued(k, row.outcome.figures)}" for k in file.objective
         )
         lines.append(f"  design {row.slot}: {values}: {figures}")
     lines += [f"  {line}" for line in misses(result)]
+    if result.unscattered:
+        lines.append(f"  {result.unscattered}")
     for v in result.verified:
         lines += _verified_words(v)
     for s in result.scatter:
@@ -130,13 +148,22 @@ def _scatter_words(s: Scatter) -> list[str]:
         f"  {figure.name}: mean {figure.with_unit(s.mean)}, standard deviation "
         f"{figure.with_unit(s.std)}, 95 % from {figure.range_text(s.low, s.high)} {figure.unit}"
     ]
-    order = sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i])
-    for i in order:
-        x = s.inputs[i]
-        half = next(t for t in s.tightened if t.key == x.key and t.factor == 0.5)
-        lines.append(
-            f"    {entry(x.key).name}: Sobol index {s.indices.first[i]:z.2f} ± "
-            f"{s.indices.first_conf[i]:.2f}, total {s.indices.total[i]:z.2f} ± "
-            f"{s.indices.total_conf[i]:.2f}; half its scatter buys {max(0.0, half.bought):.2f} {figure.unit}"
-        )
+    lines.append(f"    {source_words(s)}")
+    for i in s.order if s.indices else ():
+        lines.append(f"    {entry(s.inputs[i].key).name}: {', '.join(_shares(s, i))}")
     return lines
+
+
+def _shares(s: Scatter, i: int) -> list[str]:
+    """An input's indices, and what half its scatter buys."""
+    if s.indices is None:
+        return []
+    first = index_text(s.indices.first[i], s.indices.first_ends[i])
+    said = [
+        f"Sobol index {first}",
+        f"total {index_text(s.indices.total[i], s.indices.total_ends[i])}",
+    ]
+    for t in s.tightened:
+        if t.key == s.inputs[i].key and t.factor == 0.5:
+            said.append(f"half its scatter buys {max(0.0, t.bought):.2f} {entry(s.key).unit}")
+    return said

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 
-from pipeline.study.best import BestField
 from pipeline.study.result import StudyResult
 from results.atomic import write_bytes
-from results.records import program_version
+from results.report.attached import Attachment
 from results.report.both import reports_of
 from results.report.document import (
     Block,
     Bullets,
+    Callout,
     Column,
     Document,
     Heading,
@@ -22,9 +22,10 @@ from results.report.document import (
     Pictures,
     Table,
 )
-from results.report.spans import Text, alarm, plain, worded
-from results.study.best_stress import PICTURE, VIEW, turning_best
-from results.study.labels import entry
+from results.report.issued import issued
+from results.report.spans import Text, alarm, bold, plain, worded
+from results.study.best_stress import PICTURE, VIEW, BestStress
+from results.study.labels import at_border, entry
 from results.study.notes import notes
 from results.study.scatter_section import scatter_section
 from results.study.why import disagreement, failures, influences, limits, misses
@@ -35,7 +36,7 @@ METHODS = {
     "grid": "Every combination of the given values.",
     "sobol": "Designs spread evenly by a scrambled Sobol sequence.",
     "optimize": "Designs chosen by an optimiser that learns from those before.",
-    "tolerance": "Scatter of uncertainty and tolerances through the whole chain (Saltelli's scheme).",
+    "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
 }
 WIDTHS = {
     "pareto.png": 75, "best.png": 48, PICTURE: 75, "convergence.png": 75, "parallel.png": 88,
@@ -47,41 +48,52 @@ CAPTIONS = {
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
     PICTURE: "Design {first} on the wave generator, by the solid model.",
-    "tolerance.png": "Distribution, Sobol indices, and what tighter tolerances buy.",
+    "tolerance.png": "Distribution; Sobol indices and what tighter tolerances buy, where known.",
 }
 
 
 def write_study_reports(
-    folder: Path, result: StudyResult, pictures: Sequence[Path], best: BestField | None = None
+    folder: Path,
+    result: StudyResult,
+    pictures: Sequence[Path],
+    best: BestStress | None = None,
+    attached: tuple[Attachment, ...] = (),
 ) -> list[Path]:
     """Write report.pdf and report.html, each whole or not at all; their paths.
 
-    With `best` its picture turns in the browser.
+    With `best` its picture turns in the browser, or the report says why it is missing.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
-    document = study_document(result, [p.name for p in pictures])
-    views = turning_best(best) if best else None
-    made = reports_of(document, {p.stem: p for p in pictures}, views)
+    best = best or BestStress()
+    document = study_document(result, [p.name for p in pictures], attached, best.missing)
+    made = reports_of(document, {p.stem: p for p in pictures}, best.views)
     for name, data in made.items():
         write_bytes(folder / name, data)
     return [folder / name for name in made]
 
 
-def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
-    """The report; `pictures` are the names of the files drawn."""
+def study_document(
+    result: StudyResult,
+    pictures: Sequence[str],
+    attached: tuple[Attachment, ...] = (),
+    missing: str = "",
+) -> Document:
+    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not."""
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
         *_best(result),
         *_why(result),
         *_verified(result),
+        *((Paragraph(f"No distribution: {result.unscattered}."),) if result.unscattered else ()),
         *chain.from_iterable(scatter_section(s) for s in result.scatter),
         *(_picture(n, result) for n in pictures),
+        *(_not_drawn(missing, result) if missing and PICTURE not in pictures else ()),
         *_failures(result),
-        Heading("What holds"),
+        Heading("Scope and limits"),
         Bullets(tuple(map(worded, notes(result)))),
     )
     return Document(
@@ -89,7 +101,8 @@ def study_document(result: StudyResult, pictures: Sequence[str]) -> Document:
         running="Study",
         name=study.design.name,
         heading=f"{study.name} · {study.design.name}",
-        issued=f"flexspline {program_version()}",
+        issued=issued(),
+        attached=attached,
         blocks=blocks,
     )
 
@@ -99,6 +112,11 @@ def _picture(name: str, result: StudyResult) -> Block:
     caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first)
     view = VIEW if name == PICTURE else ""
     return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
+
+
+def _not_drawn(reason: str, result: StudyResult) -> Iterable[Block]:
+    caption = CAPTIONS[PICTURE].format(first=result.pareto[0].slot)
+    yield Callout("amber", text=bold("Not drawn: ") + plain(f"{reason}."), items=(caption,))
 
 
 def _why(result: StudyResult) -> Iterable[Block]:
@@ -126,7 +144,7 @@ def _counts(result: StudyResult) -> str:
 def _best(result: StudyResult) -> Iterable[Block]:
     """A line per varied key and figure: name, then the best designs' values."""
     file = result.study.file
-    chosen = () if result.scatter else result.best(COLUMNS)
+    chosen = () if result.about_scatter else result.best(COLUMNS)
     if not chosen:
         return
     lines: list[tuple[str, ...]] = []
@@ -136,11 +154,15 @@ def _best(result: StudyResult) -> Iterable[Block]:
     for key in dict.fromkeys([*file.objective, *file.constraint, "flexspline_mass_g"]):
         q = entry(key)
         if all(key in r.outcome.figures for r in chosen):
-            lines.append((q.axis, *(q.text(r.outcome.figures[key]) for r in chosen)))
+            lines.append((q.axis, *(_text(key, r.outcome.figures) for r in chosen)))
     yield Heading("The best designs")
     yield Table(
         (Column("", grow=1), *(Column(f"design {r.slot}", "right") for r in chosen)), tuple(lines)
     )
+
+
+def _text(key: str, figures: Mapping[str, float]) -> str:
+    return entry(key).text(figures[key]) + (" †" if at_border(key, figures) else "")
 
 
 def _verified(result: StudyResult) -> Iterable[Block]:

@@ -4,45 +4,87 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pipeline.study.scatter import Scatter
+import numpy as np
+
+from pipeline.study.scatter import FACTORS, Scatter
 from results.report.document import Block, Column, Heading, Paragraph, Table
 from results.study.labels import entry
 
+MOST = 1_000_000
+"""Evaluations that a study file may ask for."""
+
 
 def scatter_section(s: Scatter) -> Iterable[Block]:
-    """Of one figure: its range, and a table over the inputs."""
+    """Of one figure: its range, where the shares come from, and a table over the inputs."""
     q = entry(s.key)
     sentence = (
         f"{q.name}: mean {q.with_unit(s.mean)}, standard deviation {q.with_unit(s.std)}, 95 % from "
-        f"{q.range_text(s.low, s.high)} {q.unit}. The quadratic surface behind the last four columns "
-        f"misses {s.surface_rms:.2g} {q.unit} (root mean square)."
+        f"{q.range_text(s.low, s.high)} {q.unit}. {source_words(s)}"
     )
     if s.dropped:
-        sentence += f" {s.dropped} sample blocks with a design that cannot be built are left out."
-    heads = ("Sobol, first", "Sobol, total", "× 0.75", "× 0.5", "× 0.25", "perfect")
+        sentence += f" {s.dropped} designs could not be built or solved and are left out."
+    bought = ("× 0.75", "× 0.5", "× 0.25", "perfect") if s.tightened else ()
+    heads = ("Sobol, first", "Sobol, total") if s.indices else ()
     yield Heading("What scatters, and what a tighter tolerance buys")
     yield Paragraph(sentence)
     yield Table(
-        (Column("Input", grow=1), Column("Value"), *(Column(h, "right") for h in heads)),
+        (
+            Column("Input", grow=1),
+            Column("Value"),
+            *(Column(h, "right") for h in (*heads, *bought)),
+        ),
         tuple(_inputs(s)),
     )
-    yield Paragraph(
-        f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that input "
-        "alone scatters less."
-    )
+    if s.tightened:
+        yield Paragraph(
+            f"The last four columns say by how many {q.unit} the 95 % range gets narrower when that "
+            "input alone scatters less."
+        )
+
+
+def source_words(s: Scatter) -> str:
+    """Where indices come from and how well they are known, or why there are none."""
+    if s.shares is None:
+        return "No input changes it, so there is nothing to share out."
+    explained = s.shares.explained
+    if s.surface and explained is not None:
+        missed = 100 * (1 - explained)
+        said = f"{missed:.2g} %" if missed >= 0.01 else "less than 0.01 %"
+        return (
+            "Distribution, indices and tightening come from one quadratic surface through all designs; at "
+            f"designs left out of the fit it misses {said} of the variance (root mean square "
+            f"{s.surface.misfit**0.5:.2g} {entry(s.key).unit}), which the intervals hold."
+        )
+    tried = ""
+    if explained is not None:
+        tried = f" (a quadratic surface would miss {100 * (1 - explained):.2g} % of the variance)"
+    if s.indices:
+        return (
+            f"Sobol indices come from the sample itself{tried}; what a tighter tolerance buys is not "
+            "known from it."
+        )
+    enough = s.shares.enough
+    would = f"; about {enough} would do" if enough and enough <= MOST else ""
+    return f"Too few evaluations for Sobol indices{tried}{would}."
+
+
+def index_text(value: float, ends: np.ndarray) -> str:
+    """An index and its 95 % interval."""
+    return f"{value:z.2f} ({ends[0]:z.2f} to {ends[1]:z.2f})"
 
 
 def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
     """A line for each input, the most important first."""
-    for i in sorted(range(len(s.inputs)), key=lambda i: -s.indices.total[i]):
+    for i in s.order:
         x = s.inputs[i]
         bought = {t.factor: t.bought for t in s.tightened if t.key == x.key}
         unit = entry(x.key)
         spread = x.std if x.normal else x.high - x.nominal
         kind = "s =" if x.normal else "±"
+        known = s.indices
         yield (
             unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
-            f"{s.indices.first[i]:z.2f} ± {s.indices.first_conf[i]:.2f}",
-            f"{s.indices.total[i]:z.2f} ± {s.indices.total_conf[i]:.2f}",
-            *(f"{max(0.0, bought[f]):.1f}" for f in (0.75, 0.5, 0.25, 0.0)),
+            *((index_text(known.first[i], known.first_ends[i]),
+               index_text(known.total[i], known.total_ends[i])) if known else ()),
+            *(f"{max(0.0, bought[f]):.1f}" for f in (FACTORS if s.tightened else ())),
         )  # fmt: skip

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pipeline.study.indices import Indices
 from pipeline.study.scatter import FACTORS, Scatter
 from results.study.labels import axis_label, entry, long_name
 from results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
@@ -15,48 +16,57 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+INPUT_IN, LEGEND_IN = 0.62, 0.34
+"""Heights: of an input's bars, of a legend above them."""
+
+
 def write_scatter(path: Path, scatter: Scatter) -> None:
-    """Three panels over one figure's scatter."""
+    """The distribution, and below it indices and tightening, as far as there are any."""
     k = len(scatter.inputs)
+    below = 1.1 + LEGEND_IN + INPUT_IN * k if scatter.indices else 0.1
     with styled():
-        height = 3.6 + 0.62 * k
+        height = 3.15 + below
         figure = new_figure(8.0, height)
-        top = 2.2 / height
-        above = figure.add_axes((0.10, 1 - top - 0.35 / height, 0.86, top))
+        above = figure.add_axes((0.10, (below + 0.55) / height, 0.86, 2.15 / height))
         _distribution(above, scatter)
-        low, rest = 0.75 / height, 1 - top - 1.95 / height
-        left = figure.add_axes((0.30, low, 0.28, rest))
-        right = figure.add_axes((0.68, low, 0.28, rest))
-        order = np.argsort(scatter.indices.total)
-        _indices(left, scatter, order)
-        _bought(right, scatter, order)
+        low, rest = 0.75 / height, INPUT_IN * k / height
+        order = np.array(scatter.order[::-1])
+        if scatter.indices:
+            wide = 0.30 if scatter.tightened else 0.70
+            _indices(figure.add_axes((0.21, low, wide, rest)), scatter, scatter.indices, order)
+        if scatter.tightened:
+            _bought(figure.add_axes((0.57, low, 0.39, rest)), scatter, order)
         save_png(figure, path)
 
 
 def _distribution(axes: Axes, s: Scatter) -> None:
-    axes.hist(s.values, bins=min(40, max(8, len(s.values) // 8)), color=PALETTE[1], ec="white")
+    bins = min(60, max(8, int(len(s.drawn) ** 0.5)))
+    share = np.full(len(s.drawn), 100 / len(s.drawn))
+    axes.hist(s.drawn, bins=bins, weights=share, color=PALETTE[1], ec="white", lw=0.6)
     axes.axvspan(s.low, s.high, color=PALETTE[3], alpha=0.45, lw=0, zorder=0)
     axes.axvline(s.mean, color=ACCENT, lw=1.6)
     q = entry(s.key)
-    axes.set_title(f"95 % from {q.range_text(s.low, s.high)} {q.unit}", color=INK)
+    source = "by the surface" if s.surface else f"{len(s.values)} designs"
+    axes.set_title(f"95 % from {q.range_text(s.low, s.high)} {q.unit}, {source}", color=INK)
     axes.set_xlabel(axis_label(s.key))
-    axes.set_ylabel("designs")
+    axes.set_ylabel("% of gears")
 
 
-def _indices(axes: Axes, s: Scatter, order: np.ndarray) -> None:
+def _indices(axes: Axes, s: Scatter, indices: Indices, order: np.ndarray) -> None:
     y = np.arange(len(order))
-    for shift, value, off, colour, name in (
-        (0.18, s.indices.total, s.indices.total_conf, PALETTE[0], "total"),
-        (-0.18, s.indices.first, s.indices.first_conf, PALETTE[2], "first order"),
+    for shift, value, ends, colour, name in (
+        (0.18, indices.total, indices.total_ends, PALETTE[0], "total"),
+        (-0.18, indices.first, indices.first_ends, PALETTE[2], "first order"),
     ):
+        off = np.abs(ends - value[:, None])[order].T
         axes.barh(
-            y + shift, np.maximum(value[order], 0), 0.32, xerr=off[order], color=colour, label=name,
-            error_kw={"lw": 1.0, "ecolor": INK},
+            y + shift, value[order], 0.32, xerr=off, color=colour, label=name,
+            error_kw={"lw": 1.3, "ecolor": ACCENT},
         )  # fmt: skip
     axes.set_yticks(y, [long_name(s.inputs[i].key) for i in order])
     axes.set_xlim(0, 1.05)
-    axes.set_xlabel("Sobol index, ± 95 %")
-    axes.legend(loc="lower right", fontsize=8.5)
+    axes.set_xlabel("Sobol index with 95 % interval")
+    _legend_above(axes, 2)
 
 
 def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
@@ -68,6 +78,16 @@ def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
         said = f"× {FACTORS[i]:g}" if FACTORS[i] else "perfect"
         axes.barh(y, values, 0.62, color=shades[i], label=said)
     axes.set_yticks(y, [""] * len(order))
+    axes.tick_params(axis="y", length=0)
     axes.set_xlabel(f"95 % range narrower by, {entry(s.key).unit}")
+    _legend_above(axes, 4)
+
+
+def _legend_above(axes: Axes, columns: int) -> None:
+    """Outside the axes: bars of any length leave it free."""
     handles, names = axes.get_legend_handles_labels()
-    axes.legend(handles[::-1], names[::-1], loc="lower right", fontsize=8.5)
+    axes.legend(
+        handles[::-1] if columns > 2 else handles, names[::-1] if columns > 2 else names,
+        loc="lower left", bbox_to_anchor=(-0.03, 1.0), ncols=columns, fontsize=8.5,
+        columnspacing=0.8, handlelength=1.1, handletextpad=0.4, borderaxespad=0.2,
+    )  # fmt: skip

@@ -10,7 +10,7 @@ from pipeline.study.holes import of_holes
 from pipeline.study.load import Study
 from pipeline.study.result import StudyResult
 from pipeline.study.verified import STRESS_SHARE, Check
-from results.study.labels import entry
+from results.study.labels import entry, valued
 
 STRONG = 0.3
 """Rank correlation from which an influence is worth a sentence."""
@@ -23,7 +23,7 @@ FEWEST = 8
 def influences(result: StudyResult) -> list[str]:
     """What moves each objective, by Spearman's rank correlation over all designs built."""
     rows = result.built
-    if len(rows) < FEWEST:
+    if len(rows) < FEWEST or result.about_scatter:  # where indices say what moves what
         return []
     said = []
     for key in result.shown:
@@ -57,7 +57,7 @@ def misses(result: StudyResult) -> list[str]:
         asked = " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
         said.append(
             f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
-            f"constraints, design {row.slot}, has {q.with_unit(row.outcome.figures[key])}."
+            f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
     return said
 

@@ -70,8 +70,8 @@ ONE_KEY = [
     cup(("flexspline.flange_thickness_mm", "3", "belongs to a hat", "boss_thickness_mm"), flexspline__flange_thickness_mm="3"),
     hat(("flexspline.boss_diameter_mm", "18", "belongs to a cup", "flange_inner_diameter_mm"), flexspline__boss_diameter_mm="18"),
     cup(("material.flexspline.poissons_ratio", "0.5", "0 to 0.49"), material__flexspline__poissons_ratio="0.5"),
-    cup(("material.flexspline.youngs_modulus_GPa", "0", "above 0 and up to 2000 GPa"), material__flexspline__youngs_modulus_GPa="0"),
-    cup(("load.torque_Nm", "0.0", "above 0"), load__torque_Nm="0.0"),
+    cup(("material.flexspline.youngs_modulus_GPa", "0", "0.001 to 2000 GPa"), material__flexspline__youngs_modulus_GPa="0"),
+    cup(("load.torque_Nm", "0.0", "1e-09 to 1e+06 N·m"), load__torque_Nm="0.0"),
     cup(("gear.pressure_angle_deg", "90", "5 to 45 deg"), gear__pressure_angle_deg="90"),
     cup(("bearing.bearing_play_model", '"linear"', '"involute" or "small_displacement"'), bearing__bearing_play_model='"linear"'),
     cup(("solver.model", '"magic"', '"axisymmetric" or "solid" or "auto"'), solver__model='"magic"'),
@@ -79,30 +79,29 @@ ONE_KEY = [
     cup(("name", "1 to 200 characters"), name='""'),
     cup(("name", r"\n", "one line"), name=r'"two\nlines"'),
     cup(("name", "1 to 200 characters"), name='"' + "x" * 5000 + '"'),
-    cup(("load.torque_Nm", "digits", "above 0"), load__torque_Nm="0x" + "f" * 5000),
+    cup(("load.torque_Nm", "digits", "1e-09 to 1e+06"), load__torque_Nm="0x" + "f" * 5000),
     cup((r"'od\nd'", "unknown key"), **{r'"od\nd"': "1"}),
 ]  # fmt: skip
 
 GEOMETRY = [
     # Ri − boss r = 10.2; ring start − diaphragm = 21.4
     cup(("flexspline.inner_fillet_mm", "25.0", "0 to 10.2 mm"), flexspline__inner_fillet_mm="25"),
-    # Rw − boss r = 10.6
-    cup(("flexspline.outer_fillet_mm", "11.0", "0 to 10.6 mm"), flexspline__outer_fillet_mm="11"),
-    # 1 + 0.4 + 0.6 + √(2·0.4·0.6) = 2.6928
-    cup(("flexspline.outer_fillet_mm", "2.7", "below 2.693"), flexspline__outer_fillet_mm="2.7"),
-    cup(("flexspline.bolt_circle_diameter_mm", "16.0", "between 10.5 and 15.5"), flexspline__bolt_circle_diameter_mm="16"),
-    cup(("flexspline.bolt_hole_diameter_mm", "6.0", "below 5 mm"), flexspline__bolt_hole_diameter_mm="6"),
+    # Rw − boss r = 10.6; 1 + 0.4 + 0.6 + √(2·0.4·0.6) = 2.69282
+    cup(("flexspline.outer_fillet_mm", "11.0", "0 to 2.69281 mm"), flexspline__outer_fillet_mm="11"),
+    cup(("flexspline.outer_fillet_mm", "2.7", "0 to 2.69281 mm"), flexspline__outer_fillet_mm="2.7"),
+    cup(("flexspline.bolt_circle_diameter_mm", "16.0", "from 10.5001 to 15.4999 mm"), flexspline__bolt_circle_diameter_mm="16"),
+    cup(("flexspline.bolt_hole_diameter_mm", "6.0", "from 0.001 to 4.99999 mm"), flexspline__bolt_hole_diameter_mm="6"),
     # π/asin(2.5/13) = 16.2 holes; 13 sin(π/17) = 2.389
-    cup(("flexspline.bolt_count", "17", "0 to 16", "below 2.389 mm"), flexspline__bolt_count="17"),
-    cup(("flexspline.bolt_circle_diameter_mm", "missing", "bolt_count = 6", "between 8 and 18"), flexspline__bolt_circle_diameter_mm=None),
+    cup(("flexspline.bolt_count", "17", "0 to 16", "to 2.388 mm"), flexspline__bolt_count="17"),
+    cup(("flexspline.bolt_circle_diameter_mm", "missing", "bolt_count = 6", "from 10.5001 to 15.4999 mm"), flexspline__bolt_circle_diameter_mm=None),
     cup(("flexspline.bore_diameter_mm", "18.0", "below boss_diameter_mm = 18"), flexspline__bore_diameter_mm="18"),
     cup(("flexspline.boss_diameter_mm", "38.4", "below inner_diameter_mm = 38.4"), flexspline__boss_diameter_mm="38.4"),
     cup(("flexspline.boss_thickness_mm", "0.5", "at least diaphragm_thickness_mm = 0.6"), flexspline__boss_thickness_mm="0.5"),
     cup(("flexspline.boss_thickness_mm", "30.0", "below length_mm = 30"), flexspline__boss_thickness_mm="30"),
     cup(("flexspline.diaphragm_thickness_mm", "30.0", "below length_mm = 30"), flexspline__diaphragm_thickness_mm="30"),
-    cup(("flexspline.ring_thickness_mm", "0.3", "at least wall_thickness_mm = 0.4"), flexspline__ring_thickness_mm="0.3"),
+    cup(("flexspline.ring_thickness_mm", "0.3", "0.4 (wall_thickness_mm) or from 0.401 to 30.399 mm"), flexspline__ring_thickness_mm="0.3"),
     # inside 30 − 0.6 = 29.4, outside 30 − 0.15 = 29.85
-    cup(("flexspline.ring_width_mm", "31.0", "at most 29.4 mm"), flexspline__ring_width_mm="31"),
+    cup(("flexspline.ring_width_mm", "31.0", "from 0.001 to 29.4 mm"), flexspline__ring_width_mm="31"),
     cup(("flexspline.ring_offset_mm", "29.5", "below 29.4"), flexspline__ring_offset_mm="29.5"),
     # the ring leaves 30 − 28.9 − 0.6 = 0.5 for the fillet
     cup(("flexspline.inner_fillet_mm", "1.0", "0 to 0.5 mm", "ring"), flexspline__ring_width_mm="28.9"),
@@ -111,21 +110,21 @@ GEOMETRY = [
     hat(("flexspline.flange_thickness_mm", "0.4", "at least diaphragm_thickness_mm = 0.5"), flexspline__flange_thickness_mm="0.4"),
     # flange r − Rw = 9.7
     hat(("flexspline.inner_fillet_mm", "9.8", "0 to 9.7 mm"), flexspline__inner_fillet_mm="9.8"),
-    hat(("flexspline.bolt_circle_diameter_mm", "80.0", "between 81.4 and 92.6"), flexspline__bolt_circle_diameter_mm="80"),
+    hat(("flexspline.bolt_circle_diameter_mm", "80.0", "from 81.4001 to 92.5999 mm"), flexspline__bolt_circle_diameter_mm="80"),
     # a shoulder to r = 32.3 reaches the flange's r = 31 at z = 16 − 1.3
-    hat(("flexspline.flange_thickness_mm", "15.0", "below 14.7 mm"), flexspline__flange_thickness_mm="15",
+    hat(("flexspline.flange_thickness_mm", "15.0", "to 14.6999 mm", "z = 14.7"), flexspline__flange_thickness_mm="15",
         flexspline__flange_inner_diameter_mm="62", flexspline__ring_thickness_mm="3.5", flexspline__inner_fillet_mm="0.5"),
     shaft(("shaft.segment[1].inner_diameter_mm", "18.0", "below outer_diameter_mm = 18"), s1__inner_diameter_mm="18"),
     shaft(("shaft.segment[2].outer_diameter_mm", "16.0", "above segment[1].inner_diameter_mm = 17"), s1__inner_diameter_mm="17"),
     shaft(("shaft.fillet_mm", "1.5", "0 to 1 mm", "segment[0] to segment[1]"), fillet_mm="1.5"),
     shaft(("shaft.fillet_mm", "0.5", "0 to 0.3 mm", "length_mm = 0.3"), s1__length_mm="0.3"),
     shaft(("shaft.grip_length_mm", "36.0", "below", "36 mm"), grip_length_mm="36"),
-    shaft(("shaft.grip_length_mm", "19.8", "at most 19.5 or at least 20 mm"), grip_length_mm="19.8"),
+    shaft(("shaft.grip_length_mm", "19.8", "from 0.001 to 19.5, from 20 to 31.5 or from 32 to 35.9999 mm"), grip_length_mm="19.8"),
     shaft(("shaft.bolt_circle_diameter_mm", "missing", "bolt_count = 6"), bolt_count="6", bolt_hole_diameter_mm="3"),
-    shaft(("shaft.bolt_circle_diameter_mm", "18.0", "between 9 and 17"), bolt_count="6", bolt_circle_diameter_mm="18", bolt_hole_diameter_mm="3"),
-    shaft(("shaft.keyway.depth_mm", "5.0", "below 5 mm"), keyway__depth_mm="5"),
+    shaft(("shaft.bolt_circle_diameter_mm", "18.0", "from 9.00001 to 16.9999 mm"), bolt_count="6", bolt_circle_diameter_mm="18", bolt_hole_diameter_mm="3"),
+    shaft(("shaft.keyway.depth_mm", "5.0", "from 0.001 to 4.99999 mm"), keyway__depth_mm="5"),
     # chord at r = 8, depth 3: 2√(64 − 25)
-    shaft(("shaft.keyway.width_mm", "12.5", "below 12.49 mm"), keyway__width_mm="12.5"),
+    shaft(("shaft.keyway.width_mm", "12.5", "from 0.001 to 12.4899 mm", "chord 12.49 mm"), keyway__width_mm="12.5"),
     shaft(("shaft.keyway.length_mm", "36.0", "below", "36 mm"), keyway__length_mm="36"),
     cup(("gear.teeth_circular_spline", "200", "202"), gear__teeth_circular_spline="200"),
     cup(("gear.teeth_circular_spline", "203", "even", "202, 204"), gear__teeth_circular_spline="203"),
@@ -169,6 +168,9 @@ def test_missing_table_is_named(tmp_path: Path) -> None:
 
 FILES = {
     "not UTF-8": (b'name = "\xff"', "not UTF-8"),
+    "UTF-16": ('name = "x"'.encode("utf-16"), "save it as UTF-8"),
+    "UTF-16 without its mark": ('name = "x"'.encode("utf-16-le"), "save it as UTF-8"),
+    "latin-1": ('# x\nname = "Zähne"'.encode("latin-1"), r"line 2, byte 13\); save it as UTF-8"),
     "syntax": (b"name = \n[flexspline", "not valid TOML"),
     "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
     "null byte": (b"name = \x00", "not valid TOML"),
@@ -195,7 +197,7 @@ def test_no_file_directory_and_pipe_are_refused(tmp_path: Path) -> None:
     with pytest.raises(DesignFileError, match="is a directory"):
         load_design(tmp_path)
     os.mkfifo(tmp_path / "pipe.toml")
-    with pytest.raises(DesignFileError, match="not a regular file"):
+    with pytest.raises(DesignFileError, match="is a pipe"):
         load_design(tmp_path / "pipe.toml")
     with pytest.raises(DesignFileError) as caught:
         load_design("nul\x00 and\nnewline.toml")

@@ -132,6 +132,7 @@ def test_grip_over_three_segments_leaves_faces_and_fillets_out() -> None:
     assert areas["grip"] == pytest.approx(expected, rel=KERNEL)
 
 
+@pytest.mark.cad
 @pytest.mark.parametrize(
     ("example", "part", "length"),
     [

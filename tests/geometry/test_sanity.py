@@ -11,6 +11,8 @@ from geometry.sanity import ring_bending_stress_MPa, warnings
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
     "flexspline.ring_thickness_mm": ("0.7", ("19.75", "19.9", "0.15 mm apart", "0.03 mm")),
+    # root 0.194(100 − 1.25) = 19.16 inside the tube of 38.4 mm
+    "gear.module_mm": ("0.194", ("19.16", "inside the tube", "19.2 mm", "gear.module_mm")),
     "flexspline.wall_thickness_mm": ("0.15", ("0.15 / 38.4 = 0.00391", "0.005 to 0.025")),
     "flexspline.length_mm": ("60.0", ("60 / 38.4 = 1.56", "0.2 to 1.4")),
     "flexspline.outer_fillet_mm": ("2.6", ("outer_fillet_mm = 2.6", "half of 0.4 mm")),

@@ -63,7 +63,7 @@ def test_wheel_says_what_it_needs_and_offers(wheel: zipfile.ZipFile) -> None:
     assert not [n for n in needed if n.startswith("ngsolve")]  # LGPL: for the benchmarks only
     assert f"{info}/licenses/LICENSE" in wheel.namelist()
     points = wheel.read(f"{info}/entry_points.txt").decode()
-    assert "flexspline = results.cli:main" in points
+    assert "flexspline = results.entry:main" in points
 
 
 def test_source_archive_is_whole_and_clean(archive: tarfile.TarFile) -> None:

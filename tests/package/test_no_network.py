@@ -1,8 +1,9 @@
-"""No command opens a connection beyond this machine; `--help` answers at once.
+"""No command opens a connection beyond this machine, or a port on it; `--help` answers at once.
 
-A hook in every process, those that a study starts too, refuses connections and name look-ups and
-notes them. Where the system lets us, the commands also run in a network namespace of their own,
-in which nothing but the loopback exists: that holds for libraries that bypass Python.
+A hook in every process, those that a study starts too, refuses connections, look-ups of names and
+ports to listen at, and notes them. Where the system lets us, the commands also run in a network
+namespace of their own, in which nothing but the loopback exists: that holds for libraries that bypass
+Python.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ def watch(event, args):
         where = args[0]
         if local(where) or where == socket.gethostname():
             return
+    elif event == "socket.bind":  # other users of the machine reach it, whatever the address
+        where = args[1]
     else:
         return
     with open(os.environ["NOTED"], "a") as noted:

@@ -43,7 +43,7 @@ class EnoughError(ComputationError):
 
 @contextmanager
 def hands(workers: int, scheduler: str) -> Iterator[Hands]:
-    """In place of `dask_hands`: one thread of this process, for `ENOUGH` designs."""
+    """In place of `hands_of`: one thread of this process, for `ENOUGH` designs."""
     with ThreadPoolExecutor(1) as executor:
         left = iter(range(ENOUGH))
 

@@ -23,7 +23,7 @@ def environment(
 
 
 def command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "results.cli", *map(str, words)]
+    return [sys.executable, "-m", "results.entry", *map(str, words)]
 
 
 def run(

@@ -51,10 +51,10 @@ def jobs(folder: Path) -> dict[str, Job]:
 def answer(path: Path) -> object:
     """The file's figures, without seconds and places."""
     if path.suffix == ".csv":
-        rows = [line.split(",") for line in path.read_text().splitlines()]
+        rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
         keep = [i for i, name in enumerate(rows[0]) if not name.endswith("_s")]
         return [[row[i] for i in keep] for row in rows]
-    record = json.loads(path.read_text())
+    record = json.loads(path.read_text(encoding="utf-8"))
     for key in ("wall_s", "stage_s"):
         record.get("solver", {}).pop(key, None)
     record.pop("stage_s", None)

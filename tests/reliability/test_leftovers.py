@@ -6,18 +6,26 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from pipeline.cache import Cache
-from pipeline.leftovers import clear, mark, unfinished
+from pipeline.leftovers import FORGOTTEN_S, MARK, clear, mark, unfinished
+from pipeline.process_id import ProcessId, _born, parsed, this_process
 from results.atomic import write_bytes
 from results.job import folder_of
 from results.scratch import own_scratch
 
 GONE = "import os, sys; sys.path.insert(0, sys.argv[1]); from pipeline.leftovers import mark; print(mark())"
 ROOT = Path(__file__).parents[2]
+
+
+def _of(pid: int) -> ProcessId:
+    """Another process of this machine and namespace."""
+    return replace(this_process(), pid=pid, born=str(_born(pid)))
 
 
 @pytest.fixture(scope="module")
@@ -40,8 +48,9 @@ def test_the_next_write_clears_what_a_dead_process_left(of_the_dead: str, tmp_pa
 def test_living_processes_and_other_machines_keep_theirs(tmp_path: Path) -> None:
     kept = [
         tmp_path / f"{mark()}mine.part",
-        tmp_path / f"{mark().replace(str(os.getpid()), str(os.getppid()))}parents.part",
-        tmp_path / ".flexspline-00000000-999999999-elsewhere.part",
+        tmp_path / f"{MARK}{_of(os.getppid())}-parents.part",
+        tmp_path
+        / f"{MARK}{replace(this_process(), machine='00000000', pid=999999999)}-elsewhere.part",
         tmp_path / ".flexspline-note.txt",
         tmp_path / "result.json",
     ]
@@ -95,3 +104,64 @@ def test_no_temporary_folder_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(tempfile, "tempdir", "/dev/null/nowhere")
     with own_scratch():
         assert tempfile.gettempdir() == "/dev/null/nowhere"
+
+
+CLEAR = """
+import sys
+from pathlib import Path
+from pipeline.leftovers import clear
+print(clear(Path(sys.argv[1])))
+"""
+UNSHARED = ("unshare", "--pid", "--fork")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="pid namespaces are Linux's")
+@pytest.mark.parametrize("own_proc", [True, False], ids=["own /proc", "the host's /proc"])
+def test_another_container_of_the_same_host_name_leaves_ours(
+    own_proc: bool, tmp_path: Path
+) -> None:
+    """In a new namespace our pid is nobody's, or another's."""
+    words = [*UNSHARED, *(["--mount-proc"] if own_proc else [])]
+    if subprocess.run([*words, "true"], check=False, capture_output=True).returncode != 0:
+        pytest.skip("namespaces take root")
+    (tmp_path / f"{mark()}scratch").mkdir()
+    done = subprocess.run(
+        [*words, sys.executable, "-c", CLEAR, str(tmp_path)],
+        capture_output=True, text=True, check=True, cwd=ROOT,
+    )  # fmt: skip
+    assert done.stdout == "[]\n"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_pid_given_again_is_another_process(tmp_path: Path) -> None:
+    """A living pid, but another start."""
+    before = replace(_of(os.getppid()), born="1")
+    assert before.fate == "gone"
+    (tmp_path / f"{MARK}{before}-half.part").write_bytes(b"half")
+    assert len(clear(tmp_path)) == 1
+
+
+@pytest.mark.parametrize(
+    "other", [{"machine": "00000000"}, {"space": "1"}, {"space": "x"}, {"machine": "x"}], ids=str
+)
+def test_whose_owner_cannot_be_seen_stays_until_it_is_old(other: dict, tmp_path: Path) -> None:
+    owner = replace(this_process(), pid=999_999_999, **other)
+    assert owner.fate == "unknown"
+    folder = tmp_path / f"{MARK}{owner}-scratch"
+    folder.mkdir()
+    file = folder / "mesh.npz"
+    file.write_bytes(b"")
+    long_ago = time.time() - FORGOTTEN_S - 60
+    os.utime(folder, (long_ago, long_ago))
+    assert clear(tmp_path) == []  # a file in it is new
+    os.utime(file, (long_ago, long_ago))
+    os.utime(folder, (long_ago, long_ago))
+    assert clear(tmp_path) == [folder]
+    assert not folder.exists()
+
+
+def test_a_process_is_read_back_from_its_text() -> None:
+    assert parsed(f"{this_process()}-name.part") == this_process()
+    assert this_process().fate == "alive"
+    for text in ("note.txt", "", "another/1/1", "8c3d0-1-", "-1-2-3-4"):
+        assert parsed(text) is None

@@ -82,10 +82,14 @@ def test_numbers_of_the_refusal() -> None:
     assert "solver.tolerance_pct" in str(caught.value)
 
 
-@pytest.mark.parametrize("edge_mm", [0.05, 1e-3, 1e-6])
-@pytest.mark.parametrize("design", [bases.CUP, KEYED], ids=lambda p: p.stem)
+@pytest.mark.parametrize("edge_mm", [0.05, 1e-3])
+@pytest.mark.parametrize(
+    "design",
+    [bases.CUP, pytest.param(KEYED, marks=pytest.mark.cad)],
+    ids=lambda p: p.stem,
+)
 def test_a_mesh_beyond_any_machine(design: Path, edge_mm: float, tmp_path: Path) -> None:
-    """Said before it is made: neither killed nor out of memory, and no file."""
+    """Said before it is made: neither killed nor out of memory; no K_e, and why, in result.json."""
     out = tmp_path / "out"
     words = command("stiffness", asking(design, edge_mm, tmp_path), "--out", out)
     done = within(4 * GB, words, tmp_path)
@@ -94,7 +98,9 @@ def test_a_mesh_beyond_any_machine(design: Path, edge_mm: float, tmp_path: Path)
     assert last.startswith("flexspline: ")
     assert "at most 500000" in last
     assert "solver.edge_length_mm" in last
-    assert not out.exists()
+    record = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    assert "K_e_Nm_per_rad" not in record
+    assert "at most 500000" in " ".join(record["warnings"])
 
 
 @pytest.mark.long

@@ -40,11 +40,11 @@ def _levels(K, *sizes):
 
 
 K_B = Stiffness(
-    31655.0, 31607.0, 31703.0, "solid", "1/12 of the part", "estimate of the error",
+    31655.0, 31607.0, 31703.0, False, "solid", "1/12 of the part", "estimate of the error",
     _levels(31655.0, 1400, 4465),
 )  # fmt: skip
 K_E = Stiffness(
-    35290.0, 35263.0, 35317.0, "axisymmetric", "body of revolution", "guaranteed bounds",
+    35290.0, 35263.0, 35317.0, True, "axisymmetric", "body of revolution", "bounds from both sides",
     _levels(35290.0, 300, 900, 2600),
 )  # fmt: skip
 K_LOBES = replace(K_B, K_Nm_per_rad=24310.0, lower_Nm_per_rad=24250.0, upper_Nm_per_rad=24370.0)
@@ -73,8 +73,10 @@ def content(**changes):
         K_series_Nm_per_rad=16687.0,
         backlash=BACKLASH,
         K_b_lobes=K_LOBES,
-        flexspline_peak=StressPeak(3.218, (9.0, 0.0, 0.6), "the boss's edge"),
-        wave_generator_peak=StressPeak(451.3, (19.2, 0.0, 21.6), "the seat's edges"),
+        flexspline_peak=StressPeak(3.218, (9.0, 0.0, 0.6), "the boss's edge", 0.4, True, 2.9),
+        wave_generator_peak=StressPeak(
+            451.3, (19.2, 0.0, 21.6), "the seat's edges", 0.4, False, 400.0
+        ),
         versions={"numpy": "2.0.0"},
         stage_seconds={"mesh of the flexspline": 5.31},
     )

@@ -97,7 +97,7 @@ def field(mesh: TetMesh, displacement: np.ndarray, at: tuple[float, float, float
     """A field whose stress grows with radius and height, and whose peak is said to be at `at`."""
     r = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1])
     mises = r / OUTER + mesh.nodes[:, 2] / LENGTH
-    peak = StressPeak(1.9, at, "the rim")
+    peak = StressPeak(1.9, at, "the rim", 0.5, False, 1.5)
     return SolidField(mesh, "made by hand", displacement, mises, peak)
 
 

@@ -9,10 +9,16 @@ import subprocess
 import sys
 import time
 import tomllib
+from math import pi
 from pathlib import Path
 
 import pytest
 
+from geometry.load import load_design
+from geometry.template import design_text
+from pipeline.diagnosis.specimens.designs import with_values, without_holes
+
+LIMIT, TOLERANCE = "material.flexspline.fatigue_limit_MPa", "solver.tolerance_pct"
 ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"
 
@@ -112,6 +118,7 @@ def test_damaged_cache_entries_are_discarded_and_said(finished, tmp_path: Path) 
     assert pytest.approx(first["K_b_Nm_per_rad"], rel=1e-9) == K
 
 
+@pytest.mark.cad
 def test_export_writes_cad_and_fields(finished, tmp_path: Path) -> None:
     _, cache, _ = finished
     done = flexspline("export", CUP, "--out", tmp_path, "--json", cache=cache)
@@ -205,3 +212,32 @@ def test_schema_is_json_schema() -> None:
     assert {"flexspline", "shaft", "material", "gear", "bearing", "load"} <= set(
         schema["properties"]
     )
+
+
+def test_a_torque_beyond_the_linear_model_is_said(tmp_path: Path) -> None:
+    path = copy_of(CUP, tmp_path, ("torque_Nm = 0.5", "torque_Nm = 5000.0"))
+    done = flexspline("backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--out", tmp_path, "--json")
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    # the twist of one of 200 teeth is no more than this away; the diaphragm's shear comes before
+    assert 0 < result["linear_torque_limit_Nm"] < 2 * pi / 200 * 1.72e4
+    line = f"load.torque_Nm = 5000 is beyond {result['linear_torque_limit_Nm']:.3g} N·m"
+    assert "warning: load.torque_Nm = 5000 is beyond" in done.stderr
+    assert any(w.startswith(line) for w in result["warnings"])
+
+
+def test_a_stress_above_the_stated_limit_is_said(tmp_path: Path) -> None:
+    revolved = without_holes(with_values(load_design(CUP), {LIMIT: 400.0, TOLERANCE: 5.0}))
+    path = tmp_path / "design.toml"
+    path.write_text(design_text(revolved), encoding="utf-8")
+    cache = tmp_path / "cache"
+    done = flexspline("stiffness", path, "--out", tmp_path, "--json", cache=cache)
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert result["wave_generator_peak_mises_MPa"] > 400
+    assert result["wave_generator_peak_at_excluded_border"] is True
+    assert result["wave_generator_seat_width_mm"] == 8
+    assert result["wave_generator_peak_half_seat_mises_MPa"] > 0
+    (line,) = [w for w in result["warnings"] if "mises" in w]
+    assert f"is above {LIMIT} = 400" in line
+    assert f"warning: {line}" in done.stderr

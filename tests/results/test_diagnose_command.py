@@ -98,9 +98,9 @@ def test_the_first_page_is_in_plain_words(done: tuple[Path, dict]) -> None:
     assert 2 <= len(pages) <= 6
     for words in (
         "The simulation against a measurement", "What was measured", "xb1-40-sweep.csv", "576 rows, 6 cycles",
-        "Found, and named",
-        "Friction hysteresis", "Clearance that changes with temperature", "What else could explain it",
-        "Error of the prediction on cycles 2, 5", "What to measure next", "arcsec rms",
+        "Causes identified",
+        "Friction hysteresis", "Clearance that changes with temperature", "Alternatives",
+        "Held out: cycles 2, 5", "What to measure next", "arcsec rms",
     ):  # fmt: skip
         assert words in first, words
     for jargon in ("nats", "posterior", "likelihood", "prior", "sigma", "Bayes"):
@@ -130,7 +130,7 @@ def test_same_input_gives_the_same_files(done: tuple[Path, dict], tmp_path: Path
 
 def test_terminal_words(tmp_path: Path) -> None:
     result = flexspline("diagnose", CUP, SWEEP, *GIVEN, "--out", tmp_path)
-    assert "Found, and named" in result.stdout
+    assert "Causes identified" in result.stdout
     assert "arcsec/K" in result.stdout
     assert "Measure next" in result.stdout
     assert max(map(len, result.stdout.splitlines())) <= 120

@@ -48,7 +48,7 @@ def sweep_file(path: Path, extra, units: int = 1, cycles: int = 5, noise: float 
             angle = COMPLIANCE * torque + GAP / 2 * np.sign(torque) + extra(torque, i // 80, i, u)
             angle += rng.normal(0, noise)
             lines.append(f"u{u},{i // 80},{i},{torque:.5f},{angle:.4f}")
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return path
 
 
@@ -87,7 +87,7 @@ def test_consistent(tmp_path: Path) -> None:
     said, text = diagnosed(path, tmp_path / "out")
     assert said["verdict"] == "consistent"
     assert said["causes"] == []
-    assert "The simulation holds" in text
+    assert "The measurement agrees with the simulation" in text
     assert "missing" not in text.partition("Figure")[0]
     names = {p.name for p in (tmp_path / "out").glob("*.png")}
     assert "causes.png" not in names

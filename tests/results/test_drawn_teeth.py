@@ -88,7 +88,10 @@ def test_every_figure_is_that_of_the_plain_ring(folder: Path, drawn: dict) -> No
     thickness = drawn["equivalent_ring_thickness_mm"]
     path = written(folder, "thick", f"ring_thickness_mm = {thickness!r}")
     plain = json.loads(stiffness(path, cache="other cache").stdout)
-    assert figures(plain) == figures(drawn)
+    # the numbers are the plain ring's; that it is as stiff as the teeth is no theorem
+    assert plain.pop("K_b_bounds_kind") == "guaranteed"
+    assert drawn["K_b_bounds_kind"] == "estimated"
+    assert figures(plain) == figures({k: v for k, v in drawn.items() if k != "K_b_bounds_kind"})
     assert not KEYS & set(plain)
 
 

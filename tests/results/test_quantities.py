@@ -19,7 +19,7 @@ CONTRACT = json.loads("""
 """)
 SUFFIXES = {
     "N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s", "mm": "_mm", "%": "_pct",
-    "g": "_g",
+    "g": "_g", "N·m": "_Nm",
 }  # fmt: skip
 
 

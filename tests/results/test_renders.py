@@ -31,11 +31,13 @@ def check_picture(path):
     return image
 
 
+@pytest.mark.opengl
 def test_mesh_picture(tmp_path):
     write_mesh_picture(tmp_path / "mesh.png", tube(30.0, 2), "Flexspline")
     check_picture(tmp_path / "mesh.png")
 
 
+@pytest.mark.opengl
 def test_stress_picture_of_a_half_part(tmp_path):
     mesh = tube(180.0, 12)
     made = field(mesh, twisted(mesh.nodes), (0.0, OUTER, LENGTH))
@@ -48,6 +50,7 @@ def test_stress_picture_of_a_half_part(tmp_path):
     assert blue_ish[:300].min() < -100
 
 
+@pytest.mark.opengl
 def test_ellipse_picture(tmp_path):
     mesh = tube(90.0, 6)
     made = field(mesh, oval(mesh.nodes), (OUTER, 0.0, LENGTH))
@@ -55,6 +58,7 @@ def test_ellipse_picture(tmp_path):
     check_picture(tmp_path / "ellipse.png")
 
 
+@pytest.mark.opengl
 def test_same_content_gives_the_same_bytes(tmp_path):
     mesh = tube(30.0, 2)
     for name in ("a.png", "b.png"):
@@ -62,6 +66,7 @@ def test_same_content_gives_the_same_bytes(tmp_path):
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
+@pytest.mark.opengl
 def test_a_point_s_pixel_is_where_the_renderer_draws_it():
     import pyvista as pv
 

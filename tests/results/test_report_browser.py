@@ -3,6 +3,7 @@
 import io
 import json
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from PIL import Image
 
 from results.renders.ellipse_picture import turning_ellipse
 from results.renders.stress_picture import turning_torque_stress
+from results.report.attached import Attachment
 from results.report.content import Pictures
 from results.report.page import WORDS, page_of, png
 from results.report.sections import run_document
@@ -170,6 +172,50 @@ def test_dark_light_and_print(browser, report):
                 )
     assert grounds["light"] > 240
     assert grounds["dark"] < 80
+
+
+def brightness(page, picture):
+    """Mean of the pixels that a picture's corner shows, 0 to 255, as a person sees them."""
+    shot = Image.open(io.BytesIO(page.locator(picture).first.screenshot())).convert("L")
+    return np.asarray(shot)[4:12, 4:12].mean()
+
+
+def test_charts_are_dark_on_a_dark_page_and_white_on_paper(browser, tmp_path):
+    """White ground and red ink, as a chart has them."""
+    chart = tmp_path / "chart.png"
+    image = Image.new("RGB", (160, 120), "white")
+    image.paste((179, 55, 31), (60, 40, 100, 80))
+    image.save(chart)
+    path = tmp_path / "r.html"
+    made = content(pictures=Pictures(budget=chart, wave_generator=chart))
+    path.write_bytes(
+        page_of(run_document(made), {"budget": png(chart), "wave_generator": png(chart)})
+    )
+    with opened(browser, path) as page:
+        assert brightness(page, "img.chart") > 250
+    with opened(browser, path, "dark") as page:
+        assert brightness(page, "img.chart") < 40  # the page's own ground is 26 of 255
+        assert brightness(page, "img.stress") < 215  # its colours mean stress: dimmed, not turned
+        shot = Image.open(io.BytesIO(page.locator("img.chart").screenshot())).convert("RGB")
+        red, green, blue = shot.getpixel((shot.width // 2, shot.height // 2))
+        assert red > max(green, blue) + 30  # red stays red
+        page.emulate_media(media="print")
+        assert brightness(page, "img.chart") > 250
+
+
+def test_a_page_gives_back_the_design_file(browser, tmp_path):
+    """Opened from a folder, offline: a click saves the file, byte for byte."""
+    data = "name = 'Größe'\r\n".encode()
+    path = tmp_path / "r.html"
+    made = content(attached=(Attachment("d.toml", data, "Design file"),))
+    path.write_bytes(page_of(run_document(made), {}))
+    with opened(browser, path) as page:
+        page.locator("summary").click()
+        assert page.locator("pre").inner_text().strip() == "name = 'Größe'"
+        with page.expect_download() as saved:
+            page.locator("a[download]").click()
+        assert saved.value.suggested_filename == "d.toml"
+        assert Path(saved.value.path()).read_bytes() == data
 
 
 def test_without_webgl_the_pictures_stay(browser, report):

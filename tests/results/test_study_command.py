@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+from opengl import why_no_pictures
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
@@ -36,7 +37,7 @@ def written(folder: Path, workers: int = 1, text: str = STUDY) -> Path:
 
 
 def rows_of(folder: Path) -> list[dict[str, str]]:
-    with open(folder / "study.csv", newline="") as file:
+    with open(folder / "study.csv", encoding="utf-8", newline="") as file:
         return [{k: v for k, v in r.items() if k != "wall_s"} for r in csv.DictReader(file)]
 
 
@@ -55,9 +56,10 @@ def test_a_grid_on_one_and_on_three_processes(tmp_path: Path) -> None:
     text = "".join(p.extract_text() for p in PdfReader(tmp_path / "1" / "report.pdf").pages)
     assert "4 of 6 designs were built and solved" in text
     assert "#panic(1) $x$ cup" in text  # as its letters
-    assert "best_stress.png" in {Path(name).name for name in said["files"]}
+    drawn = not why_no_pictures()
+    assert ("best_stress.png" in {Path(name).name for name in said["files"]}) is drawn
     assert f"Design {said['best'][0]['design']} on the wave generator" in text
-    assert "3-D view" in (tmp_path / "1" / "report.html").read_text()
+    assert ("3-D view" in (tmp_path / "1" / "report.html").read_text()) is drawn
 
     again = CliRunner().invoke(
         app, ["study", str(written(tmp_path)), "--out", str(tmp_path / "1"), "--json"]

@@ -12,11 +12,13 @@ from pipeline.study.result import StudyResult
 from pipeline.study.store import Row
 from pipeline.study.verified import Check, Verified
 from results.report.pdf import pdf_of
+from results.study.labels import valued
 from results.study.notes import notes
 from results.study.report import study_document
 from results.study.why import disagreement, influences, misses, unfollowed
 
 WALL = "flexspline.wall_thickness_mm"
+FLAG = "wave_generator_peak_at_excluded_border"
 K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
 STUDY = f"""
 design = "xb1-40.toml"
@@ -95,3 +97,36 @@ def test_keys_of_holes_are_named_as_not_followed() -> None:
     text = STUDY.replace("[objective]", f'"{key}" = {{ values = [2.5, 3.0] }}\n[objective]')
     assert unfollowed(result_of(text).study) == key
     assert f"{key}: the fast model does not follow" in " ".join(notes(result_of(text)))
+
+
+@pytest.mark.parametrize(
+    ("density", "said"),
+    [
+        ("", "7850 kg/m³ (steel's, since the file states none)"),
+        ("4430.0", "4430 kg/m³ (as stated)"),
+    ],
+)
+def test_the_report_says_which_density_the_mass_is_of(density: str, said: str) -> None:
+    result = result_of()
+    steel = result.study.design.material.flexspline
+    if density:
+        steel = steel.model_copy(update={"density_kg_per_m3": float(density)})
+    design = result.study.design.model_copy(
+        update={"material": result.study.design.material.model_copy(update={"flexspline": steel})}
+    )
+    assert f"Mass at {said}." in notes(replace(result, study=replace(result.study, design=design)))
+
+
+def test_a_peak_at_the_excluded_border_is_marked_in_study_table_and_notes() -> None:
+    result = result_of(STUDY.replace("300.0", "450.0"))
+    marked = tuple(
+        replace(r, outcome=replace(r.outcome, figures={**r.outcome.figures, FLAG: float(i < 4)}))
+        for i, r in enumerate(result.rows)
+    )
+    said = replace(result, rows=marked)
+    assert valued(STRESS, marked[0].outcome.figures).endswith("MPa (at excluded border)")
+    assert valued(STRESS, marked[4].outcome.figures).endswith("MPa")
+    (line,) = [n for n in notes(said) if "at excluded border" in n]
+    assert "in 4 of 10 designs" in line
+    assert not any("at excluded border" in n for n in notes(result))  # of a study begun before
+    assert "†" in str(study_document(said, ()).payload())

@@ -213,7 +213,7 @@ def assert_lobes(shape: Meridian) -> None:
         assert coarse.lower_Nm_per_rad <= fine.K_Nm_per_rad <= coarse.upper_Nm_per_rad
         for level in fine.levels:
             # Clapeyron: work and twice the energy are one
-            assert level.K_reaction_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
+            assert level.K_check_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
         found[supported] = fine
     # a constraint stiffens: rigid rotation of `mesh` against the same torque spread any other way
     assert found[True].K_Nm_per_rad < even.upper_Nm_per_rad

@@ -166,7 +166,7 @@ def assert_contains_finer(shape: Meridian, driven: str) -> None:
         coarse.upper_Nm_per_rad, fine.upper_Nm_per_rad
     )
     for level in fine.levels:
-        assert level.K_reaction_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
+        assert level.K_check_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
 
 
 ANY_PART = st.one_of(

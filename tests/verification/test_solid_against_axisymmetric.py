@@ -39,7 +39,7 @@ def test_solid_stiffness_lies_within_its_bounds(
     assert found.upper_Nm_per_rad > exact.lower_Nm_per_rad
     for level in found.levels:
         assert level.K_Nm_per_rad > exact.lower_Nm_per_rad  # prescribed rotation: from above
-        assert level.K_reaction_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
+        assert level.K_check_Nm_per_rad == pytest.approx(level.K_Nm_per_rad, rel=1e-6)
 
 
 def test_wedge_is_the_full_model(record) -> None:

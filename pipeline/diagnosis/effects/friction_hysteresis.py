@@ -50,7 +50,7 @@ class FrictionHysteresis(Cause):
     tunable = ("threshold_Nm", "exponent", "reach")
     shape_doubt = 0.015
     vary = "torque_rate"
-    reveals = "a closed loop at two rates that differ tenfold: friction stays, lag goes"
+    reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
 
     def shapes(self, rig: Rig) -> list[Shape]:
         largest = rig.torque_Nm

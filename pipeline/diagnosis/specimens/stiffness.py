@@ -16,6 +16,7 @@ import numpy as np
 
 from fea.axisymmetric.lobes import lobe_stiffness
 from fea.axisymmetric.torsion import torsional_stiffness
+from fea.shortfall import settled
 from fea.types import Elastic
 from geometry.design import Design
 from geometry.errors import ComputationError, DesignError
@@ -135,8 +136,10 @@ class Bench:
         def make() -> float:
             outline = meridian(bare, part)
             if lobed:
-                return 1 / lobe_stiffness(outline, material, True, tolerance).K_Nm_per_rad
-            return 1 / torsional_stiffness(outline, material, DRIVEN[part], tolerance).K_Nm_per_rad
+                found = lobe_stiffness(outline, material, True, tolerance)
+            else:
+                found = torsional_stiffness(outline, material, DRIVEN[part], tolerance)
+            return 1 / settled(found).K_Nm_per_rad
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
                   "tolerance": tolerance}  # fmt: skip

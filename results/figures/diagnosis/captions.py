@@ -7,25 +7,24 @@ CAPTIONS = {
         Above, the measured angle on the simulated line; below, their difference. A difference inside
         the band is what the design's own uncertainty allows; a pattern in it is not.""",
     "residual_simulation": """
-        What the simulation leaves, its stiffness and gap calibrated by up to two standard deviations
-        of the design's uncertainty, against every channel recorded. If nothing were missing, all
-        points would lie in the grey band and the lines on zero. Lines apart for rising and falling
-        torque mean friction or lag; lines that drift apart for T > 0 and T < 0 mean a gap or a
-        stiffness that changes.""",
+        Residual of the simulation, its stiffness and gap calibrated by up to two standard deviations of
+        the design's uncertainty, against every recorded channel. With no cause missing, all points lie in
+        the grey band and the lines on zero. Lines apart for rising and falling torque mean friction or
+        lag; lines that drift apart for T > 0 and T < 0 mean a gap or a stiffness that changes.""",
     "causes": """
-        Each part of the extended model alone. Pale: the measurement with all other parts taken off.
-        Dark: what the model adds. The pale points should scatter evenly about the dark ones.""",
+        Each part of the extended model alone. Pale: the measurement less all other parts. Dark: the
+        model. The pale points should scatter evenly about the dark ones.""",
     "units": """
         How much of each cause each unit shows, with two standard deviations: 1 is as much as all units
         together, 0 is nothing. A unit off the dashed line differs from the others.""",
     "held_out": """
-        Error on rows that were kept out of the fit. As far as the last bar comes down to the dashed
-        line, the extended model predicts as well as the instrument reads.""",
+        Prediction error on rows not used in the fit. Where the last bar reaches the dashed line, the
+        extended model predicts as well as the instrument reads.""",
     "residual_model": """
-        What remains after the best model: the points should fill the grey band evenly and the lines
-        stay near zero. Each panel says whether a test finds anything left.""",
+        Residual of the best model: the points should fill the grey band evenly and the lines stay near
+        zero. Each panel says whether a test finds structure.""",
     "residual_unknown": """
-        What remains after the best model, unnamed structure included. The structure that no cause
+        Residual of the best model, unnamed structure included. The structure that no cause
         explains lies in: {where}; the figure of the model's parts shows its course.""",
     "envelope": """
         The angle between −T and +T of each unit. The band holds 95 of 100 units that are as the
@@ -45,8 +44,8 @@ CAPTIONS = {
         depends; a shift of all points alike is the material's, or a part that the simulation leaves
         out.""",
     "held_out_specimens": """
-        Each specimen predicted from all others. As far as the last bar comes down to the dashed
-        line, the explanation predicts as well as the rig measures.""",
+        Each specimen predicted from all others. Where the last bar reaches the dashed line, the
+        explanation predicts as well as the rig measures.""",
 }
 
 

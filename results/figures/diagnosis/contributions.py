@@ -12,6 +12,7 @@ from pipeline.diagnosis.result import NamedCause
 from results.diagnosis.words import capital, channel_words, magnitude_words, odds_words, sure_words
 from results.figures.diagnosis.panels import DPI, FALLING, RISING
 from results.figures.diagnosis.seen import Channel, Seen, thinned
+from results.figures.words import thin_labels
 from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def write_contributions(path: Path, shown: Seen) -> None:
                     color=INK if k < 2 else MUTED,
                 )  # fmt: skip
         figure.text(
-            0.035, 1 - 0.26 / height, "What each part adds to the simulated angle",
+            0.035, 1 - 0.26 / height, "Contribution of each cause to the output angle",
             fontsize=12, weight="bold", va="center",
         )  # fmt: skip
         handles = [
@@ -175,6 +176,7 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
     axes.grid(True)
     if part.channel.levels:
         axes.set_xticks(range(len(part.channel.levels)), part.channel.levels)
+        thin_labels(axes)
     elif part.channel.key == "cycle":
         from matplotlib.ticker import MaxNLocator
 

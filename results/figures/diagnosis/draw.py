@@ -74,7 +74,7 @@ def _sweep(shown: Seen, sheet: _Sheet) -> None:
         sheet.place("residual_simulation"),
         shown,
         shown.calibrated,
-        "What the simulation leaves, against every channel",
+        "Residual of the simulation against every channel",
     )
     if parts(shown):
         write_contributions(sheet.place("causes"), shown)
@@ -92,7 +92,7 @@ def _sweep(shown: Seen, sheet: _Sheet) -> None:
         sheet.place("residual_model", words),
         shown,
         shown.left,
-        "What the best model leaves, against every channel",
+        "Residual of the best model against every channel",
         _told(shown),
     )
 
@@ -102,7 +102,7 @@ def _told(shown: Seen) -> dict[str, str]:
     return {
         t.channel: f"structure left, {t.rms_arcsec:.2g}″"
         if t.p_value < SIGNIFICANT
-        else "nothing left"
+        else "no structure left"
         for t in shown.diagnosis.left_over
     }
 

@@ -11,6 +11,7 @@ from pipeline.diagnosis.end_points.race import Hypothesis
 from results.diagnosis.words import channel_words, figures_text, title_of
 from results.figures.diagnosis.panels import DPI
 from results.figures.diagnosis.seen import plain_names
+from results.figures.words import fit
 from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
@@ -37,7 +38,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
     with styled():
         figure = new_figure(8.0, height, DPI)
         axes = figure.add_axes((0.13, 0.6 / height, 0.61, ROW * len(units) / height))
-        ends = []
+        ends, said = [], []
         for row, unit in enumerate(units):
             envelope = analysis.envelope_at(unit.torque_Nm)
             low, high = envelope.interval_arcsec
@@ -64,11 +65,12 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             )  # fmt: skip
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
-            axes.annotate(
+            said.append(axes.annotate(
                 f"{unit.total_arcsec:.1f}″, {words} ({unit.z:+.1f} σ)".replace("-", "−"),
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
-            )  # fmt: skip
+            ))  # fmt: skip
+        fit(said, 0.235 * figure.bbox.width)
         room = 0.06 * (max(ends) - min(ends) + 1e-9)
         axes.set_xlim(min(ends) - room, max(ends) + room)
         axes.set_ylim(len(units) - 0.5, -0.5)

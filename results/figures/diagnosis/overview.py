@@ -8,6 +8,7 @@ import numpy as np
 
 from results.figures.diagnosis.panels import DPI, FALLING, RISING
 from results.figures.diagnosis.seen import Seen, thinned
+from results.figures.words import keep_inside
 from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 
@@ -18,9 +19,9 @@ def write_overview(path: Path, shown: Seen) -> None:
     inside = ~shown.kept
     model = shown.nominal - shown.left
     with styled():
-        figure = new_figure(8.0, 4.9, DPI)
-        above = figure.add_axes((0.095, 0.475, 0.875, 0.445))
-        below = figure.add_axes((0.095, 0.115, 0.875, 0.325))
+        figure = new_figure(8.0, 5.4, DPI)
+        above = figure.add_axes((0.095, 0.43, 0.875, 0.405))
+        below = figure.add_axes((0.095, 0.104, 0.875, 0.295))
         angle = prediction.angle_arcsec(history) + shown.nominal
         for sign in (-1.0, 1.0):
             t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)
@@ -29,7 +30,7 @@ def write_overview(path: Path, shown: Seen) -> None:
             first = sign > 0
             above.fill_between(
                 t, line - spread, line + spread, color=PALETTE[0], alpha=0.13, lw=0,
-                label="its stated uncertainty, 1σ" if first else None,
+                label="its stated uncertainty, 1σ" if first and spread.any() else None,
             )  # fmt: skip
             above.plot(t, line, color=PALETTE[0], lw=1.6, label="simulation" if first else None)
             below.fill_between(t, -spread, spread, color=PALETTE[0], alpha=0.13, lw=0)
@@ -62,10 +63,16 @@ def write_overview(path: Path, shown: Seen) -> None:
         above.set_ylabel("output angle in arcsec")
         below.set_ylabel("difference in arcsec")
         below.set_xlabel("output torque in N·m")
-        above.set_title("Measured and simulated angle, wave generator locked")
-        above.legend(loc="upper left", fontsize=9, markerscale=2.0)
-        if shown.diagnosis.outcome.causes:
-            handles, names = below.get_legend_handles_labels()
-            at = names.index("extended model")
-            below.legend([handles[at]], [names[at]], loc="upper right", fontsize=9, markerscale=4.0)
+        figure.text(
+            0.035, 0.955, "Measured and simulated angle, wave generator locked", fontsize=12,
+            weight="bold", va="center",
+        )  # fmt: skip
+        named = dict(zip(*reversed(above.get_legend_handles_labels()), strict=True))
+        named |= dict(zip(*reversed(below.get_legend_handles_labels()), strict=True))
+        figure.legend(
+            named.values(), named.keys(), loc="center left", bbox_to_anchor=(0.085, 0.88), ncols=3,
+            fontsize=9, markerscale=2.0, columnspacing=1.3, borderpad=0,
+        )  # fmt: skip
+        for axes in (above, below):
+            keep_inside(axes)
         save_png(figure, path)

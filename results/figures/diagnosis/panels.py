@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from results.figures.diagnosis.seen import Channel, Seen, thinned
+from results.figures.words import thin_labels
 from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
@@ -124,6 +125,8 @@ def _panel(axes: Axes, shown: Seen, channel: Channel, left: np.ndarray, high: fl
         axes.set_xticks(levels)
     if step and channel.key != "torque_Nm":
         axes.set_xlim(levels[0] - 0.5 * step, levels[-1] + 0.5 * step)
+    if channel.levels:
+        thin_labels(axes)
 
 
 def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarray]:

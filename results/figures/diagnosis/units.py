@@ -10,6 +10,7 @@ from pipeline.diagnosis.fleet import UnitShare
 from results.diagnosis.words import capital
 from results.figures.diagnosis.panels import DPI
 from results.figures.diagnosis.seen import Seen, plain_names
+from results.figures.words import thin_labels
 from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_CAUSES = 4
@@ -53,10 +54,11 @@ def write_units(path: Path, shown: Seen, shares: dict[str, UnitShare]) -> None:
             axes.set_xlim(-0.5, len(names) - 0.5)
             axes.set_xticks(x, names if i == len(shares) - 1 else [""] * len(names))
             axes.set_ylabel("share")
+            thin_labels(axes)
             axes.grid(axis="y")
         axes.set_xlabel("unit under test")
         figure.text(
-            0.035, 1 - 0.28 / height, "What is common, and what is one unit's own",
+            0.035, 1 - 0.28 / height, "Effects common to all units, and of single units",
             fontsize=12, weight="bold", va="center",
         )  # fmt: skip
         save_png(figure, path)

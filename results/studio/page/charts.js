@@ -6,7 +6,7 @@ import { el, grouped, signed, svg } from "./dom.js";
 export function chartBudget(budget, looks, pinned, solid) {
   const rows = Object.fromEntries(budget.rows.map((row) => [row.key.split(".")[1], row]));
   const total = rows.total.value;
-  const most = (total + rows.std.value) * 1.02;
+  const most = (total + (rows.std?.value ?? 0)) * 1.02;
   const bar = svg("svg", { viewBox: "0 0 100 7", preserveAspectRatio: "none", class: "stack", role: "img",
     "aria-label": `Backlash ${rows.total.text} arcsec` });
   let from = 0;
@@ -15,8 +15,8 @@ export function chartBudget(budget, looks, pinned, solid) {
     bar.append(svg("rect", { x: from, y: 0.5, width: Math.max(width, 0), height: 6, fill: row.colour }));
     from += width;
   }
-  const std = (100 * rows.std.value) / most;
-  bar.append(svg("path", { d: `M${from - std} 3.5H${from + std}M${from - std} 1.5V5.5M${from + std} 1.5V5.5`,
+  const std = (100 * (rows.std?.value ?? 0)) / most;
+  if (std) bar.append(svg("path", { d: `M${from - std} 3.5H${from + std}M${from - std} 1.5V5.5M${from + std} 1.5V5.5`,
     class: "deviation", stroke: looks.accent }));
   const line = (row, swatch) => {
     const other = pinned?.rows.find((entry) => entry.key === row.key);
@@ -25,14 +25,14 @@ export function chartBudget(budget, looks, pinned, solid) {
     return el("tr", { "data-key": row.key },
       el("td", { class: "sym" }, swatch ? dot(row.colour) : null), el("td", { class: "what" }, row.name.replace(", total", "")),
       withValue(row),
-      el("td", { class: "share" }, swatch ? `${Math.round((100 * row.value) / total)} %` : `± ${rows.std.text} (1σ)`),
+      el("td", { class: "share" }, swatch ? `${Math.round((100 * row.value) / total)} %` : budget.spread),
       solid ? el("td", { class: "value solid" }, solved?.text ?? "") : null,
       pinned ? el("td", { class: "delta" }, change === null ? "" : signed(change, row.decimals)) : null);
   };
   const doubt = budget.sources.map(([name, text]) => `${name} ${text}`).join(", ");
   return el("div", { class: "budget" }, bar,
     el("table", {}, el("tbody", {}, ...budget.rows.slice(0, 4).map((row) => line(row, true)), totalLine(line(rows.total, false)))),
-    el("p", { class: "limit" }, `1σ from: ${doubt}`));
+    el("p", { class: "limit" }, rows.std ? `1σ from: ${doubt}` : "The design states no uncertainty"));
 }
 
 function totalLine(row) {
@@ -90,7 +90,7 @@ export function chartLine(line, budget, looks, pinned, tall) {
   const total = budget.rows.find((row) => row.key.endsWith("total"));
   const std = budget.rows.find((row) => row.key.endsWith("std"));
   chart.append(svg("text", { x: W - EDGE.right - 4, y: H - EDGE.bottom - 7, "text-anchor": "end", class: "strong" },
-    `lost motion ${total.text} ± ${std.text}`));
+    `lost motion ${total.text}${std ? ` ± ${std.text}` : ""}`));
   return chart;
 }
 

@@ -2,6 +2,7 @@
 
 import { chartBudget, chartLine } from "./charts.js";
 import { el, signed, symbol } from "./dom.js";
+import { state } from "./state.js";
 
 const SHORT = {
   K_b_Nm_per_rad: "flexspline, uniform",
@@ -15,67 +16,95 @@ const SHORT = {
   shaft_torque_peak_mises_MPa: "shaft, load torque",
 };
 
+const BRIEF = ["K_b_Nm_per_rad", "K_e_Nm_per_rad", "wave_generator_peak_mises_MPa"];
+const DRAWN = "backlash"; // the sum and its line come together, and so have one number
+
 export class Figures {
   constructor(root, looks) {
-    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, fresh: new Set(), numbers: {} });
+    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, numbers: {} });
+    this.whose = el("p", { id: "whose", class: "note", role: "status", hidden: true });
     this.stiffness = el("section", {});
     this.work = el("section", { id: "solid" });
     this.agreement = el("p", { id: "agreement", class: "limit" });
     this.peaks = el("section", { class: "peaks" });
     this.backlash = el("section", {});
-    root.append(this.stiffness, this.work, this.peaks, this.backlash);
+    root.append(this.whose, this.stiffness, this.work, this.peaks, this.backlash);
   }
 
-  // What an answer does not hold keeps its older figures, marked. One that is not of the design as it
-  // stands (`current`) is shown where nothing newer is, and marked too.
-  show(answer, current) {
-    const merged = { ...this.now, ...answer };
+  // Every figure keeps the number of the design that it belongs to; an older one never replaces a newer.
+  show(answer) {
     const newer = (key) => answer.number >= (this.numbers[key] ?? 0);
-    const taken = (key) => (this.numbers[key] = answer.number);
-    if (current) this.fresh = new Set(answer.budget ? ["backlash"] : []);
+    const merged = { ...this.now };
     for (const part of ["stiffness", "peaks"]) {
       merged[part] = answer[part].map((row, i) => {
         if (row.text === undefined || !newer(row.key)) return this.now?.[part][i] ?? row;
-        taken(row.key);
-        if (current) this.fresh.add(row.key);
+        this.numbers[row.key] = answer.number;
         return row;
       });
     }
-    if (answer.budget && newer("backlash")) taken("backlash");
-    else if (this.now) Object.assign(merged, { budget: this.now.budget, line: this.now.line });
+    if (answer.budget && newer(DRAWN)) {
+      this.numbers[DRAWN] = answer.number;
+      Object.assign(merged, { budget: answer.budget, line: answer.line });
+    }
     this.now = merged;
     this.draw();
   }
 
-  stale() {
-    this.fresh = new Set();
-    this.draw();
+  // The answers that belong to one design, and no other's.
+  of(number) {
+    const own = (row) => (this.numbers[row.key] === number ? row : waiting(row));
+    const whole = this.numbers[DRAWN] === number ? this.now : { budget: null, line: null };
+    return { stiffness: this.now.stiffness.map(own), peaks: this.now.peaks.map(own), budget: whole.budget, line: whole.line };
+  }
+
+  stale(key) {
+    return this.numbers[key] !== state.number;
+  }
+
+  // Of a design that cannot be built there are no figures: those of the last one that can, and of no third.
+  shown() {
+    const { now, pinned, solid } = this;
+    if (!state.broken) return { now, pinned, solid };
+    return { now: this.of(state.goodNumber), pinned: null, solid: solid?.old ? null : solid };
   }
 
   draw() {
     if (!this.now) return;
+    this.seen = this.shown();
+    const { now, pinned, solid } = this.seen;
+    this.whose.hidden = !state.broken;
+    this.whose.replaceChildren("Figures of the last design that can be built: ", el("bdi", {}, state.good?.name ?? ""));
     this.root.classList.toggle("narrow", this.narrow);
-    this.root.classList.toggle("crowded", Boolean(this.solid && this.pinned));
+    this.root.classList.toggle("crowded", Boolean(solid && pinned));
     const unit = (rows) => rows.find((row) => row.unit)?.unit ?? "";
     this.stiffness.replaceChildren(
-      this.heading("Stiffness", unit(this.now.stiffness)),
-      el("table", {}, this.head("bounds"), el("tbody", {}, ...this.now.stiffness.map((row) => this.row(row, "stiffness")))),
+      this.heading("Stiffness", unit(now.stiffness)),
+      el("table", {}, this.head("bounds (≈ estimated)"), el("tbody", {}, ...now.stiffness.map((row) => this.row(row, "stiffness")))),
     );
     this.peaks.replaceChildren(
-      this.heading("Peak von Mises stress", unit(this.now.peaks)),
-      el("table", {}, this.head("of fatigue limit"), el("tbody", {}, ...this.now.peaks.map((row) => this.row(row, "peaks")))),
+      this.heading("Peak von Mises stress", unit(now.peaks)),
+      el("table", {}, this.head("of fatigue limit"), el("tbody", {}, ...now.peaks.map((row) => this.row(row, "peaks")))),
     );
-    const busy = this.fresh.has("backlash") ? "" : "stale";
-    this.backlash.className = busy;
-    const now = this.now.budget;
+    this.writeBrief(now);
+    this.backlash.className = this.stale(DRAWN) ? "stale" : "";
     this.backlash.replaceChildren(this.heading("Backlash between −T and +T", "arcsec"));
-    if (now) {
+    if (now.budget) {
       this.backlash.append(
-        chartBudget(now, this.looks, this.pinned?.budget, this.solidFresh() ? this.solid.budget : null),
+        chartBudget(now.budget, this.looks, pinned?.budget, solid && !solid.old ? solid.budget : null),
         this.heading("Output angle, wave generator locked", "arcsec over N·m"),
-        chartLine(this.now.line, now, this.looks, this.pinned?.line, !this.narrow),
+        chartLine(now.line, now.budget, this.looks, pinned?.line, !this.narrow),
       );
     }
+  }
+
+  // Where the answers do not stand beside the sliders: four of them in a line that stays in sight.
+  writeBrief({ stiffness, peaks, budget }) {
+    const row = (key) => [...stiffness, ...peaks].find((entry) => entry.key === key);
+    const cell = (head, unit, text, key) => el("div", { class: this.stale(key) ? "stale" : "" },
+      el("dt", {}, head, unit ? ` ${unit}` : ""), el("dd", {}, text ?? "…"));
+    const found = BRIEF.map((key) => row(key)).map((entry) => cell(symbol(entry.symbol), entry.unit, entry.text, entry.key));
+    const total = budget?.rows.find((entry) => entry.key.endsWith("total"));
+    document.getElementById("brief").replaceChildren(...found, cell("Backlash", "arcsec", total?.text, DRAWN));
   }
 
   heading(text, unit) {
@@ -84,19 +113,19 @@ export class Figures {
 
   // Beside other columns, bounds and places stand below their figure.
   get narrow() {
-    return Boolean(this.solid || this.pinned);
+    return Boolean(this.seen.solid || this.seen.pinned);
   }
 
   head(third) {
     const cells = [el("th", { colspan: 2 }), el("th", {}, "fast model")];
     if (!this.narrow) cells.push(el("th", {}, third));
-    if (this.solid) cells.push(el("th", {}, this.solid.old ? "solid, of earlier" : "solid"));
-    if (this.pinned) cells.push(el("th", {}, "to pinned"));
+    if (this.seen.solid) cells.push(el("th", {}, this.seen.solid.old ? "solid, of earlier" : "solid"));
+    if (this.seen.pinned) cells.push(el("th", {}, "to pinned"));
     return el("thead", {}, el("tr", {}, ...cells));
   }
 
   row(row, part) {
-    const busy = row.text !== undefined && this.fresh.has(row.key) ? "" : "stale";
+    const busy = this.stale(row.key) ? "stale" : "";
     const value = el("td", { class: `value ${row.rough ? "rough" : ""}` }, row.text ? `${row.rough ? "≈\u2009" : ""}${row.text}` : "…");
     value.dataset.value = row.value ?? "";
     const cells = [el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name), value];
@@ -105,29 +134,34 @@ export class Figures {
     if (this.narrow) below(value, side);
     else cells.push(el("td", { class: "side", title: row.half_pct }, side ?? ""));
     below(cells[1], row.at);
-    if (this.solid) cells.push(this.solidCell(row, part));
-    if (this.pinned) cells.push(this.pinnedCell(row, part));
+    if (row.more) {
+      cells[1].append(el("span", { class: "limit more" }, row.more));
+      cells[1].title = `${row.name}: ${row.more}`;
+    }
+    if (this.seen.solid) cells.push(this.solidCell(row, part));
+    if (this.seen.pinned) cells.push(this.pinnedCell(row, part));
     const line = el("tr", { class: busy, "data-key": row.key }, ...cells);
     line.classList.toggle("over", Boolean(row.over));
     return line;
   }
 
-  solidFresh() {
-    return this.solid && !this.solid.old;
-  }
-
   solidCell(row, part) {
-    const found = this.solid[part].find((other) => other.key === row.key);
-    const cell = el("td", { class: `value solid ${this.solid.old ? "stale" : ""}`, title: found?.bounds }, found?.text ?? "");
+    const found = this.seen.solid[part].find((other) => other.key === row.key);
+    const cell = el("td", { class: `value solid ${this.seen.solid.old ? "stale" : ""}`, title: found?.bounds }, found?.text ?? "");
     if (found?.bounds) cell.append(el("br"), el("span", { class: "limit" }, found.bounds));
     return cell;
   }
 
   pinnedCell(row, part) {
-    const other = this.pinned[part].find((entry) => entry.key === row.key);
+    const other = this.seen.pinned[part].find((entry) => entry.key === row.key);
     if (other?.value === undefined || row.value === undefined) return el("td", {});
     const change = row.value - other.value;
     return el("td", { class: "delta" }, signed(change, row.decimals), el("br"),
       el("span", { class: "limit" }, `${signed((100 * change) / other.value, 1)} %`));
   }
+}
+
+// A row whose figure is still to come.
+function waiting({ key, symbol, name, unit }) {
+  return { key, symbol, name, unit };
 }

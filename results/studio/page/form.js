@@ -4,9 +4,9 @@ import { el } from "./dom.js";
 import { setAt, state, valueAt } from "./state.js";
 
 export class Form {
-  // changed(): a value was moved or typed; restructured(tables): a table came or went.
-  constructor(root, { changed, restructured }) {
-    Object.assign(this, { root, changed, restructured });
+  // changed(): a value was moved or typed; broke(): what was typed is none; restructured(tables): a table came or went.
+  constructor(root, { changed, broke, restructured }) {
+    Object.assign(this, { root, changed, broke, restructured });
   }
 
   build(groups) {
@@ -26,35 +26,44 @@ export class Form {
 
   row(entry) {
     const value = valueAt(state.tables, entry.at);
-    const fault = el("p", { class: "fault", role: "alert", hidden: true });
     const id = `f-${entry.key}`;
+    const fault = el("p", { id: `${id}-fault`, class: "fault", role: "alert", hidden: true });
     const label = el("label", { for: id, title: entry.hint }, entry.label);
     const inputs = entry.kind === "choice" ? this.choice(entry, id, value)
       : entry.kind === "text" ? this.text(entry, id, value) : this.number(entry, id, value);
     const box = el("div", { class: `row ${entry.kind}` }, label, ...inputs, fault);
     box.dataset.key = entry.key;
-    this.rows.set(entry.key, { box, fault });
+    const field = inputs.find((input) => input.id === id);
+    field.setAttribute("aria-describedby", fault.id);
+    this.rows.set(entry.key, { box, field, fault, wrong: false });
     return box;
   }
 
   number(entry, id, value) {
     const field = el("input", { id, inputmode: "decimal", autocomplete: "off", value: value ?? "", placeholder: "none" });
     const slider = el("input", {
-      type: "range", min: entry.low, max: entry.high, step: entry.step, "aria-label": entry.label, value: value ?? entry.low,
+      type: "range", min: entry.low, max: entry.high, step: entry.step, value: value ?? entry.low,
+      "aria-label": entry.unit ? `${entry.label}, ${entry.unit}` : entry.label,
     });
     slider.addEventListener("input", () => {
       field.value = slider.value;
+      this.rows.get(entry.key).wrong = false;
       this.put(entry, Number(slider.value));
     });
     field.addEventListener("input", () => {
-      const text = field.value.trim().replace(",", ".");
-      if (text === "" && entry.optional) return this.put(entry, undefined);
-      const typed = Number(text);
-      if (text === "" || !Number.isFinite(typed)) {
+      const row = this.rows.get(entry.key);
+      const typed = field.value.trim() === "" && entry.optional ? undefined : read(field.value);
+      row.wrong = Number.isNaN(typed);
+      if (row.wrong) {
+        this.broke();
         return this.fault(entry.key, `${entry.key}: a number is needed${entry.unit ? ` in ${entry.unit}` : ""}`);
       }
-      slider.value = typed;
+      if (typed !== undefined) slider.value = typed;
       this.put(entry, typed);
+    });
+    // what was taken of "1,5" or "1 000" is shown
+    field.addEventListener("change", () => {
+      if (!this.rows.get(entry.key).wrong) field.value = valueAt(state.tables, entry.at) ?? "";
     });
     return [slider, field, el("span", { class: "unit" }, entry.unit)];
   }
@@ -68,7 +77,7 @@ export class Form {
   }
 
   text(entry, id, value) {
-    const field = el("input", { id, maxlength: 200, value: value ?? "", spellcheck: "false", autocomplete: "off" });
+    const field = el("input", { id, dir: "auto", maxlength: 200, value: value ?? "", spellcheck: "false", autocomplete: "off" });
     field.addEventListener("input", () => this.put(entry, field.value));
     return [field];
   }
@@ -119,14 +128,28 @@ export class Form {
     const place = row ? row.fault : this.root.querySelector("#fault");
     place.textContent = text;
     place.hidden = false;
-    row?.box.classList.add("bad");
     if (!row) return;
+    row.box.classList.add("bad");
+    row.field.setAttribute("aria-invalid", "true");
     row.box.closest("details").open = true;
     if (row.box.contains(document.activeElement)) place.scrollIntoView({ block: "nearest" });
   }
 
+  // All is well again, but for fields that hold no number.
   clear() {
-    for (const place of this.root.querySelectorAll(".fault")) place.hidden = true;
-    for (const box of this.root.querySelectorAll(".bad")) box.classList.remove("bad");
+    this.root.querySelector("#fault").hidden = true;
+    for (const { box, field, fault, wrong } of this.rows.values()) {
+      if (wrong) continue;
+      fault.hidden = true;
+      box.classList.remove("bad");
+      field.removeAttribute("aria-invalid");
+    }
   }
+}
+
+// A number as people write and paste it: a decimal comma, spaces between thousands, a true minus. NaN for anything else.
+function read(text) {
+  const plain = text.replace(/\s/g, "").replace("\u2212", "-");
+  const dotted = plain.includes(".") ? plain : plain.replace(",", ".");
+  return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(dotted) ? Number(dotted) : NaN;
 }

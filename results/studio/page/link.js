@@ -2,18 +2,24 @@
 
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 3000;
+const SILENCE_MS = 15000; // every design is answered at once; after a sleep of the machine nothing comes, and nothing says so
 
 export class Link {
   constructor({ opened, lost, note, bytes }) {
     this.told = { opened, lost, note, bytes };
     this.wait = FIRST_WAIT_MS;
     this.connect();
+    addEventListener("online", () => this.isOpen || this.connect());
   }
 
   connect() {
+    clearTimeout(this.later);
+    if (this.socket) this.socket.onclose = this.socket.onmessage = null;
+    this.socket?.close();
     const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => {
+      clearTimeout(this.silence);
       if (data instanceof ArrayBuffer) return this.told.bytes(data);
       const note = JSON.parse(data);
       if (note.is === "hello") {
@@ -22,13 +28,17 @@ export class Link {
         this.told.opened();
       } else this.told.note(note);
     };
-    socket.onclose = () => {
-      this.tab = null;
-      this.told.lost();
-      setTimeout(() => this.connect(), this.wait);
-      this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
-    };
+    socket.onclose = () => this.lost();
     this.socket = socket;
+    this.tab = null;
+  }
+
+  lost() {
+    this.tab = null;
+    clearTimeout(this.silence);
+    this.told.lost();
+    this.later = setTimeout(() => this.connect(), this.wait);
+    this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
   }
 
   get isOpen() {
@@ -36,8 +46,13 @@ export class Link {
   }
 
   say(note) {
-    if (this.isOpen) this.socket.send(JSON.stringify(note));
-    return this.isOpen;
+    if (!this.isOpen) return false;
+    this.socket.send(JSON.stringify(note));
+    if (note.do === "want") {
+      clearTimeout(this.silence);
+      this.silence = setTimeout(() => this.lost(), SILENCE_MS);
+    }
+    return true;
   }
 }
 

@@ -12,6 +12,8 @@ import { follow } from "./theme.js";
 import { Work } from "./work.js";
 
 const JSON_TYPE = "application/json";
+const LOST = "Connection lost. Trying again; the design in this tab is kept.";
+const REFUSED = "The server was started again and does not know this browser yet: open the address that it printed in another tab. The design in this tab is kept.";
 const notice = document.getElementById("notice");
 const title = document.getElementById("name");
 follow(document.getElementById("theme"));
@@ -30,7 +32,7 @@ if (before?.good) {
 
 const figures = new Figures(document.getElementById("answers"), started.looks);
 const stage = new Stage(started.looks, { view: state.view, chosen: (view) => { state.view = view; send(); } });
-const form = new Form(document.getElementById("form"), { changed: send, restructured: reopen });
+const form = new Form(document.getElementById("form"), { changed: send, broke, restructured: reopen });
 const works = {};
 for (const [kind, words, tip] of [
   ["solid", "Solve with holes (solid model)", "Tetrahedra, refined until the tolerance is met"],
@@ -53,7 +55,7 @@ document.getElementById("tools").append(
   el("button", { id: "load", onclick: () => pick(".toml", load) }, "Open"),
   el("button", { id: "save", onclick: save }, "Save"),
   works.step.button,
-  el("button", { id: "png", onclick: async () => download(await stage.png(state.good.name), `${stem()}.png`, "image/png") }, "PNG"),
+  el("button", { id: "png", disabled: !stage.draws, onclick: async () => download(await stage.png(), `${stem()}.png`, "image/png") }, "PNG"),
   works.report.button, pins.button);
 for (const id of ["design", "measured"]) {
   document.getElementById(`tab-${id}`).addEventListener("click", () => {
@@ -71,16 +73,27 @@ for (const name of ["dragover", "drop"]) {
   });
 }
 
+// In one column the answers come first, for the eye and for the Tab key.
+const oneColumn = matchMedia("(max-width: 719px), (max-height: 559px)");
+const place = () => document.querySelector("main")[oneColumn.matches ? "append" : "prepend"](form.root);
+oneColumn.addEventListener("change", place);
+place();
+
 let coming = null;
 let lostOnce = false;
 adopt(opened);
 const link = new Link({
-  opened: () => { if (lostOnce) say("Connected again.", 3000); send(); },
+  opened: () => {
+    if (lostOnce) say("Connected again.", 3000);
+    lostOnce = false;
+    send();
+  },
   lost: async () => {
+    if (!lostOnce) say(LOST);
     lostOnce = true;
-    say("Connection lost. Trying again; the design in this tab is kept.");
-    ask("start").catch(({ status, message }) => status === 403 && say(`Refused: ${message}.`));
-    figures.stale();
+    ask("start").then(() => {}, ({ status }) => say(status === 403 ? REFUSED : LOST));
+    state.number += 1; // what was under way is lost
+    mark();
     for (const work of Object.values(works)) work.lost();
   },
   note: heard,
@@ -98,26 +111,47 @@ function adopt({ tables, form: groups }) {
 
 function send() {
   state.number += 1;
-  whatIsOld();
-  figures.stale();
-  document.getElementById("stage").dataset.number = state.number;
+  mark();
   link.say({ do: "want", number: state.number, tables: state.tables, view: state.view });
 }
 
+// Every figure and picture says, by its looks, whether it is of the design as it stands.
+function mark() {
+  whatIsOld();
+  pins.compare();
+  figures.draw();
+  stage.mark();
+}
+
+// A text that is no number: the design as it stands has no figures.
+function broke() {
+  state.number += 1;
+  state.broken = true;
+  mark();
+}
+
 function heard(note) {
-  if (note.is === "picture") coming = note.number;
+  if (note.is === "picture") coming = note;
   if (note.is === "progress") works[note.kind].progress(note.line);
   if (note.is === "ended") works[note.kind].ended(note);
   if (note.is === "refused") say(note.text);
-  // of a moment ago: while a slider moves, better than figures that stand still
-  if (note.is === "answer" && note.number < state.number) figures.show(note, false);
-  if (note.number !== state.number) return;
+  if (note.is === "answer") figures.show(note); // late ones too: while a slider moves, better than none
+  if (note.number === state.number) heardOfThis(note);
+  if (note.is === "answer" || note.is === "taken") pins.compare();
+}
+
+function heardOfThis(note) {
+  if (note.is === "answer" && note.beyond) stage.passed(note.beyond);
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
-    stage.working(false, note.is === "fault" ? `${note.text}. Shown: the last design that can be built.` : "");
+    state.broken = note.is === "fault";
+    mark();
+    stage.working(false, state.broken ? "Shown: the last design that can be built." : "");
   }
   if (note.is === "taken") {
     form.clear();
+    state.broken = false;
+    state.goodNumber = note.number;
     notice.hidden = notice.hidden || notice.dataset.passing !== "yes";
     state.good = structuredClone(state.tables);
     keep();
@@ -127,10 +161,7 @@ function heard(note) {
     works.solid.words = note.left_out.length ? "Solve with holes (solid model)" : "Solve with the solid model";
     if (!works.solid.running) works.solid.button.textContent = works.solid.words;
     stage.working(true);
-  }
-  if (note.is === "taken" || note.is === "answer") {
-    figures.show(note, true);
-    pins.compare();
+    figures.show(note);
   }
 }
 
@@ -200,7 +231,7 @@ function finished(kind, note, line) {
 
 // Answers of long work stay, marked, when the design has moved on.
 function whatIsOld() {
-  const moved = (kind) => works[kind].design && differences(works[kind].design, state.tables).length > 0;
+  const moved = (kind) => works[kind].design && differences(works[kind].design, state.broken ? state.good : state.tables).length > 0;
   if (figures.solid) figures.solid.old = moved("solid");
-  measured.old(Boolean(moved("diagnose")));
+  measured.old(Boolean(works.diagnose.design) && (state.broken || moved("diagnose")));
 }

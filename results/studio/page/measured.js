@@ -31,7 +31,7 @@ export class Measured {
       start, stop, done: (note) => this.show(note), said: (text) => text.replaceAll("measured.csv", this.file?.name ?? "") });
     this.work.button.hidden = true;
     this.name = el("span", { class: "limit" });
-    const zone = el("div", { id: "drop", tabindex: 0 },
+    const zone = el("div", { id: "drop" },
       el("p", {}, "Drop a CSV of measured data here, or ", el("button", { class: "small", onclick: () => pick(".csv,text/csv", (f) => this.take(f)) }, "choose a file")),
       el("p", { class: "limit" }, `Torque sweep, end points or specimens; at most ${LARGEST_MB} MB. Compared with the design on the left.`),
       el("p", {}, this.name, " ", this.work.button, " ", this.work.line));

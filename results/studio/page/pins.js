@@ -13,7 +13,7 @@ export class Pins {
   }
 
   toggle() {
-    state.pinned = state.pinned ? null : { tables: structuredClone(state.good), answer: structuredClone(this.figures.now) };
+    state.pinned = state.pinned ? null : { tables: structuredClone(state.good), answer: structuredClone(this.figures.of(state.goodNumber)) };
     this.figures.pinned = state.pinned?.answer ?? null;
     this.label();
     this.compare();
@@ -27,12 +27,12 @@ export class Pins {
 
   // Which dimensions differ, then and now; figures pinned while still coming are filled in once.
   compare() {
-    this.list.hidden = !state.pinned;
-    if (!state.pinned) return;
+    this.list.hidden = !state.pinned || state.broken;
+    if (this.list.hidden) return;
     const found = differences(state.pinned.tables, state.good);
-    if (!found.length) this.figures.pinned = state.pinned.answer = structuredClone(this.figures.now);
+    if (!found.length) this.figures.pinned = state.pinned.answer = structuredClone(this.figures.of(state.goodNumber));
     const text = (value) => (value === undefined ? "absent" : typeof value === "object" ? Object.values(value).join(", ") : String(value));
-    this.list.replaceChildren(el("h2", {}, `Pinned: ${state.pinned.tables.name}`),
+    this.list.replaceChildren(el("h2", {}, el("span", {}, "Pinned: ", el("bdi", {}, state.pinned.tables.name))),
       found.length ? el("table", {}, el("tbody", {}, ...found.map(({ key, before, after }) =>
         el("tr", {}, el("td", {}, key), el("td", { class: "value" }, text(before)), el("td", {}, "→"), el("td", { class: "value" }, text(after))))))
         : el("p", { class: "limit" }, "No dimension differs."));

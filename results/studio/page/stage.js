@@ -2,6 +2,7 @@
 
 import { el, grouped } from "./dom.js";
 import { unpacked } from "./shape.js";
+import { state } from "./state.js";
 import { View } from "./view.js";
 
 const CASES = {
@@ -12,12 +13,29 @@ const CASES = {
 const TICKS = 4;
 const PATIENCE_MS = 400; // so long may colours of the design before stay: no flicker while a slider moves
 
+// The part in 3-D; where the browser cannot draw it, one line instead.
+function drawing(root, looks) {
+  try {
+    return new View(root, looks);
+  } catch {
+    root.append(el("p", { id: "no-picture" }, "This browser shows no 3-D picture (WebGL is off or missing). All figures are here."));
+    return new NoView();
+  }
+}
+
+class NoView {
+  show() {}
+  set() {}
+  reset() {}
+  picture() { return null; }
+}
+
 export class Stage {
   constructor(looks, { view, chosen }) {
     this.looks = looks;
     this.number = 0;
     this.view = view;
-    this.canvas = new View(document.getElementById("canvas"), looks);
+    this.canvas = drawing(document.getElementById("canvas"), looks);
     this.scale = document.getElementById("scale");
     this.caption = document.getElementById("caption");
     const choice = el("select", { id: "case", "aria-label": "Load case shown" },
@@ -33,15 +51,27 @@ export class Stage {
       box.addEventListener("change", () => this.canvas.set({ [option]: box.checked }));
       return el("label", { class: "check" }, box, words);
     };
+    addEventListener("beforeprint", () => this.print());
     document.getElementById("stagebar").append(choice, toggle("open", "Cut open", "open", false),
       toggle("deformed", "Deformed", "deformed", true),
       el("button", { id: "reset", class: "small", onclick: () => this.canvas.reset() }, "Reset view"),
-      this.busy = el("span", { class: "busy", id: "busy" }));
+      this.busy = el("span", { id: "busy", role: "status" }));
   }
 
-  // Bytes that belong to design `number`; those of another view or older than what is shown are left.
-  take(buffer, number) {
-    const shape = unpacked(buffer);
+  get draws() {
+    return this.canvas instanceof View;
+  }
+
+  // What is drawn by WebGL does not reach the paper; a picture of it does.
+  print() {
+    const part = this.canvas.picture();
+    document.getElementById("printed")?.remove();
+    if (part) document.getElementById("canvas").append(el("img", { id: "printed", alt: "", src: part.toDataURL() }));
+  }
+
+  // Bytes of the design `number`; those of another view or older than what is shown are left.
+  take(buffer, { number, name }) {
+    const shape = Object.assign(unpacked(buffer), { name });
     if (shape.view !== this.view || number < this.number) return;
     clearTimeout(this.waiting);
     const outline = shape.is === "profile" ? shape.places.join() : this.outline;
@@ -58,6 +88,15 @@ export class Stage {
     this.working(shape.is === "profile");
     this.drawScale();
     this.root().dataset.shown = `${shape.is} ${shape.view} ${number}`;
+    this.mark();
+  }
+
+  // Grey while it belongs to a design before; hidden if that is not even the one whose figures are shown.
+  mark() {
+    const root = this.root();
+    root.dataset.number = state.number;
+    root.classList.toggle("former", Boolean(this.shown) && this.number !== state.number);
+    root.classList.toggle("foreign", Boolean(this.shown) && state.broken && this.number !== state.goodNumber);
   }
 
   root() {
@@ -93,19 +132,27 @@ export class Stage {
     this.left = leftOut.length ? `Left out of the fast model: ${leftOut.join(", ")}. ` : "";
     this.warnings = warnings;
     this.w0 = w0;
+    this.beyond = [];
+    this.write();
+  }
+
+  // A load torque at which the linear model is not valid.
+  passed(lines) {
+    this.beyond = lines;
     this.write();
   }
 
   write() {
-    const seat = this.view === "wave_generator" ? `Seat moved radially by w₀ cos 2φ, w₀ = ${grouped(this.w0 ?? 0, 3)} mm. ` : "";
+    const seat = this.view === "wave_generator" ? `Seat, as wide as the ring and cylindrical, moved radially by w₀ cos 2φ, w₀ = ${grouped(this.w0 ?? 0, 3)} mm. ` : "";
     this.caption.replaceChildren(
       el("p", {}, seat, this.magnified ?? ""),
       this.left ? el("p", { id: "left-out", class: "note" }, this.left, "“Solve with holes” answers with them.") : "",
-      ...(this.warnings ?? []).map((line) => el("p", { class: "warning" }, `Unusual: ${line}`)));
+      ...(this.warnings ?? []).map((line) => el("p", { class: "warning" }, `Unusual: ${line}`)),
+      ...(this.beyond ?? []).map((line) => el("p", { class: "warning" }, line)));
   }
 
   // The part with its title and scale, on the page's own ground.
-  png(title) {
+  png() {
     const part = this.canvas.picture();
     const k = part.width / part.clientWidth;
     const sheet = el("canvas", { width: part.width, height: part.height });
@@ -116,7 +163,7 @@ export class Stage {
     pen.drawImage(part, 0, 0);
     pen.fillStyle = style.color;
     pen.font = `600 ${15 * k}px ${style.fontFamily}`;
-    pen.fillText(title, 16 * k, 28 * k);
+    pen.fillText(this.shown.name, 16 * k, 28 * k);
     pen.font = `${12 * k}px ${style.fontFamily}`;
     pen.fillText(`${CASES[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
     const bar = this.scale.querySelector("canvas");

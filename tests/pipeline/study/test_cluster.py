@@ -1,16 +1,16 @@
-"""Local Dask processes: a worker that dies is replaced, its design tried again, at most twice."""
+"""Local workers: one that dies is replaced, its design tried again, at most twice; a cluster's workers."""
 
 import os
 import time
 from pathlib import Path
 
-import dask
 import pytest
 from study_bench import GRID, WALL, quick, study_of
 
-from pipeline.study.cluster import RETRIES, dask_hands
+from pipeline.study.cluster import hands_of
 from pipeline.study.evaluate import Outcome, Task
 from pipeline.study.load import StudyError
+from pipeline.study.local_workers import RETRIES
 from pipeline.study.run import ledger_of, run_study
 
 MARKS = "FLEXSPLINE_TEST_MARKS"
@@ -31,10 +31,9 @@ def deadly(task: Task) -> Outcome:
 
 def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(MARKS, str(tmp_path))
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
     study = study_of(GRID)
     rows = run_study(
-        study, ledger_of(study, tmp_path), lambda: dask_hands(1, ""), lambda p: None, deadly
+        study, ledger_of(study, tmp_path), lambda: hands_of(1, ""), lambda p: None, deadly
     ).rows
     assert len(rows) == 6
     (lost,) = (r for r in rows if r.outcome.reason)
@@ -44,26 +43,11 @@ def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert len(list(tmp_path.glob("30-*"))) == 2
 
 
-def test_a_worker_that_is_not_started_again_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As one that dies in its first moments, which Dask's nanny takes for one that cannot start."""
-    monkeypatch.setattr("distributed.Nanny._on_worker_exit_sync", lambda nanny, code: None)
-    with (
-        dask.config.set({"distributed.deploy.lost-worker-timeout": "0.5s"}),
-        dask_hands(1, "") as hands,
-    ):
-        killed = hands.submit(os._exit, 1)
-        until = time.monotonic() + 60
-        while not killed.done() and time.monotonic() < until:
-            hands.replace_lost()
-            time.sleep(0.2)
-        assert isinstance(killed.exception(timeout=0), hands.lost)
-
-
 def test_a_scheduler_that_does_not_answer_is_wrong_input(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("pipeline.study.cluster.CONNECT_S", 1.0)
-    with pytest.raises(StudyError) as caught, dask_hands(1, "tcp://127.0.0.1:1"):
+    with pytest.raises(StudyError) as caught, hands_of(1, "tcp://127.0.0.1:1"):
         pytest.fail("nobody is there")
     assert "run.scheduler" in str(caught.value)
 
@@ -78,6 +62,6 @@ def test_a_running_scheduler_takes_the_study(
     with LocalCluster(n_workers=1, protocol="tcp", dashboard_address="127.0.0.1:0") as cluster:
         address = cluster.scheduler_address
         rows = run_study(
-            study, ledger_of(study, tmp_path), lambda: dask_hands(1, address), lambda p: None, quick
+            study, ledger_of(study, tmp_path), lambda: hands_of(1, address), lambda p: None, quick
         ).rows
     assert [r.outcome for r in rows] == [quick(Task({}, r.values, ())) for r in rows]

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from browser import chromium
+from held import HeldStudio, held_studio
 from studio_page import Page, Server, running, write_design
+
+from geometry.load import design_from
+from geometry.template import template
+from pipeline.diagnosis.specimens.designs import without_holes
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -47,3 +53,21 @@ def opened(studio: Server, studio_browser: Browser) -> Iterator[Callable[..., Pa
 @pytest.fixture
 def page(opened: Callable[..., Page]) -> Page:
     return opened()
+
+
+@pytest.fixture(scope="module")
+def held(studio_browser: Browser) -> Iterator[HeldStudio]:
+    """A studio in this process whose answers a test can hold back."""
+    cup = without_holes(design_from(tomllib.loads(template("cup"))))
+    with held_studio(cup) as studio:
+        yield studio
+
+
+@pytest.fixture
+def tab(held: HeldStudio, studio_browser: Browser) -> Iterator[Page]:
+    """A tab of it; afterwards nothing is held, and it may have met no error."""
+    page = Page(studio_browser, held.url)
+    yield page
+    held.hold = lambda question, tables: False
+    page.close()
+    assert page.errors == []

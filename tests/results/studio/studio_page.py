@@ -77,10 +77,10 @@ def write_design(path: Path, *, holes: bool = False, name: str = "a cup") -> Pat
 class Page:
     """One tab of the studio."""
 
-    def __init__(self, browser: Browser, url: str, **settings: Any) -> None:
-        self.context = browser.new_context(
-            viewport={"width": 1280, "height": 800}, accept_downloads=True, **settings
-        )
+    def __init__(self, browser: Browser, url: str, init: str = "", **settings: Any) -> None:
+        shape = {"viewport": {"width": 1280, "height": 800}, **settings}
+        self.context = browser.new_context(accept_downloads=True, **shape)
+        self.context.add_init_script(init)
         self.tab: BrowserPage = self.context.new_page()
         self.tab.set_default_timeout(PATIENCE_MS)
         self.errors: list[str] = []
@@ -88,6 +88,7 @@ class Page:
         self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))
         self.tab.goto(url)
+        self.at("#name:enabled").wait_for()
 
     def close(self) -> None:
         self.context.close()

@@ -2,22 +2,51 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import asin, pi, sqrt
 
 from geometry.design import Cup, Design, Shaft
 from geometry.meridian import meridian
 
-DENSITY_KG_M3 = 7850.0
-"""Steel's. The design file has no density; mass only compares designs of one material."""
-_GRAMS_PER_MM3 = DENSITY_KG_M3 * 1e-6
+GRAMS_PER_MM3 = 1e-6
+"""Of 1 kg/m³."""
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Mass of each part [g], teeth left out, and the density that gave it [kg/m³].
+
+    `flexspline_density_stated`, `shaft_density_stated`: whether the design file gives the density; else it
+    is steel's.
+    """
+
+    flexspline_g: float
+    shaft_g: float
+    flexspline_kg_per_m3: float
+    shaft_kg_per_m3: float
+    flexspline_density_stated: bool
+    shaft_density_stated: bool
+
+
+def masses(design: Design) -> Masses:
+    """What both parts weigh."""
+    flexspline, shaft = design.material_of("flexspline"), design.material_of("shaft")
+    return Masses(
+        part_mass_g(design, "flexspline"),
+        part_mass_g(design, "shaft"),
+        flexspline.density_kg_per_m3,
+        shaft.density_kg_per_m3,
+        flexspline.density_stated,
+        shaft.density_stated,
+    )
 
 
 def part_mass_g(design: Design, part: str) -> float:
-    """Mass [g] of ``"flexspline"`` or ``"shaft"`` at DENSITY_KG_M3, teeth left out."""
+    """Mass [g] of ``"flexspline"`` or ``"shaft"`` of its material's density, teeth left out."""
     volume = meridian(design, part).volume - _holes(design, part)
     if part == "shaft":
         volume -= _keyway(design.shaft)
-    return volume * _GRAMS_PER_MM3
+    return volume * design.material_of(part).density_kg_per_m3 * GRAMS_PER_MM3
 
 
 def _holes(design: Design, part: str) -> float:

@@ -1,0 +1,66 @@
+"""Forces that only push: the linear complementarity problem p ≥ 0, u = u0 + S p ≥ 0, p·u = 0.
+
+Solved by Mehrotra's predictor-corrector interior point method (SIAM J. Optim. 2 (1992) 575-601). Its rounds
+hardly depend on the number of places. A primal-dual active set does not settle on a thin rim with many of
+them: S is no inverse of an M-matrix (pushed here, the rim bends outwards there), so the set runs in a circle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from fea.axisymmetric.harmonics import HarmonicError
+
+EPS = 1e-10
+"""Forces times gaps, and what the gaps are off by, end below this share of the largest."""
+MOST_ROUNDS = 100
+"""Rims of 150 random designs took up to 18 rounds, 2000 random problems up to 20."""
+CENTRING = 3
+"""Mehrotra's: the target falls with this power of what the plain Newton step leaves."""
+BACK = 0.995
+"""Share of the way to the nearest bound that a step may go."""
+
+
+def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """Forces p (n,) ≥ 0 that leave gaps free + matrix @ p ≥ 0 and act only where the gap is closed.
+
+    `matrix` (n, n) is symmetric and positive definite; `free` (n,) are the gaps without forces.
+
+    Raises
+    ------
+    HarmonicError : the forces did not settle.
+    """
+    size = float(np.abs(free).max())
+    if free.min() >= 0:
+        return np.zeros_like(free)
+    force = np.full(len(free), size / matrix.diagonal().mean())
+    gap = np.full(len(free), size)
+    for _ in range(MOST_ROUNDS):
+        off = gap - free - matrix @ force
+        both = force * gap
+        if np.abs(off).max() < EPS * size and both.max() < EPS * size * force.max():
+            return force
+        factor = cho_factor(matrix + np.diag(gap / force), check_finite=False)
+
+        def towards(product: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            """Newton step to forces times gaps larger by `product`, and to gaps that fit."""
+            by = cho_solve(factor, product / force + off)  # noqa: B023  (called in this round only)
+            return by, matrix @ by - off  # noqa: B023
+
+        push, lift = towards(-both)
+        reach = _room(force, push, gap, lift)
+        left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
+        push, lift = towards(left**CENTRING * both.mean() - both - push * lift)
+        reach = BACK * _room(force, push, gap, lift)
+        force, gap = force + reach * push, gap + reach * lift
+    raise HarmonicError(
+        f"the contact on the seat did not settle in {MOST_ROUNDS} rounds: force times gap is "
+        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {EPS:.0e}"
+    )
+
+
+def _room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray) -> float:
+    """Share of a step, at most 1, that leaves forces and gaps positive."""
+    nearest = max(float((-push / force).max()), float((-lift / gap).max()))
+    return 1.0 if nearest <= 1 else 1 / nearest

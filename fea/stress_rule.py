@@ -1,0 +1,48 @@
+"""Whether a peak stress belongs to the part or to the rule that leaves sharp edges out.
+
+A peak right where the excluded zone ends is no maximum of the part: the stress goes on rising towards
+the edge, and another distance would give another figure. What is tested is just that: whether the figure
+falls at a distance a fifth longer, and whether the stress beside the peak rises inside the excluded zone.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Protocol
+
+from fea.types import StressPeak
+
+FARTHER, NEARER = 1.2, 0.5
+"""Of the distance left out. Solid meshes have edges of about that distance at the edges, and show no rise
+before half of it."""
+MOVES = 0.015
+"""By more than this, both ways. Of 66 peaks of cups, hats and shafts 30 do: they fall by 1.8 to 5.9 % and
+rise by 3.1 to 30 %. The others rise by 1.1 % at most; two refinements of a mesh may leave 0.5 %."""
+
+
+class Largest(Protocol):
+    """The largest von Mises stress [MPa] of points so far from every sharp edge and patch edge [mm].
+
+    `within`: of those no farther than this from the peak's place [mm]. None where no point is.
+    """
+
+    def __call__(self, distance_mm: float, within_mm: float = inf) -> float | None: ...
+
+
+def judged(
+    mises_MPa: float, at_mm: tuple[float, float, float], exclusion_mm: float, largest: Largest
+) -> StressPeak:
+    """The peak found at `exclusion_mm`, with what another distance would make of it."""
+    farther = largest(FARTHER * exclusion_mm)
+    nearer = largest(NEARER * exclusion_mm, exclusion_mm)
+    falls = farther is None or farther < (1 - MOVES) * mises_MPa
+    rises = nearer is not None and nearer > (1 + MOVES) * mises_MPa
+    return StressPeak(
+        mises_MPa,
+        at_mm,
+        f"points nearer than {exclusion_mm:g} mm to a sharp edge or a patch edge,"
+        " where the linear solution is singular",
+        exclusion_mm,
+        falls and rises,
+        largest(2 * exclusion_mm),
+    )

@@ -1,0 +1,111 @@
+"""Ranges as refusals print them: rounded inwards, so that each end, typed in as it stands, is accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+
+from geometry.ranges import LENGTH_mm
+
+TINY = 1e-6
+"""Gaps below this [mm] close in the CAD kernel (its tolerance is 1e-7 mm)."""
+DIGITS, MOST_DIGITS = 6, 17
+"""As many as read well; as many as tell any two doubles apart."""
+Interval = tuple[float, float]
+
+
+def upto(limit: float) -> float:
+    """The largest length to name where `limit` [mm] is allowed: the check lets `TINY` pass."""
+    return limit + TINY / 2
+
+
+def below(limit: float) -> float:
+    """The largest length to name where `limit` [mm] is not allowed."""
+    return limit - 2 * TINY
+
+
+def above(limit: float) -> float:
+    """The smallest length to name where `limit` [mm] is not allowed."""
+    return limit + 2 * TINY
+
+
+def is_step(height: float) -> bool:
+    """No step, or one that the CAD kernel sees [mm]."""
+    return height == 0 or height >= LENGTH_mm.low - 1e-9
+
+
+def step_up(level: float, step: float = LENGTH_mm.low) -> float:
+    """The smallest length [mm] that is a step above another."""
+    return level + step - 5e-10
+
+
+def span(low: float, high: float, digits: int = DIGITS) -> str | None:
+    """``from LOW to HIGH``, no wider than the ends; None where nothing lies between.
+
+    >>> span(0, 4.504113), span(0.6009999, 29.4), span(2, 1)
+    ('from 0 to 4.50411', 'from 0.601 to 29.4', None)
+    """
+    for precision in range(digits, MOST_DIGITS + 1):
+        first, last = _rounded(low, precision, up=True), _rounded(high, precision, up=False)
+        if low <= float(first) <= float(last) <= high:
+            return f"from {first} to {last}"
+    return None
+
+
+def lengths(low: float, high: float, digits: int = DIGITS) -> str | None:
+    """`span` of what a length of the design file may be [mm]."""
+    return span(max(low, LENGTH_mm.low), min(high, LENGTH_mm.high), digits)
+
+
+def from_zero(high: float, digits: int = DIGITS) -> str:
+    """As `lengths`, for one that may be 0: ``from 0 to HIGH``, or ``0`` where nothing larger fits."""
+    return span(0.0, min(high, LENGTH_mm.high), digits) or "0" if high >= LENGTH_mm.low else "0"
+
+
+def beside(
+    level: float, name: str, step: float, low: float, high: float, zero: bool = False
+) -> str:
+    """What makes no step, or a visible one, beside another length: ``0.4 (name) or from … to …``.
+
+    `step` is the smallest that counts, `low` and `high` the ends of all; with `zero`, 0 is below `low`.
+    """
+    found = []
+    if low <= level <= high or (zero and level == 0):
+        found.append(repr(level) if float(f"{level:g}") != level else f"{level:g}")
+        found[0] += f" ({name})"
+    under = min(level - step + 5e-10, high)
+    if zero and level >= step and under < LENGTH_mm.low:
+        found.append("0")
+    elif zero and level >= step:
+        found.append(from_zero(under))
+    elif (part := lengths(low, under)) is not None:
+        found.append(part)
+    if (part := lengths(max(step_up(level, step), low), high)) is not None:
+        found.append(part)
+    return joined(found)
+
+
+def outside(holes: Sequence[Interval], low: float, high: float) -> list[Interval]:
+    """What is left of [low, high] without some open intervals."""
+    left, start = [], low
+    for a, b in sorted(holes):
+        if a >= start:
+            left.append((start, min(a, high)))
+        start = max(start, b)
+    left.append((start, high))
+    return [(a, b) for a, b in left if a <= b]
+
+
+def joined(parts: Sequence[str]) -> str:
+    """``a, b or c``."""
+    return " or ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+
+
+def _rounded(value: float, digits: int, up: bool) -> str:
+    plain = f"{value:.{digits}g}"
+    if float(plain) == value:
+        return plain
+    exact = Decimal(value)
+    last = Decimal(1).scaleb(exact.adjusted() - digits + 1)
+    cut = exact.quantize(last, ROUND_CEILING if up else ROUND_FLOOR)
+    return f"{float(cut):.{digits}g}"

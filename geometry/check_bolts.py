@@ -1,0 +1,66 @@
+"""Which bolt holes fit: inside their land, apart from each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import asin, ceil, pi, sin
+
+from geometry.bounds import TINY, above, below, lengths
+from geometry.design import SMALLEST_MM, Cup, Hat, Shaft
+from geometry.errors import MISSING, DesignError
+
+
+def bolt_faults(
+    prefix: str, part: Cup | Hat | Shaft, inner: tuple[str, float], outer: tuple[str, float]
+) -> Iterator[DesignError]:
+    """Holes that leave the ring between two diameters (key, mm), or touch each other."""
+    n, circle, hole = part.bolt_count, part.bolt_circle_diameter_mm, part.bolt_hole_diameter_mm
+    if n == 0 or outer[1] <= inner[1]:
+        return
+    land = f"{inner[0]} = {inner[1]:g} and {outer[0]} = {outer[1]:g}"
+    alone = n == 1 and inner[1] == 0  # a single hole in a solid end may lie over the axis
+    largest = outer[1] if alone else (outer[1] - inner[1]) / 2
+    most = largest - 4 * TINY - (SMALLEST_MM if alone else 0.0)
+    holes = lengths(0, most)  # a little less than fits: a circle must be left to put them on
+    if holes is None:
+        yield DesignError(
+            prefix + "bolt_count",
+            n,
+            f"must be 0: between {land} no hole has room; to have some, change one of the two",
+        )
+        return
+    if hole is None or hole > most:
+        verb = "give a number" if hole is None else "must be"
+        needs = f"bolt_count = {n} needs it; " if hole is None else ""
+        yield DesignError(
+            prefix + "bolt_hole_diameter_mm",
+            MISSING if hole is None else hole,
+            f"{needs}{verb} {holes} mm to fit between {land}",
+        )
+        return
+    low, high = 0.0 if alone else above(inner[1] + hole), below(outer[1] - hole)
+    if circle is None or not low - TINY < circle < high + TINY:
+        verb = "give a number" if circle is None else "must be"
+        needs = f"bolt_count = {n} needs it; " if circle is None else ""
+        yield DesignError(
+            prefix + "bolt_circle_diameter_mm",
+            MISSING if circle is None else circle,
+            f"{needs}{verb} {lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = "
+            f"{hole:g} stay between {land}",
+        )
+    elif n >= 2 and circle * sin(pi / n) <= hole + TINY:
+        smaller = lengths(0, below(circle * sin(pi / n)), 4)
+        also = f"; {n} holes take a diameter {smaller} mm" if smaller else ""
+        yield DesignError(
+            prefix + "bolt_count",
+            n,
+            f"must be from 0 to {_most_holes(circle, hole)}: beyond, holes of bolt_hole_diameter_mm = "
+            f"{hole:g} touch on bolt_circle_diameter_mm = {circle:g}{also}",
+        )
+
+
+def _most_holes(circle: float, hole: float) -> int:
+    """The largest number of equal holes on a circle that do not touch."""
+    if hole + TINY >= circle:
+        return 1
+    return max(1, ceil(pi / asin((hole + TINY) / circle)) - 1)

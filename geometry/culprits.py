@@ -1,0 +1,82 @@
+"""One figure that nothing fits: where several others contradict it, it is refused itself.
+
+Of a tube 0.03 mm long with a ring of 8 mm and a boss of 3 mm, the length is wrong, and not the other two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from geometry.bounds import TINY, above, below, lengths
+from geometry.check_fillets import fault
+from geometry.design import SMALLEST_MM, Cup, Hat
+from geometry.errors import DesignError
+from geometry.ranges import LENGTH_mm
+
+ENOUGH = 2
+"""Others that contradict a figure."""
+
+
+def culprits(f: Cup | Hat) -> Iterator[DesignError]:
+    """A length, inner diameter or boss that at least two others do not fit."""
+    yield from _length(f)
+    yield from (_inside(f) if isinstance(f, Cup) else _outside(f))
+
+
+def _length(f: Cup | Hat) -> Iterator[DesignError]:
+    h, fillet = f.diaphragm_thickness_mm, max(f.inner_fillet_mm, f.outer_fillet_mm)
+    ring = f.ring_offset_mm + f.ring_width_mm
+    land = f.boss_thickness_mm if isinstance(f, Cup) else f.flange_thickness_mm
+    if sum(x > f.length_mm + TINY for x in (h, ring, land, fillet)) < ENOUGH:
+        return
+    rise = max(f.ring_thickness_mm - f.wall_thickness_mm, 0.0)
+    least = lengths(max(h + rise + ring + fillet, above(land)) + SMALLEST_MM, LENGTH_mm.high)
+    if least is not None:
+        yield fault(
+            f,
+            "length_mm",
+            f"must be {least} mm: diaphragm, fillets, shoulder and ring lie along it, and the "
+            f"{'boss' if isinstance(f, Cup) else 'flange'} is shorter",
+        )
+
+
+def _bolted(f: Cup | Hat) -> float:
+    """The diameter that goes around the bolt holes [mm], 0 without."""
+    circle, hole = f.bolt_circle_diameter_mm, f.bolt_hole_diameter_mm
+    return circle + hole if f.bolt_count and circle and hole else 0.0
+
+
+def _inside(f: Cup) -> Iterator[DesignError]:
+    boss, bore, bolts = f.boss_diameter_mm, f.bore_diameter_mm, _bolted(f)
+    fillet = max(f.inner_fillet_mm, f.outer_fillet_mm)
+    inside = (boss, bore, bolts, fillet)
+    if sum(x >= f.inner_diameter_mm - TINY for x in inside) >= ENOUGH:
+        most = max(boss, above(bore), above(bolts))
+        least = lengths(most + 2 * fillet + SMALLEST_MM, LENGTH_mm.high)
+        if least is not None:
+            reason = f"must be {least} mm: boss, bore, bolt holes and fillets lie inside it"
+            yield fault(f, "inner_diameter_mm", reason)
+    elif sum(x >= boss - TINY for x in (bore, bolts)) >= ENOUGH:
+        room = lengths(max(bore, bolts) + SMALLEST_MM, below(f.inner_diameter_mm))
+        if room is not None:
+            yield fault(
+                f, "boss_diameter_mm", f"must be {room} mm: bore and bolt holes lie inside it"
+            )
+
+
+def _outside(f: Hat) -> Iterator[DesignError]:
+    tube, fillet = 2 * f.wall_radius, max(f.inner_fillet_mm, f.outer_fillet_mm)
+    flange, outer = f.flange_inner_diameter_mm, f.flange_outer_diameter_mm
+    if max(flange, outer) > tube + TINY:
+        return
+    room = min(flange, outer)
+    for key, most in (
+        ("inner_diameter_mm", room - 2 * f.wall_thickness_mm),
+        ("wall_thickness_mm", (room - f.inner_diameter_mm) / 2),
+    ):
+        range_ = lengths(0, most - 2 * fillet - SMALLEST_MM) or lengths(0, most - SMALLEST_MM)
+        if range_ is not None:
+            yield fault(
+                f, key, f"must be {range_} mm: the flange and its fillets lie outside the tube"
+            )
+            return

@@ -1,0 +1,27 @@
+"""Figures that are found one by one: what fails costs its own figure only, and is said."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from geometry.errors import ComputationError
+
+T = TypeVar("T")
+
+
+class Attempts:
+    """`missing`: why a figure is not there, by its name ("K_b_lobes")."""
+
+    def __init__(self) -> None:
+        self.missing: dict[str, str] = {}
+
+    def get(self, name: str, make: Callable[[], T]) -> T | None:
+        """The figure, or None where its computation failed; bugs and wrong designs pass through."""
+        try:
+            return make()
+        except ComputationError as fault:
+            self.missing[name] = str(fault)
+        except MemoryError as fault:
+            self.missing[name] = f"not enough memory {fault}".rstrip()
+        return None

@@ -1,0 +1,135 @@
+"""Which process made a thing, told apart from every other: machine and boot, pid namespace, pid, start.
+
+A pid alone is not enough. The system gives it again; another container counts its own processes from 1
+and may have the same host name and the same folders; another machine may mount them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+import sys
+import zlib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+UNKNOWN = "x"
+"""A part that the system does not tell."""
+NONE = "0"
+"""The pid namespace where systems have none: macOS, Windows."""
+_STATE, _STARTTIME = 3, 22
+"""Fields of /proc/PID/stat, counted from 1 (proc(5))."""
+_TEXT = re.compile(r"([0-9a-f]{8}|x)-([0-9]+|x)-([0-9]+)-([0-9]+|x)")
+
+Fate = Literal["alive", "gone", "unknown"]
+
+
+@dataclass(frozen=True)
+class ProcessId:
+    """One process.
+
+    Attributes
+    ----------
+    machine : of the boot on Linux, of the host's name elsewhere. space : pid namespace. born : when it
+        started, in the system's own unit: clock ticks after the boot on Linux, hundredths of a second
+        elsewhere. Parts that the system does not tell are ``x``.
+    """
+
+    machine: str
+    space: str
+    pid: int
+    born: str
+
+    def __str__(self) -> str:
+        return f"{self.machine}-{self.space}-{self.pid}-{self.born}"
+
+    @property
+    def fate(self) -> Fate:
+        """Whether the process still runs; unknown where this one cannot see it."""
+        here = this_process()
+        if UNKNOWN in (self.machine, self.space, here.machine, here.space):
+            return "unknown"
+        if (self.machine, self.space) != (here.machine, here.space):
+            return "unknown"
+        if not _exists(self.pid):
+            return "gone"
+        born = _born(self.pid)
+        if born is None:
+            return "gone"
+        return "gone" if UNKNOWN not in (born, self.born) and born != self.born else "alive"
+
+
+def this_process() -> ProcessId:
+    """The process that asks."""
+    pid = os.getpid()
+    return ProcessId(_machine(), _space(), pid, _born(pid) or UNKNOWN)
+
+
+def parsed(text: str) -> ProcessId | None:
+    """A process by its text; what follows it is not looked at. None if the text is another."""
+    found = _TEXT.match(text)
+    return ProcessId(found[1], found[2], int(found[3]), found[4]) if found else None
+
+
+@cache
+def _machine() -> str:
+    if sys.platform == "linux":
+        try:
+            told = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii")
+        except OSError:
+            return UNKNOWN
+    else:
+        told = socket.gethostname()
+    return f"{zlib.crc32(told.encode()):08x}"
+
+
+def _space() -> str:
+    if sys.platform != "linux":
+        return NONE
+    try:
+        if os.readlink("/proc/self") != str(os.getpid()):
+            return UNKNOWN  # /proc counts in another namespace than this process
+        return re.sub(r"\D", "", os.readlink("/proc/self/ns/pid")) or UNKNOWN
+    except OSError:
+        return UNKNOWN
+
+
+def _exists(pid: int) -> bool:
+    if sys.platform != "linux":
+        import psutil
+
+        return bool(psutil.pid_exists(pid))
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # another user's
+        return True
+    return True
+
+
+def _born(pid: int) -> str | None:
+    """When a process started; None if it is no more, a zombie among them.
+
+    On Linux the kernel's own count: psutil adds the time of the boot, which moves with the clock.
+    """
+    if sys.platform == "linux":
+        try:
+            stat = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return UNKNOWN  # /proc may hide other users' processes
+        fields = stat.rpartition(")")[2].split()  # the name before may hold anything
+        return None if fields[0] == "Z" else fields[_STARTTIME - _STATE]
+    import psutil
+
+    try:
+        process = psutil.Process(pid)
+        zombie = process.status() == psutil.STATUS_ZOMBIE
+        return None if zombie else f"{process.create_time() * 100:.0f}"
+    except psutil.NoSuchProcess:
+        return None
+    except psutil.Error:
+        return UNKNOWN

@@ -1,0 +1,94 @@
+"""The lobe cases of a flexspline with bolt holes: which solid meshes they are solved on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from fea.solid.defaults import first_spec
+from fea.solid.errors import SolidError
+from fea.solid.lobes import finer_mesh, lobe_stiffness
+from fea.solid.stiffness import USUAL_EFFICIENCY
+from fea.solid.swept import can_be_swept
+from fea.solid.unfold import unfolded
+from fea.types import Stiffness, TetMesh
+from geometry.symmetry import Sector, sector_of
+from pipeline.parts import PartModel, is_lasting
+
+MOST_ELEMENTS = 100_000
+"""Of the quarter or half: 450 000 unknowns, a minute."""
+MESHES = 3
+"""Made for the case at most."""
+COARSE_SCALE = 3.1
+"""True over estimated error of a free rim on steps of 10°: 2.1 to 4.4 on four parts; the bounds hold up to
+twice this."""
+
+
+def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
+    """K_b under the lobe load; `supported`: the seat may not move radially, else it is free.
+
+    A rim that is held deforms as in torsion, and is solved on that mesh first; a free one begins with a mesh
+    of its own. A part that is not swept has the torsion mesh alone.
+
+    Raises
+    ------
+    ComputationError, MemoryError
+    """
+    shop = flexspline.shop
+    tolerance = shop.design.solver.tolerance_pct / 100
+    sector = sector_of(shop.design, "flexspline", "lobes")
+
+    def make() -> Stiffness:
+        with shop.progress.stage("lobes" if supported else "lobes, rim unsupported"):
+            return lobe_stiffness(
+                _meshes(flexspline, sector, supported),
+                flexspline.material,
+                supported,
+                tolerance,
+                sector.label,
+                lambda text: shop.progress.note(f"  {text}"),
+            )
+
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
+    return shop.cache.get("lobes", inputs, make, is_lasting)[0]
+
+
+def _meshes(
+    flexspline: PartModel, sector: Sector, supported: bool
+) -> Iterator[tuple[TetMesh, float]]:
+    """Coarse to fine, of the whole sector, at least one; each with its scale of the error estimate.
+
+    Raises
+    ------
+    SolidError : the next one would be too large, or fails a check.
+    """
+    own = range(MESHES if can_be_swept(flexspline.shop.design, "flexspline") else 0)
+    if supported or not own:
+        yield _of_torsion(flexspline, sector, supported)
+    for number in own:
+        try:
+            mesh = _finer(flexspline, sector, number)
+        except SolidError:
+            if number == 0 and not supported:
+                yield _of_torsion(flexspline, sector, supported)
+            raise
+        yield mesh, USUAL_EFFICIENCY
+
+
+def _of_torsion(flexspline: PartModel, sector: Sector, supported: bool) -> tuple[TetMesh, float]:
+    twisted = flexspline.twisted()
+    scale = twisted.stiffness.error_scale if supported else COARSE_SCALE
+    return unfolded(twisted.rim.mesh, sector.degrees), scale
+
+
+def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
+    design = flexspline.shop.design
+    f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
+    finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
+    swept = flexspline.swept(first_spec(design, "flexspline"), finer)
+    if swept is None:
+        raise SolidError("the swept mesh fails a check")
+    size = round(len(swept.mesh.cells) * sector.degrees / swept.mesh.sector_deg)
+    if size > MOST_ELEMENTS:
+        raise SolidError(f"it would have {size} elements, at most {MOST_ELEMENTS}")
+    return unfolded(swept.mesh, sector.degrees)

@@ -1,0 +1,80 @@
+"""Peak stresses beside what the material bears: which comparison is one, and which limits are passed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from fea.types import StressPeak
+from geometry.design import Design, Material
+
+HIGHEST_STRENGTH_MPA = 2000.0
+"""Spring wire, maraging steel and metallic glass yield at about this; nothing that a flexspline is made of is
+linear elastic beyond."""
+PART_OF = {
+    "wave_generator_peak": "flexspline",
+    "torque_peak": "flexspline",
+    "shaft_torque_peak": "shaft",
+}
+"""The part that bears a peak, by the peak's name in result.json."""
+PEAK_OF = {
+    "flexspline_torque": "torque_peak",
+    "shaft_torque": "shaft_torque_peak",
+    "wave_generator": "wave_generator_peak",
+}
+"""result.json's name of the peak of a field."""
+
+
+@dataclass(frozen=True)
+class PassedLimit:
+    """A limit [MPa] that a peak passes; `key`: where the design states it, "" for HIGHEST_STRENGTH_MPA."""
+
+    name: str
+    peak: StressPeak
+    limit_MPa: float
+    key: str = ""
+
+    @property
+    def words(self) -> str:
+        """Beside the figure."""
+        if self.key:
+            return f"above the fatigue limit of {self.limit_MPa:g} MPa"
+        return (
+            f"beyond {self.limit_MPa:g} MPa, where no metal of gears is elastic: the linear model does not "
+            "hold"
+        )
+
+    @property
+    def line(self) -> str:
+        """On its own, as a warning."""
+        figure = f"{self.name}_mises_MPa = {self.peak.mises_MPa:.4g}"
+        if self.peak.at_excluded_border:
+            figure += f" ({self.peak.exclusion_mm:.3g} mm from an edge towards which the stress still rises)"
+        if self.key:
+            return f"{figure} is above {self.key} = {self.limit_MPa:g}"
+        return f"{figure} is {self.words}"
+
+
+def share_of_limit(peak: StressPeak, material: Material) -> float | None:
+    """Peak over the stated fatigue limit; None without one, and where the peak hangs on the stress rule."""
+    if material.fatigue_limit_MPa is None or peak.at_excluded_border:
+        return None
+    return peak.mises_MPa / material.fatigue_limit_MPa
+
+
+def limits_passed(design: Design, peaks: Mapping[str, StressPeak]) -> Iterator[PassedLimit]:
+    """What is passed, for `peaks` by their names in result.json.
+
+    On the wave generator a peak at the excluded border counts too: there the stress is at least so large,
+    so a limit that it passes is passed, while one that it keeps need not be kept. Under torque such a peak
+    comes from a clamped or bolted face that yields in truth, and passes nothing.
+    """
+    for name, peak in peaks.items():
+        if peak.at_excluded_border and name != "wave_generator_peak":
+            continue
+        limit = design.material_of(PART_OF[name]).fatigue_limit_MPa
+        if limit is not None and peak.mises_MPa > limit:
+            own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
+            yield PassedLimit(name, peak, limit, f"material.{own}.fatigue_limit_MPa")
+        if peak.mises_MPa > HIGHEST_STRENGTH_MPA:
+            yield PassedLimit(name, peak, HIGHEST_STRENGTH_MPA)

@@ -1,0 +1,45 @@
+"""What a design file says of its own uncertainty, in words: stated, in part, or not at all."""
+
+from __future__ import annotations
+
+from pipeline.backlash import Backlash
+from results.quantities import quantity
+
+SOURCES = {
+    "youngs_modulus": "Young's modulus",
+    "flank_clearance": "flank clearance",
+    "radial_clearance": "bearing clearance",
+}
+"""What the standard deviation of the backlash may come from."""
+NOT_STATED = "not stated"
+
+
+def spread_text(backlash: Backlash) -> str:
+    """``± 12.9 (1σ)``, or that the design file states no uncertainty."""
+    if backlash.std_arcsec is None:
+        return f"1σ {NOT_STATED}"
+    return f"± {quantity('backlash_arcsec.std').text(backlash.std_arcsec)} (1σ)"
+
+
+def missing(backlash: Backlash) -> tuple[str, ...]:
+    """Names of the sources that the design file leaves out."""
+    return tuple(name for key, name in SOURCES.items() if key not in backlash.std_by_source_arcsec)
+
+
+def spread_sentence(backlash: Backlash) -> str:
+    """One standard deviation of the sum, and what it leaves out; without a full stop."""
+    if backlash.std_arcsec is None:
+        return "the design file states no uncertainty, so the sum has no standard deviation"
+    said = quantity("backlash_arcsec.std").with_unit(backlash.std_arcsec)
+    left_out = missing(backlash)
+    without = f", with {_listed(left_out)} {NOT_STATED}" if left_out else ""
+    return f"one standard deviation of the sum is {said}{without}"
+
+
+def plus_minus(value: float, std: float, unit: str) -> str:
+    """``3 ± 1 µm``; without a standard deviation ``3 µm``."""
+    return f"{value:g} ± {std:g} {unit}" if std else f"{value:g} {unit}"
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " and ".join(names)

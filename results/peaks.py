@@ -1,0 +1,49 @@
+"""A peak stress in words: whether it is the part's, and beside which limit it may stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fea.types import StressPeak
+from geometry.design import Material
+from pipeline.stress_limits import share_of_limit
+from results.quantities import grouped, quantity
+
+BORDER = "at excluded border"
+"""The mark, where there is room for no more."""
+MEANING = (
+    "the stress still rises towards such an edge, so that the figure depends on the distance left out and "
+    "is no measure of the part's strength"
+)
+
+
+def border_note(exclusion_mm: float, twice_MPa: float | None) -> str:
+    """The mark, the distance left out, and what the peak is at twice of it."""
+    said = f"{BORDER}, {exclusion_mm:.3g} mm from an edge"
+    if twice_MPa is None:
+        return said
+    twice = quantity("torque_peak_mises_MPa").with_unit(twice_MPa)
+    return f"{said} ({twice} at {2 * exclusion_mm:.3g} mm)"
+
+
+def marked(figures: Mapping[str, Any], key: str) -> str:
+    """The note of a figure of result.json; "" for all but peaks that are not the part's alone."""
+    name = key.removesuffix("_mises_MPa")
+    if name == key or not figures.get(f"{name}_at_excluded_border"):
+        return ""
+    twice = figures.get(f"{name}_mises_at_twice_excluded_MPa")
+    return border_note(figures[f"{name}_excluded_mm"], twice)
+
+
+def limit_note(peak: StressPeak, material: Material) -> str:
+    """The peak beside the stated fatigue limit, or why it does not stand there."""
+    limit = material.fatigue_limit_MPa
+    if limit is None:
+        return "no fatigue limit stated"
+    share = share_of_limit(peak, material)
+    if share is None:
+        return f"no share of the fatigue limit of {limit:g} MPa"
+    return (
+        f"{grouped(100 * share, 0 if share >= 0.1 else 2)} % of the fatigue limit of {limit:g} MPa"
+    )

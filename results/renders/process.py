@@ -1,0 +1,179 @@
+"""Drawing in a process of its own: a graphics driver that crashes ends that process, not the program.
+
+The process is started for the first picture and draws all others, so that VTK is loaded once. What is to
+be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers are lines of JSON.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from threading import Timer
+from typing import Any, TextIO
+
+from fea.types import SolidField, StressPeak, TetMesh
+from geometry.errors import ComputationError, one_line
+from pipeline.packing import packed, unpacked
+from results.renders.opengl import ADVICE
+
+TYPES: tuple[type, ...] = (SolidField, StressPeak, TetMesh)
+"""What may be drawn, beside arrays and plain values."""
+SLOWEST_S = 300.0
+"""The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
+_VTK_LOG = re.compile(r"^(\x1b\[[0-9;]*m)*[\d-]+ [\d:.]+ \([^)]*\) \[[^]]*\]|\x1b\[[0-9;]*m")
+"""Colours, time and thread before VTK's words: with them no two reasons are alike."""
+_ROOT = Path(__file__).parents[2]
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from results.renders.process import serve; serve()"
+
+
+class NotDrawnError(ComputationError):
+    """A picture that could not be drawn, and why."""
+
+
+class DrawingProcess:
+    """Calls functions that write a picture; a context that ends the process.
+
+    A function on which the process ended, or that took longer than `slowest_s`, is not called again.
+    """
+
+    def __init__(self, slowest_s: float = SLOWEST_S) -> None:
+        self.slowest_s = slowest_s
+        self._process: subprocess.Popen[str] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._gave_up: dict[str, str] = {}
+        self._too_slow = False
+
+    def __enter__(self) -> DrawingProcess:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+        if self._folder is not None:
+            self._folder.cleanup()
+
+    def draw(self, write: Callable[..., None], *arguments: Any) -> bytes:
+        """What `write(path, *arguments)`, a function of a module, writes there.
+
+        Raises
+        ------
+        NotDrawnError : it raised, it took too long, or the process ended.
+        """
+        name = f"{write.__module__}:{write.__qualname__}"
+        if name in self._gave_up:
+            raise NotDrawnError(self._gave_up[name])
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="flexspline-picture-")
+        asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
+        made.unlink(missing_ok=True)
+        asked.write_bytes(packed(arguments))
+        question = {"function": name, "asked": str(asked), "made": str(made)}
+        answer = self._exchange(json.dumps(question))
+        if answer is None:
+            self._gave_up[name] = self._last_words()
+            raise NotDrawnError(self._gave_up[name])
+        if reason := json.loads(answer)["reason"]:
+            raise NotDrawnError(reason)
+        return made.read_bytes()
+
+    def _exchange(self, question: str) -> str | None:
+        """The answer, None where the process ended first."""
+        process = self._running()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        limit = Timer(self.slowest_s, self._stop)
+        limit.start()
+        try:
+            process.stdin.write(question + "\n")
+            process.stdin.flush()
+            return process.stdout.readline() or None
+        except OSError:  # it was gone before it read
+            return None
+        finally:
+            limit.cancel()
+
+    def _stop(self) -> None:
+        """The process took too long."""
+        if self._process is not None:
+            self._too_slow = True
+            self._process.kill()
+
+    def _running(self) -> subprocess.Popen[str]:
+        if self._process is None:
+            assert self._folder is not None
+            with (Path(self._folder.name) / "said.txt").open("wb") as said:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-P", "-c", _START, str(_ROOT)],
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
+                )  # fmt: skip
+        return self._process
+
+    def _last_words(self) -> str:
+        """Why the process is no more."""
+        assert self._process is not None
+        assert self._folder is not None
+        status = self._process.wait()
+        self._end()
+        if self._too_slow:
+            self._too_slow = False
+            return f"the process that draws gave no picture within {self.slowest_s:g} s"
+        how = f"exit status {status}"
+        with contextlib.suppress(ValueError):
+            how = signal.Signals(-status).name
+        said = (Path(self._folder.name) / "said.txt").read_text("utf-8", "replace").split("\n")
+        last = next(
+            (f", {one_line(w, 120)}" for s in reversed(said) if (w := _VTK_LOG.sub("", s).strip())),
+            "",
+        )
+        return (
+            f"the process that draws ended ({how}{last}), as missing or broken graphics drivers make it; "
+            f"{ADVICE}"
+        )
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.kill()
+        process.wait()
+        for pipe in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):  # of a pipe that nobody reads any more
+                if pipe is not None:
+                    pipe.close()
+
+
+def serve() -> None:
+    """The process: draw what each line asks for, until there are no more."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: an end without a traceback
+    answers = _private_stdout()
+    for line in sys.stdin:
+        asked = json.loads(line)
+        print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
+
+
+def _private_stdout() -> TextIO:
+    """Standard output for the answers alone; what libraries print goes to standard error."""
+    alone = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return alone
+
+
+def _drawn(function: str, asked: str, made: str) -> str:
+    """Draw; why it failed, or ""."""
+    module, _, name = function.partition(":")
+    try:
+        write = getattr(import_module(module), name)
+        write(Path(made), *unpacked(Path(asked).read_bytes(), TYPES))
+    except ComputationError as error:
+        return one_line(str(error))
+    except Exception as error:  # whatever a library raises costs its own picture
+        return one_line(f"{type(error).__name__}: {error}")
+    return ""

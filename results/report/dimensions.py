@@ -1,0 +1,87 @@
+"""All that a design file says: what one needs to build the same model again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
+from typing import Any
+
+from geometry.design import Design
+from geometry.mass import masses
+from geometry.schema import UNITS
+from results.doubt import NOT_STATED
+from results.quantities import quantity
+from results.report.document import Block, Facts, Heading, Paragraph
+from results.report.spans import Words, bold, plain
+
+NBSP = "\N{NO-BREAK SPACE}"
+
+
+def dimensions(design: Design) -> Iterable[Block]:
+    """Every key of the design file with its value and unit, defaults included, by table."""
+    yield Heading("The design in figures", "figures")
+    yield Paragraph("Every key of the design file, defaults included.", small=True)
+    yield Facts(tuple((name, _said(name, table)) for name, table in _tables(design)))
+
+
+def ratio(design: Design) -> str:
+    """``100 : 1``, wave generator to flexspline while the circular spline stands still."""
+    g = design.gear
+    return f"{_number(g.teeth_flexspline / (g.teeth_circular_spline - g.teeth_flexspline))} : 1"
+
+
+def weights(design: Design) -> str:
+    """Mass of both parts."""
+    m = masses(design)
+    grams = (("flexspline", m.flexspline_g), ("shaft", m.shaft_g))
+    each = (f"{name} {quantity(f'{name}_mass_g').with_unit(g)}" for name, g in grams)
+    return f"{', '.join(each)}; teeth left out"
+
+
+def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """The file's tables in its order, the shaft's segments one by one, by the names they have there."""
+    whole: Mapping[str, Any] = design.model_dump(mode="json", exclude_none=True)
+    for name, table in whole.items():
+        if not isinstance(table, dict):
+            continue
+        first = {"kind": table["kind"]} if "kind" in table else {}
+        own = first | {k: v for k, v in table.items() if not isinstance(v, dict | list)}
+        if own:
+            yield name, own
+        for inner, deeper in table.items():
+            if isinstance(deeper, dict):
+                yield f"{name}.{inner}", deeper
+            elif isinstance(deeper, list):
+                yield from ((f"{name}.{inner} {i}", each) for i, each in enumerate(deeper, 1))
+
+
+def _said(name: str, table: Mapping[str, Any]) -> Words:
+    """``length 30 mm, …``; the figures stand out. A deviation of 0 states nothing."""
+    silent = name == "uncertainty"
+    spans = (
+        (plain(", ") if i else ())
+        + plain(f"{_name(key)} ")
+        + bold(NOT_STATED if silent and not value else _value(key, value))
+        for i, (key, value) in enumerate(table.items())
+    )
+    return tuple(chain.from_iterable(spans))
+
+
+def _suffix(key: str) -> str:
+    return next((suffix for suffix in UNITS if key.endswith(suffix)), "")
+
+
+def _name(key: str) -> str:
+    return key.removesuffix(_suffix(key)).replace("_", " ")
+
+
+def _value(key: str, value: Any) -> str:
+    if not isinstance(value, int | float):
+        return str(value)
+    unit = UNITS.get(_suffix(key), "")
+    return f"{_number(value)}{NBSP}{unit}" if unit else _number(value)
+
+
+def _number(value: float) -> str:
+    """As short as it can be without losing a digit."""
+    return f"{value:.12g}".replace("-", "\N{MINUS SIGN}")

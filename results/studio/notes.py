@@ -1,0 +1,59 @@
+"""What a tab may say over its connection: a design it wants figures of, a job to start, a job to stop."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from pipeline.live import View
+from results.studio.jobs import Kind
+
+_LARGEST_EXACT = 2**53
+"""A browser counts no farther without rounding."""
+
+
+class _Note(BaseModel):
+    model_config = ConfigDict(strict=True, frozen=True)
+
+
+class Want(_Note):
+    """Figures of a design, and the picture of a view; `number` grows with each."""
+
+    do: Literal["want"]
+    number: int = Field(ge=0, le=_LARGEST_EXACT)
+    tables: dict[str, Any]
+    view: View
+
+
+class Start(_Note):
+    """A job with a design."""
+
+    do: Literal["job"]
+    kind: Kind
+    tables: dict[str, Any]
+
+
+class Stop(_Note):
+    """The end of a job, if there is one of its kind."""
+
+    do: Literal["stop"]
+    kind: Kind
+
+
+Note = Want | Start | Stop
+_NOTES: TypeAdapter[Note] = TypeAdapter(Annotated[Note, Field(discriminator="do")])
+
+
+def note_from(text: str) -> Note:
+    """A message of a tab.
+
+    Raises
+    ------
+    ValueError : no JSON, nested too deeply, or none of these.
+    """
+    try:
+        return _NOTES.validate_json(text)
+    except ValidationError as fault:
+        first = fault.errors(include_url=False, include_context=False, include_input=False)[0]
+        raise ValueError(first["msg"]) from None

@@ -1,0 +1,79 @@
+"""Warnings of an answer: what is unusual in the design, what missed its tolerance, what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from pipeline.stress_limits import PEAK_OF, limits_passed
+from results.quantities import quantity
+
+if TYPE_CHECKING:
+    from fea.types import SolidField, StressPeak
+    from geometry.design import Design
+    from pipeline.chain import RunResult, Stiffnesses
+
+
+def shortfalls(
+    design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
+) -> tuple[str, ...]:
+    """One line for each figure that passes a limit, whose bounds are wider than asked for, or that is
+    missing, and why."""
+    peaks = _peaks(found, fields or {})
+    return (
+        *(passed.line for passed in limits_passed(design, peaks)),
+        *_wide(design, found),
+        *_unsettled(peaks),
+        *_missing(found),
+    )
+
+
+def all_warnings(result: RunResult) -> tuple[str, ...]:
+    """Of a run: the design's own, then those of the figures."""
+    return (
+        *result.warnings,
+        *result.linear_limit.passed(result.design),
+        *shortfalls(result.design, result.stiffnesses, result.fields),
+    )
+
+
+def _peaks(found: Stiffnesses, fields: Mapping[str, SolidField]) -> dict[str, StressPeak]:
+    """By their names in result.json."""
+    peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
+    if found.wave_generator_peak is not None:
+        peaks["wave_generator_peak"] = found.wave_generator_peak
+    return peaks
+
+
+def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
+    asked = design.solver.tolerance_pct
+    for name, stiffness in found.named.items():
+        half = 100 * stiffness.half_width
+        if half > asked:
+            symbol = quantity(f"{name}_Nm_per_rad").symbol
+            yield (
+                f"{symbol} is known to ± {half:.2g} %, wider than the ± {asked:g} % asked for"
+                " (solver.tolerance_pct)"
+                + (f": {stiffness.shortfall}" if stiffness.shortfall else "")
+            )
+
+
+def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
+    for name, peak in peaks.items():
+        if peak.shortfall:
+            title = quantity(f"{name}_mises_MPa").name
+            yield f"{title}: may still change with a finer mesh, {peak.shortfall}"
+
+
+def _missing(found: Stiffnesses) -> Iterator[str]:
+    said = set()
+    for name, why in found.missing.items():
+        peak = PEAK_OF.get(name, name)
+        if peak in said:  # a field and its peak fail together
+            continue
+        said.add(peak)
+        if peak == "half_seat_peak":
+            key = "wave_generator_peak_half_seat_mises_MPa"
+        else:
+            key = f"{peak}_mises_MPa" if peak.endswith("_peak") else f"{peak}_Nm_per_rad"
+        yield f"{quantity(key).name}: not found, {why}"

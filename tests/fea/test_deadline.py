@@ -1,0 +1,144 @@
+"""A refinement that runs out of time gives what it has: a figure, honest bounds, the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any
+
+import pytest
+from example_cup import CUP
+
+from fea.axisymmetric import contact, lobes, stress, torsion
+from fea.axisymmetric.contact import contact_stiffness
+from fea.axisymmetric.lobes import lobe_stiffness
+from fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from fea.axisymmetric.torsion import torsional_stiffness
+from fea.deadline import Deadline, OutOfTimeError, Pace
+from fea.shortfall import of_the_machine
+from fea.types import Elastic, Stiffness
+from geometry.meridian import cup_meridian
+
+STEEL = Elastic(206e3, 0.3)
+OUTLINE = cup_meridian(CUP)
+FINE = 1e-5
+"""A tolerance that takes many meshes."""
+SECONDS_A_MESH = 10.0
+
+
+class Clock:
+    """A clock that somebody turns."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+    def __call__(self) -> float:
+        return self.seconds
+
+    def ticking(self, step: Callable[..., Any]) -> Callable[..., Any]:
+        """The step itself, after which the clock shows SECONDS_A_MESH more."""
+
+        def timed(*given: Any) -> Any:
+            found = step(*given)
+            self.seconds += SECONDS_A_MESH
+            return found
+
+        return timed
+
+
+@pytest.fixture
+def clock(monkeypatch) -> Clock:
+    clock = Clock()
+    for module, step in (
+        (torsion, "bracket"),
+        (lobes, "solve_lobes"),
+        (contact, "seat_compliance"),
+        (stress, "peak_stress"),
+    ):
+        monkeypatch.setattr(module, step, clock.ticking(getattr(module, step)))
+    return clock
+
+
+@pytest.fixture(scope="module")
+def exact() -> dict[str, Stiffness]:
+    """With all the time it takes."""
+    held = lobe_stiffness(OUTLINE, STEEL, True, 1e-3)
+    return {
+        "torsion": torsional_stiffness(OUTLINE, STEEL, "mesh", 1e-4),
+        "held": held,
+        "free": lobe_stiffness(OUTLINE, STEEL, False, 1e-3),
+        "contact": contact_stiffness(OUTLINE, STEEL, held),
+    }
+
+
+def test_a_step_that_would_end_too_late_is_not_begun() -> None:
+    clock = Clock()
+    pace = Pace(Deadline(100.0, clock))
+    pace.begin(1000)
+    clock.seconds = 20.0
+    pace.begin(2000)  # 20 s times 2^1.5 = 57 s of 80 s left
+    clock.seconds = 60.0
+    with pytest.raises(OutOfTimeError, match="100 s"):
+        pace.begin(2100)  # 40 s times 1.05^1.5 = 43 s of 40 s left
+    with pytest.raises(OutOfTimeError):
+        Pace(Deadline(0.0, clock)).begin(1)
+    Pace(Deadline(inf, clock)).begin(10**9)
+
+
+@pytest.mark.parametrize("meshes", [1, 2, 3])
+@pytest.mark.parametrize("case", ["torsion", "held", "free"])
+def test_stiffness_of_the_meshes_until_then(
+    case: str, meshes: int, clock: Clock, exact: dict[str, Stiffness]
+) -> None:
+    # the next mesh is at least as large: it would take the 10 s that are left, and more
+    deadline = Deadline(SECONDS_A_MESH * (meshes + 1), clock)
+    found = (
+        torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, deadline)
+        if case == "torsion"
+        else lobe_stiffness(OUTLINE, STEEL, case == "held", FINE, deadline)
+    )
+    assert len(found.levels) == meshes
+    assert of_the_machine(found.shortfall)
+    assert f"{deadline.limit_s:g} s" in found.shortfall
+    lower, upper = found.bounds_Nm_per_rad
+    assert lower <= exact[case].K_Nm_per_rad <= upper
+    assert (upper - lower) / found.K_Nm_per_rad > FINE
+    assert clock.seconds < deadline.limit_s
+
+
+def test_contact_on_one_mesh_lies_between_free_and_held(clock, exact) -> None:
+    found = contact_stiffness(OUTLINE, STEEL, exact["held"], Deadline(1.5 * SECONDS_A_MESH, clock))
+    assert len(found.levels) == 1
+    assert of_the_machine(found.shortfall)
+    assert found.K_Nm_per_rad == pytest.approx(exact["contact"].K_Nm_per_rad, rel=0.01)
+    # the ratio of two K on one coarse mesh is off by 1 % (estimates of the free rim alone by 2 %)
+    assert found.lower_Nm_per_rad == pytest.approx(exact["free"].K_Nm_per_rad, rel=0.02)
+    assert found.upper_Nm_per_rad == exact["held"].upper_Nm_per_rad
+
+
+def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
+    held = lobe_stiffness(OUTLINE, STEEL, True, FINE, Deadline(SECONDS_A_MESH, clock))
+    found = contact_stiffness(OUTLINE, STEEL, held)
+    assert found.shortfall == held.shortfall != ""
+    lower, upper = found.bounds_Nm_per_rad
+    assert lower <= exact["contact"].K_Nm_per_rad <= upper
+
+
+def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
+    wall = CUP.wall_thickness_mm
+    on_ellipse = ellipse_stress(
+        OUTLINE, STEEL, 0.2, wall, 1e-6, Deadline(3 * SECONDS_A_MESH, clock)
+    )
+    clock.seconds = 0.0
+    twisted = torsion_stress(
+        OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, Deadline(3 * SECONDS_A_MESH, clock)
+    )
+    for found in (on_ellipse, twisted):
+        assert len(found.levels) == 2
+        assert found.peak.mises_MPa == found.levels[-1].mises_MPa
+        assert of_the_machine(found.peak.shortfall)
+
+
+def test_no_figure_before_the_first_mesh(clock: Clock) -> None:
+    with pytest.raises(OutOfTimeError):
+        torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, Deadline(0.0, clock))

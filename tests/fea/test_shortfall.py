@@ -1,0 +1,154 @@
+"""A refinement that cannot go on gives what it has, with bounds that hold and the reason why it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from example_cup import CUP
+
+from fea.axisymmetric import lobes, stress, torsion
+from fea.shortfall import ToleranceError, of_the_machine, settled
+from fea.solid import stiffness as solid
+from fea.solid.defaults import first_spec
+from fea.solid.errors import MesherError
+from fea.solid.mesh import MeshSpec
+from fea.solid.stiffness import solid_stiffness
+from fea.solid.swept import swept_mesh
+from fea.types import Elastic, Stiffness, TetMesh
+from geometry.errors import ComputationError
+from geometry.load import load_design
+from geometry.meridian import cup_meridian
+from geometry.symmetry import sector_of
+
+STEEL = Elastic(206e3, 0.3)
+OUTLINE = cup_meridian(CUP)
+WHY = "the mesher met its time limit"
+UNREACHABLE = 1e-7
+
+
+@pytest.fixture(scope="module")
+def exact() -> Stiffness:
+    """Bounds 0.02 % apart, that are theorems."""
+    return torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", 2e-4)
+
+
+def failing_after(
+    calls: int, function: Callable[..., Any], fault: Exception | None = None
+) -> Callable[..., Any]:
+    """The function itself so many times, then a fault, our own error by default."""
+    left = [calls]
+
+    def asked(*given: Any) -> Any:
+        if not left[0]:
+            raise fault or ComputationError(WHY)
+        left[0] -= 1
+        return function(*given)
+
+    return asked
+
+
+def held(k: Stiffness, true: Stiffness) -> bool:
+    return (
+        k.lower_Nm_per_rad <= true.lower_Nm_per_rad <= true.upper_Nm_per_rad <= k.upper_Nm_per_rad
+    )
+
+
+def test_bounds_of_a_mesh_that_is_the_largest(exact: Stiffness, monkeypatch) -> None:
+    monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
+    found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
+    assert found.guaranteed
+    assert "none is refined beyond 100" in found.shortfall
+    assert held(found, exact)
+
+
+@pytest.mark.parametrize("meshes", [1, 2])
+def test_bounds_before_a_mesh_that_fails(meshes: int, exact: Stiffness, monkeypatch) -> None:
+    monkeypatch.setattr(torsion, "bracket", failing_after(meshes, torsion.bracket))
+    found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
+    assert len(found.levels) == meshes
+    assert WHY in found.shortfall
+    assert held(found, exact)
+
+
+def test_memory_that_ends_costs_the_finer_mesh_only(exact: Stiffness, monkeypatch) -> None:
+    short = failing_after(1, torsion.bracket, MemoryError("1 GiB"))
+    monkeypatch.setattr(torsion, "bracket", short)
+    found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
+    assert held(found, exact)
+    assert "not enough memory 1 GiB" in found.shortfall
+    assert of_the_machine(found.shortfall)  # another machine, or this one later, may do better
+
+
+def test_a_first_mesh_that_fails_is_an_error(monkeypatch) -> None:
+    monkeypatch.setattr(torsion, "bracket", failing_after(0, torsion.bracket))
+    with pytest.raises(ComputationError, match=WHY):
+        torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
+
+
+@pytest.mark.parametrize("supported", [True, False])
+def test_lobes_before_a_mesh_that_fails(supported: bool, monkeypatch) -> None:
+    true = lobes.lobe_stiffness(OUTLINE, STEEL, supported, 0.003)
+    monkeypatch.setattr(lobes, "solve_lobes", failing_after(1, lobes.solve_lobes))
+    found = lobes.lobe_stiffness(OUTLINE, STEEL, supported, 0.003)
+    assert (len(found.levels), found.guaranteed) == (1, False)
+    assert WHY in found.shortfall
+    # one mesh: the largest factor of true over estimated error that is believed
+    assert found.error_scale == lobes.EFFICIENCY[1]
+    assert found.lower_Nm_per_rad <= true.K_Nm_per_rad <= found.upper_Nm_per_rad
+
+
+def test_a_peak_before_a_mesh_that_fails(monkeypatch) -> None:
+    monkeypatch.setattr(stress, "peak_stress", failing_after(2, stress.peak_stress))
+    found = stress.ellipse_stress(OUTLINE, STEEL, 0.2, CUP.wall_thickness_mm, 1e-3)
+    assert len(found.levels) == 2
+    assert found.peak.mises_MPa == found.levels[-1].mises_MPa
+    assert WHY in found.peak.shortfall
+
+
+def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
+    """The cup as a solid; its mesher makes so many meshes, of at most `most` that are allowed."""
+    monkeypatch.setattr(solid, "MAX_LEVELS", most)
+    design = load_design("examples/xb1-40.toml").model_copy(update={"flexspline": CUP})
+    sector = sector_of(design, "flexspline", "torsion")
+    said: list[str] = []
+
+    def mesher(spec: MeshSpec) -> TetMesh:
+        made = swept_mesh(design, "flexspline", sector.degrees, spec, None)
+        assert made is not None
+        return made
+
+    def limited(spec: MeshSpec) -> TetMesh:
+        if len(said) >= meshes:
+            raise MesherError(WHY, "try a larger edge")
+        return mesher(spec)
+
+    found = solid_stiffness(
+        limited, first_spec(design, "flexspline"), STEEL, "mesh", 1e-5, sector.label, said.append
+    )
+    assert len(found.meshes) == len(found.stiffness.levels)
+    assert len(found.solved.displacement) == len(found.meshes[-1].nodes)
+    return found.stiffness, said
+
+
+def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkeypatch) -> None:
+    found, said = solved(1, 5, monkeypatch)
+    assert WHY in found.shortfall
+    assert WHY in said[-1]
+    assert found.error_scale == solid.USUAL_EFFICIENCY
+    # one mesh: bounds as wide as twice the usual factor of true over estimated error
+    assert held(found, exact)
+
+
+def test_the_solid_model_gives_the_last_of_its_meshes(exact, monkeypatch) -> None:
+    found, _ = solved(9, 1, monkeypatch)
+    assert found.shortfall.startswith("1 mesh")
+    assert held(found, exact)
+
+
+def test_what_needs_the_tolerance_refuses_less(exact: Stiffness, monkeypatch) -> None:
+    assert settled(exact) is exact
+    monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
+    with pytest.raises(ToleranceError, match="none is refined beyond 100"):
+        settled(torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE))

@@ -1,0 +1,50 @@
+"""Masses: each part of its own material's density, against the CAD kernel's volume."""
+
+from __future__ import annotations
+
+import pytest
+from cad_volume import VOLUME
+from changed_design import EXAMPLES, changed_design
+
+from geometry.cad import build_solid
+from geometry.load import load_design
+from geometry.mass import masses
+
+TITANIUM, ALUMINIUM = 4430.0, 2700.0
+SHAFT = {
+    "material.shaft.name": '"EN AW-6082"',
+    "material.shaft.youngs_modulus_GPa": "70.0",
+    "material.shaft.poissons_ratio": "0.33",
+}
+
+
+@pytest.mark.parametrize("example", ["xb1-40", "hat-25", "keyed-shaft"])
+def test_mass_is_the_solids_volume_times_each_parts_density(example: str) -> None:
+    design = changed_design(
+        example,
+        {
+            "material.flexspline.density_kg_per_m3": f"{TITANIUM}",
+            **SHAFT,
+            "material.shaft.density_kg_per_m3": f"{ALUMINIUM}",
+        },
+    )
+    found = masses(design)
+    grams = {
+        part: build_solid(design, part).Volume() * density * 1e-6  # mm³ of kg/m³
+        for part, density in (("flexspline", TITANIUM), ("shaft", ALUMINIUM))
+    }
+    assert found.flexspline_g == pytest.approx(grams["flexspline"], rel=VOLUME)
+    assert found.shaft_g == pytest.approx(grams["shaft"], rel=VOLUME)
+    assert (found.flexspline_density_stated, found.shaft_density_stated) == (True, True)
+
+
+def test_a_density_that_is_not_stated_is_steels_and_says_so() -> None:
+    plain = load_design(EXAMPLES / "xb1-40.toml")
+    found = masses(plain)
+    assert (found.flexspline_kg_per_m3, found.shaft_kg_per_m3) == (7850.0, 7850.0)
+    assert not found.flexspline_density_stated
+    assert not found.shaft_density_stated
+    # the shaft's material is the flexspline's where it has none of its own, density included
+    light = changed_design("xb1-40", {"material.flexspline.density_kg_per_m3": "4430.0"})
+    assert masses(light).shaft_g == pytest.approx(found.shaft_g * 4430 / 7850, rel=1e-12)
+    assert masses(light).shaft_density_stated

@@ -1,0 +1,36 @@
+"""A study's row where a mesh may not be refined any more: K with its bounds, and no peak that might move."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pipeline.study.evaluate import Task, evaluate
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+VALUES = {"flexspline.wall_thickness_mm": 0.4321, "flexspline.ring_thickness_mm": 0.5432}
+"""A part of its own: solved parts are remembered."""
+
+
+@pytest.fixture
+def few_triangles(monkeypatch) -> None:
+    for module in ("torsion", "stress"):
+        monkeypatch.setattr(f"fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
+
+
+@pytest.mark.parametrize("solve", ["ellipse", "torque"])
+def test_an_unsettled_peak_is_a_reason(solve, few_triangles) -> None:
+    tables = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    row = evaluate(Task(tables, VALUES, (solve,)))
+    assert not row.figures
+    assert "none is refined beyond 10" in row.reason
+
+
+def test_a_stiffness_comes_with_its_bounds(few_triangles) -> None:
+    tables = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    row = evaluate(Task(tables, VALUES, ("torsion",)))
+    lower, upper = (row.figures[f"K_b_bounds_Nm_per_rad[{end}]"] for end in (0, 1))
+    assert lower < row.figures["K_b_Nm_per_rad"] < upper
+    assert (upper - lower) / lower > 2e-3  # wider than studies ask for, and in the row

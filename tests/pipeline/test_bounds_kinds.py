@@ -1,0 +1,82 @@
+"""Which bounds are theorems, by solving: those of a body of revolution under torsion, and no others."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from toothed import toothed
+
+from fea.toothed_ring.equivalent import EquivalentRing
+from geometry.design import Design
+from geometry.load import design_from
+from pipeline import parts
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from results.records import stiffness_record
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+LOOSE_PCT = 5.0
+"""Kinds are asked, not figures: the coarsest meshes do."""
+
+
+def design(file: str, model: str = "auto", **changes: object) -> Design:
+    """An example; ``flexspline__bolt_count=0`` sets a key, None takes it away."""
+    data = tomllib.loads((EXAMPLES / file).read_text(encoding="utf-8"))
+    for dotted, value in changes.items():
+        table, key = dotted.split("__")
+        data[table].pop(key, None)
+        if value is not None:
+            data[table][key] = value
+    data["solver"] = {"model": model, "tolerance_pct": LOOSE_PCT}
+    return design_from(data)
+
+
+def kinds(asked: Design, folder: Path, *, rim: bool, shaft: bool = True) -> dict[str, str]:
+    shop = Workshop(asked, Cache(folder, CACHED_TYPES), Progress())
+    found: Stiffnesses = stiffnesses(shop, shaft=shaft, rim=rim)
+    assert not found.missing
+    record = stiffness_record(asked, found, 0.0)
+    named = {k.removesuffix("_bounds_kind"): v for k, v in record.items() if k.endswith("kind")}
+    # every stiffness with bounds says what they are
+    assert {f"{name}_bounds_Nm_per_rad" for name in named} == {
+        k for k in record if "_bounds_Nm" in k
+    }
+    return named
+
+
+def test_of_a_body_of_revolution_torsion_alone_is_guaranteed(tmp_path: Path) -> None:
+    plain = design("keyed-shaft.toml", shaft__keyway=None, shaft__bolt_count=0)
+    assert kinds(plain, tmp_path, rim=True) == {
+        "K_b": "guaranteed", "K_e": "guaranteed", "K_b_lobes": "estimated",
+        "K_b_lobes_contact": "estimated", "K_b_lobes_unsupported": "estimated",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        pytest.param(design("xb1-40.toml"), id="holed cup"),
+        pytest.param(design("hat-25.toml"), id="holed hat"),
+        pytest.param(design("xb1-40.toml", "solid", flexspline__bolt_count=0), id="solid model"),
+    ],
+)
+def test_nothing_solid_is_guaranteed(asked: Design, tmp_path: Path) -> None:
+    assert kinds(asked, tmp_path, rim=False, shaft=False) == {"K_b": "estimated"}
+
+
+@pytest.mark.cad
+def test_a_keyway_makes_k_e_an_estimate(tmp_path: Path) -> None:
+    asked = design("keyed-shaft.toml")
+    assert kinds(asked, tmp_path, rim=False) == {"K_b": "guaranteed", "K_e": "estimated"}
+
+
+def test_drawn_teeth_make_k_b_an_estimate(tmp_path: Path, monkeypatch) -> None:
+    """The bounds are of the part with a plain ring; that it is as stiff as the teeth is no theorem."""
+    ring = EquivalentRing(0.55, 0.6, 0.58, 0.57, 1e-5, 100)
+    monkeypatch.setattr(parts, "ring_of", lambda *given: ring)
+    asked = toothed("trapezoid", flexspline__bolt_count=0, shaft__bolt_count=0)
+    assert kinds(asked, tmp_path, rim=False) == {"K_b": "estimated", "K_e": "guaranteed"}

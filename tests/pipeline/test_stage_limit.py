@@ -1,0 +1,76 @@
+"""A stage over its time limit costs neither its own figure nor the others, and is not remembered for ever."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from example_cup import CUP
+
+from fea.axisymmetric import lobes
+from fea.deadline import Deadline
+from fea.shortfall import of_the_machine
+from geometry.load import load_design
+from pipeline import rim
+from pipeline.cache import Cache
+from pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
+from pipeline.parts import Workshop
+from pipeline.progress import Progress
+from results.warned import shortfalls
+
+DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
+DESIGN = DESIGN.model_copy(update={"flexspline": CUP})
+
+
+def answers(folder: Path) -> Stiffnesses:
+    return stiffnesses(Workshop(DESIGN, Cache(folder, CACHED_TYPES), Progress()), shaft=False)
+
+
+@pytest.fixture
+def slow_lobes(monkeypatch) -> None:
+    """Each mesh of the lobe cases takes 50 s of the 60 that a stage has."""
+    shown, solve = [0.0], lobes.solve_lobes
+
+    def slow(*given):
+        shown[0] += 50.0
+        return solve(*given)
+
+    monkeypatch.setattr(lobes, "solve_lobes", slow)
+    monkeypatch.setattr(rim, "Deadline", lambda limit_s: Deadline(limit_s, lambda: shown[0]))
+
+
+def test_every_figure_is_given_and_the_wide_ones_are_said(tmp_path, slow_lobes) -> None:
+    found = answers(tmp_path)
+    assert not found.missing
+    assert found.wave_generator_peak is not None
+    for name, k in found.named.items():
+        # contact is a share of K with the seat held, whose bounds are wide
+        assert of_the_machine(k.shortfall) == (name != "K_b"), name
+        assert k.lower_Nm_per_rad < k.K_Nm_per_rad < k.upper_Nm_per_rad
+    said = [line for line in shortfalls(DESIGN, found) if "60 s" in line]
+    assert len(said) == 3
+
+
+def test_the_next_run_tries_again(tmp_path, slow_lobes, monkeypatch) -> None:
+    wide = answers(tmp_path)
+    monkeypatch.undo()
+    met = answers(tmp_path)
+    assert wide.K_b_lobes is not None
+    assert met.K_b_lobes is not None
+    assert not met.K_b_lobes.shortfall
+    assert met.K_b_lobes.half_width < wide.K_b_lobes.half_width
+    lower, upper = wide.K_b_lobes.bounds_Nm_per_rad
+    assert lower <= met.K_b_lobes.K_Nm_per_rad <= upper
+
+
+def test_no_time_at_all_leaves_the_figures_out(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(rim, "STAGE_SECONDS", 0.0)
+    found = answers(tmp_path)
+    assert found.K_b is not None
+    assert {
+        "K_b_lobes",
+        "K_b_lobes_unsupported",
+        "K_b_lobes_contact",
+        "wave_generator_peak",
+    } <= set(found.missing)
+    assert all("limit of 0 s" in why for why in found.missing.values())

@@ -1,0 +1,85 @@
+"""A studio whose answers the test holds back and lets go: what the page shows meanwhile can be looked at."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+from aiohttp import web
+
+from geometry.design import Design
+from results.studio.guard import Guard
+from results.studio.questions import answer
+from results.studio.server import Studio, application
+from results.studio.tab import Workers
+
+Hold = Callable[[str, dict[str, Any]], bool]
+LOOK_S = 0.02
+
+
+@cache
+def _answer(question: str, text: str) -> Any:
+    return answer(question, json.loads(text))
+
+
+class HeldWorker:
+    """Answers as a worker does, in a thread; `studio.hold(question, tables)` true keeps it waiting."""
+
+    def __init__(self, studio: HeldStudio) -> None:
+        self.studio = studio
+
+    def start(self) -> None: ...
+
+    def stop(self) -> None: ...
+
+    async def ask(self, question: str, tables: dict[str, Any]) -> Any:
+        while self.studio.hold(question, tables):
+            await asyncio.sleep(LOOK_S)
+        found = await asyncio.to_thread(_answer, question, json.dumps(tables, sort_keys=True))
+        return dict(found) if isinstance(found, dict) else found
+
+
+class HeldStudio:
+    """Its address, and which answers are held: none at first."""
+
+    def __init__(self) -> None:
+        self.hold: Hold = lambda question, tables: False
+        self.guard = Guard("127.0.0.1")
+        self.port = 0
+
+    @property
+    def url(self) -> str:
+        return self.guard.address(self.port)
+
+
+@contextmanager
+def held_studio(design: Design) -> Iterator[HeldStudio]:
+    """Serve in a thread of this process."""
+    studio = HeldStudio()
+    loop, ready = asyncio.new_event_loop(), threading.Event()
+    ended = asyncio.Event()
+    workers: Any = Workers(*(HeldWorker(studio) for _ in range(3)))  # type: ignore[arg-type]
+
+    async def serve() -> None:
+        runner = web.AppRunner(application(Studio(studio.guard, design, workers)))
+        await runner.setup()
+        await web.TCPSite(runner, "127.0.0.1", 0).start()
+        studio.port = runner.addresses[0][1]
+        ready.set()
+        await ended.wait()
+        studio.hold = lambda question, tables: False
+        await runner.cleanup()
+
+    thread = threading.Thread(target=lambda: loop.run_until_complete(serve()))
+    thread.start()
+    assert ready.wait(30)
+    try:
+        yield studio
+    finally:
+        loop.call_soon_threadsafe(ended.set)
+        thread.join(30)

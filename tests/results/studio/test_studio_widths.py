@@ -1,0 +1,140 @@
+"""The live page in windows from 320 to 2560 pixels: nothing cut off, nothing over anything else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from held import HeldStudio
+from studio_page import Page
+
+WINDOWS = (
+    (2560, 1440), (1280, 800), (1024, 768), (768, 1024), (390, 844), (844, 390), (320, 640),
+    (640, 400),  # 1280 × 800 at 200 % zoom
+)  # fmt: skip
+PLACES = (
+    "button, input, select, a, summary, label, td, th, h2, .unit, .brand, .fault, #canvas, "
+    "#scale .bars, #caption p, #busy:not(:empty), #brief > div, #whose, #agreement, svg.line, svg.stack"
+)
+FAULTS = """(places) => {
+  const shown = (e) => e.checkVisibility() && e.getBoundingClientRect().width > 0;
+  const all = [...document.querySelectorAll(places)].filter(shown);
+  const boxes = all.map((e) => e.getBoundingClientRect());
+  const name = (e) => `${e.tagName} ${e.id || e.className} ${e.textContent.slice(0, 30)}`;
+  const cut = (e) => e.matches("button, td.value, th, #brief dd") && e.scrollWidth > e.clientWidth + 1;
+  // the scale lies on the picture's own ground, where the part leaves room
+  const apart = (e, f) => e.contains(f) || f.contains(e) || (e.id === "canvas" && f.closest("#scale"));
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5
+    && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1.5;
+  const found = [];
+  const wide = document.scrollingElement.scrollWidth;
+  if (wide > innerWidth) found.push(`the page is ${wide} wide`);
+  const room = document.getElementById("name").clientWidth;
+  if (room < 110) found.push(`the name has ${room} pixels`);
+  all.forEach((e, i) => {
+    const a = boxes[i];
+    if (a.left < -0.5 || a.right > innerWidth + 0.5) found.push(`${name(e)} ends at ${a.right}`);
+    if (cut(e)) found.push(`${name(e)} is cut off`);
+    for (let k = i + 1; k < all.length; k++) {
+      if (meet(a, boxes[k]) && !apart(e, all[k])) found.push(`${name(e)} lies on ${name(all[k])}`);
+    }
+  });
+  return found;
+}"""
+LONG = "Strain wave gear with a mounting flange, third revision " * 3
+
+
+def looks_right(page: Page, state: str) -> None:
+    """At every width; all that is wrong is named at once."""
+    found: dict[str, Any] = {}
+    for width, height in WINDOWS:
+        page.tab.set_viewport_size({"width": width, "height": height})
+        page.tab.wait_for_timeout(150)  # the picture takes its size a frame later
+        if faults := page.tab.evaluate(FAULTS, PLACES):
+            found[f"{state} at {width} × {height}"] = faults[:6]
+    assert found == {}
+
+
+def test_before_any_answer(tab: Page, held: HeldStudio) -> None:
+    held.hold = lambda question, tables: True
+    tab.tab.reload()
+    tab.at("#answers tr.stale").first.wait_for()
+    looks_right(tab, "start")
+
+
+def test_with_every_answer(tab: Page) -> None:
+    tab.complete()
+    looks_right(tab, "complete")
+    tab.at("#tab-measured").click()
+    looks_right(tab, "measured")
+
+
+def test_while_answers_are_awaited(tab: Page, held: HeldStudio) -> None:
+    tab.complete()
+    held.hold = lambda question, tables: True
+    tab.set("flexspline.wall_thickness_mm", "0.41")
+    looks_right(tab, "busy")
+
+
+def test_with_a_fault(tab: Page) -> None:
+    tab.complete()
+    tab.set("flexspline.inner_fillet_mm", "30")
+    tab.at(".row .fault:visible").wait_for()
+    looks_right(tab, "error")
+
+
+def test_a_hat_with_holes_and_a_long_name(tab: Page) -> None:
+    tab.at("#new-hat").click()
+    tab.field("flexspline.flange_thickness_mm").wait_for()
+    tab.at("#name").fill(LONG)
+    tab.at("#left-out").wait_for()
+    tab.complete()
+    looks_right(tab, "hat")
+    tab.set("flexspline.inner_fillet_mm", "30")
+    tab.at(".row .fault:visible").wait_for()
+    looks_right(tab, "hat, error")
+
+
+def test_beside_a_pinned_design(tab: Page) -> None:
+    tab.complete()
+    tab.at("#pin").click()
+    tab.set("flexspline.wall_thickness_mm", "0.44")
+    tab.complete()
+    looks_right(tab, "pinned")
+
+
+def test_one_column_begins_with_the_answers_and_keeps_them_in_sight(tab: Page) -> None:
+    tab.complete()
+    tab.tab.set_viewport_size({"width": 390, "height": 844})
+    tops = [
+        tab.at(place).bounding_box()["y"] for place in ("#brief", "#stage", "#answers", "#form")
+    ]
+    assert tops == sorted(tops)
+    tab.field("load.torque_Nm").scroll_into_view_if_needed()
+    brief = tab.at("#brief").bounding_box()
+    assert 0 <= brief["y"] < 10
+    shown = tab.row("K_b_Nm_per_rad").locator("td.value").first.inner_text()
+    assert shown in tab.at("#brief").inner_text()
+
+
+@pytest.mark.parametrize("width", [390, 768])
+def test_a_finger_can_move_a_slider_and_scroll_past_the_part(
+    held: HeldStudio, studio_browser: Any, width: int
+) -> None:
+    page = Page(
+        studio_browser, held.url, has_touch=True, is_mobile=True, viewport={"width": width, "height": 844}
+    )  # fmt: skip
+    try:
+        page.quick()
+        slider = page.at('.row[data-key="flexspline.wall_thickness_mm"] input[type=range]')
+        slider.scroll_into_view_if_needed()
+        box = slider.bounding_box()
+        assert box["height"] >= 24  # WCAG 2.2, target size (minimum)
+        page.tab.touchscreen.tap(box["x"] + 0.9 * box["width"], box["y"] + box["height"] / 2)
+        page.at("#stage:not([data-number='1'])").wait_for()
+        assert float(page.field("flexspline.wall_thickness_mm").input_value()) > 0.5
+        for place in ("#canvas canvas", ".row input[type=range]"):
+            assert page.at(place).first.evaluate("e => getComputedStyle(e).touchAction") == "pan-y"
+    finally:
+        page.close()
+    assert page.errors == []
