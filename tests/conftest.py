@@ -6,6 +6,7 @@ marked `cad` where the CAD kernel cannot be loaded.
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -47,6 +48,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&`; children would inherit it
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[ROWS] = []
     if config.getoption("--write-validation"):
         config.option.markexpr = ""  # the long ones too: the page is whole or not written

@@ -48,10 +48,10 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         folder = folder_of(file, out)
         run = asked.file.run
         size = source_of(asked).size  # refuse before anything is written
-        if run.method == "grid" and size != run.evaluations:
-            tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")
         if run.scheduler and not folder.exists():
             check_scheduler(run.scheduler)
+        if run.method == "grid" and size != run.evaluations:
+            tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")
         ledger = ledger_of(asked, folder)
         if keys := unfollowed(asked):
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")

@@ -19,9 +19,9 @@ export class Link {
     const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => {
-      clearTimeout(this.silence);
       if (data instanceof ArrayBuffer) return this.told.bytes(data);
       const note = JSON.parse(data);
+      if (note.number >= this.asked) clearTimeout(this.silence);
       if (note.is === "hello") {
         this.wait = FIRST_WAIT_MS;
         this.tab = note.tab;
@@ -49,6 +49,7 @@ export class Link {
     if (!this.isOpen) return false;
     this.socket.send(JSON.stringify(note));
     if (note.do === "want") {
+      this.asked = note.number;
       clearTimeout(this.silence);
       this.silence = setTimeout(() => this.lost(), SILENCE_MS);
     }
