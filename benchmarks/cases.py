@@ -31,8 +31,8 @@ class Case:
         """The STEP file of the whole flexspline or a wedge, written once."""
         path = folder / f"{self.name}-{sector_deg:g}.step"
         if not path.exists():
-            from geometry.cad import build_solid, write_step
-            from geometry.load import design_from
+            from flexspline.geometry.cad import build_solid, write_step
+            from flexspline.geometry.load import design_from
 
             design = design_from(tomllib.loads(self.design_text()))
             write_step(build_solid(design, "flexspline", sector_deg), path)

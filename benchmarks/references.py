@@ -48,10 +48,10 @@ def limit(case: Case, peer: Peer, steps: Path) -> float:
 
 def guaranteed(case: Case) -> tuple[float, float]:
     """Lower and upper bound of the hole-free cup's K_b [N·m/rad]."""
-    from fea.axisymmetric.torsion import torsional_stiffness
-    from fea.types import Elastic
-    from geometry.load import design_from
-    from geometry.meridian import meridian
+    from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+    from flexspline.fea.types import Elastic
+    from flexspline.geometry.load import design_from
+    from flexspline.geometry.meridian import meridian
 
     design = design_from(tomllib.loads(case.design_text()))
     material = Elastic.of(design.material.flexspline)

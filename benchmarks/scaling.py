@@ -20,7 +20,7 @@ import numpy as np
 from cases import CASES
 from measure import run
 
-from fea.types import TetMesh
+from flexspline.fea.types import TetMesh
 
 FAR_MM = {30.0: (0.3,), 90.0: (2.4, 1.2, 0.8, 0.55, 0.4, 0.36), 360.0: (2.4, 1.2, 0.8, 0.7, 0.6)}
 """Edge lengths for the wedge, the quarter and the whole cup."""
@@ -50,10 +50,10 @@ def growth() -> list[dict[str, Any]]:
 
 
 def wedge_mesh(far: float) -> TetMesh:
-    from fea.solid.defaults import first_spec
-    from fea.solid.sizing import Grading
-    from fea.solid.swept import swept_mesh
-    from geometry.load import design_from
+    from flexspline.fea.solid.defaults import first_spec
+    from flexspline.fea.solid.sizing import Grading
+    from flexspline.fea.solid.swept import swept_mesh
+    from flexspline.geometry.load import design_from
 
     design = design_from(tomllib.loads(CASES[1].design_text()))
     spec = replace(first_spec(design, "flexspline"), grading=Grading(NEAR_SHARE * far, far, 1.0))
@@ -64,9 +64,9 @@ def wedge_mesh(far: float) -> TetMesh:
 
 def one(path: str) -> dict[str, Any]:
     """Assembly and solution of one mesh in this process."""
-    from fea.solid.cases import Model, torsion
-    from fea.solid.unfold import unfolded
-    from fea.types import Elastic
+    from flexspline.fea.solid.cases import Model, torsion
+    from flexspline.fea.solid.unfold import unfolded
+    from flexspline.fea.types import Elastic
 
     with np.load(path) as m:
         names = tuple(str(p) for p in m["patches"])

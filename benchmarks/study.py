@@ -14,11 +14,11 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.study.cluster import hands_of
-from pipeline.study.drive import carry_out
-from pipeline.study.evaluate import evaluate
-from pipeline.study.load import study_from
-from pipeline.study.run import ledger_of, source_of
+from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.drive import carry_out
+from flexspline.pipeline.study.evaluate import evaluate
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.run import ledger_of, source_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 STUDY = """

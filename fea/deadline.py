@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from math import inf
 
-from geometry.errors import ComputationError
+from flexspline.geometry.errors import ComputationError
 
 STAGE_SECONDS = 60.0
 """Of a stage on the command line that solves on the meridian: 15 times what the slowest stage of 150 random

@@ -6,9 +6,9 @@ What was computed until then is given all the same; the clause travels with it (
 
 from __future__ import annotations
 
-from fea.deadline import OutOfTimeError
-from fea.types import Stiffness, StressPeak
-from geometry.errors import ComputationError
+from flexspline.fea.deadline import OutOfTimeError
+from flexspline.fea.types import Stiffness, StressPeak
+from flexspline.geometry.errors import ComputationError
 
 NOT_FINISHED = "the next, finer mesh was not finished:"
 

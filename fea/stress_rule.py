@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import inf
 from typing import Protocol
 
-from fea.types import StressPeak
+from flexspline.fea.types import StressPeak
 
 FARTHER, NEARER = 1.2, 0.5
 """Of the distance left out. Solid meshes have edges of about that distance at the edges, and show no rise

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
-from geometry.ranges import LENGTH_mm
+from flexspline.geometry.ranges import LENGTH_mm
 
 TINY = 1e-6
 """Gaps below this [mm] close in the CAD kernel (its tolerance is 1e-7 mm)."""

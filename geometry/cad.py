@@ -6,11 +6,11 @@ from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geometry.design import Cup, Design
-from geometry.errors import GeometryError
-from geometry.kernel import load_kernel
-from geometry.meridian import meridian
-from geometry.outline import Meridian, Segment
+from flexspline.geometry.design import Cup, Design
+from flexspline.geometry.errors import GeometryError
+from flexspline.geometry.kernel import load_kernel
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.outline import Meridian, Segment
 
 if TYPE_CHECKING:
     import cadquery as cq

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, ceil, pi, sin
 
-from geometry.bounds import TINY, above, below, lengths
-from geometry.design import SMALLEST_MM, Cup, Hat, Shaft
-from geometry.errors import MISSING, DesignError
+from flexspline.geometry.bounds import TINY, above, below, lengths
+from flexspline.geometry.design import SMALLEST_MM, Cup, Hat, Shaft
+from flexspline.geometry.errors import MISSING, DesignError
 
 
 def bolt_faults(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot, inf, sqrt
 
-from geometry.bounds import TINY, from_zero, lengths, upto
-from geometry.design import Cup, Hat
-from geometry.errors import DesignError
-from geometry.ranges import LENGTH_mm
+from flexspline.geometry.bounds import TINY, from_zero, lengths, upto
+from flexspline.geometry.design import Cup, Hat
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import LENGTH_mm
 
 PREFIX = "flexspline."
 

@@ -5,13 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
-from geometry.bounds import TINY, Interval, above, below, beside, from_zero, is_step, lengths, upto
-from geometry.check_bolts import bolt_faults
-from geometry.check_fillets import PREFIX, fault, fillet_faults
-from geometry.culprits import culprits
-from geometry.design import SMALLEST_MM, Cup, Hat
-from geometry.errors import DesignError
-from geometry.ranges import LENGTH_mm
+from flexspline.geometry.bounds import (
+    TINY,
+    Interval,
+    above,
+    below,
+    beside,
+    from_zero,
+    is_step,
+    lengths,
+    upto,
+)
+from flexspline.geometry.check_bolts import bolt_faults
+from flexspline.geometry.check_fillets import PREFIX, fault, fillet_faults
+from flexspline.geometry.culprits import culprits
+from flexspline.geometry.design import SMALLEST_MM, Cup, Hat
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import LENGTH_mm
 
 
 def flexspline_faults(f: Cup | Hat, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import accumulate, pairwise
 from math import sqrt
 
-from geometry.bounds import (
+from flexspline.geometry.bounds import (
     TINY,
     Interval,
     above,
@@ -19,10 +19,10 @@ from geometry.bounds import (
     outside,
     upto,
 )
-from geometry.check_bolts import bolt_faults
-from geometry.design import SMALLEST_MM, Keyway, Shaft, ShaftSegment
-from geometry.errors import DesignError
-from geometry.ranges import LENGTH_mm
+from flexspline.geometry.check_bolts import bolt_faults
+from flexspline.geometry.design import SMALLEST_MM, Keyway, Shaft, ShaftSegment
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import LENGTH_mm
 
 STEP_mm = 2 * SMALLEST_MM
 """Of a diameter: the CAD kernel sees half of it."""

@@ -9,13 +9,13 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterator
 
-from geometry.bounds import span
-from geometry.check_flexspline import flexspline_faults
-from geometry.check_shaft import shaft_faults
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.ranges import TEETH
-from geometry.tooth import ring_ends, tooth_faults
+from flexspline.geometry.bounds import span
+from flexspline.geometry.check_flexspline import flexspline_faults
+from flexspline.geometry.check_shaft import shaft_faults
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import TEETH
+from flexspline.geometry.tooth import ring_ends, tooth_faults
 
 
 def check(design: Design) -> None:

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from geometry.bounds import TINY, above, below, lengths
-from geometry.check_fillets import fault
-from geometry.design import SMALLEST_MM, Cup, Hat
-from geometry.errors import DesignError
-from geometry.ranges import LENGTH_mm
+from flexspline.geometry.bounds import TINY, above, below, lengths
+from flexspline.geometry.check_fillets import fault
+from flexspline.geometry.design import SMALLEST_MM, Cup, Hat
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import LENGTH_mm
 
 ENOUGH = 2
 """Others that contradict a figure."""

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from geometry import ranges
+from flexspline.geometry import ranges
 
 SMALLEST_MM = ranges.LENGTH_mm.low
 STEEL_KG_PER_M3 = 7850.0

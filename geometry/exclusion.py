@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from geometry.design import Cup, Hat, Shaft
+from flexspline.geometry.design import Cup, Hat, Shaft
 
 SHARE_OF_RADIUS = 1 / 20
 """Of the shaft's least outer radius. A shaft's wall is often most of its radius; one such wall from every

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from geometry.errors import GeometryError, one_line
+from flexspline.geometry.errors import GeometryError, one_line
 
 
 class CadKernelError(GeometryError):

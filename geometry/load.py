@@ -10,13 +10,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from geometry.checks import check
-from geometry.design import Design
-from geometry.errors import MISSING, DesignError, DesignFileError
-from geometry.input_file import InputFileError, read_input
-from geometry.plain_words import kind_of, translate, without_tag
-from geometry.schema import ends_of
-from geometry.toml_read import TomlError, toml_tables
+from flexspline.geometry.checks import check
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import MISSING, DesignError, DesignFileError
+from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.geometry.plain_words import kind_of, translate, without_tag
+from flexspline.geometry.schema import ends_of
+from flexspline.geometry.toml_read import TomlError, toml_tables
 
 LARGEST_BYTES = 1_000_000
 """A design takes 2 kB; a file beyond this is some other file."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import asin, pi, sqrt
 
-from geometry.design import Cup, Design, Shaft
-from geometry.meridian import meridian
+from flexspline.geometry.design import Cup, Design, Shaft
+from flexspline.geometry.meridian import meridian
 
 GRAMS_PER_MM3 = 1e-6
 """Of 1 kg/m³."""

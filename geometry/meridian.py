@@ -10,8 +10,8 @@ from math import acos, tan
 
 import numpy as np
 
-from geometry.design import Cup, Design, Hat, Shaft
-from geometry.outline import SAME, Meridian, Point, Segment, distance
+from flexspline.geometry.design import Cup, Design, Hat, Shaft
+from flexspline.geometry.outline import SAME, Meridian, Point, Segment, distance
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import MISSING, DesignError
-from geometry.schema import Location, allowed, dotted, keys_of
+from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.schema import Location, allowed, dotted, keys_of
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails, ValidationError

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from geometry.check_fillets import corner_wall
-from geometry.design import Cup, Design
+from flexspline.geometry.check_fillets import corner_wall
+from flexspline.geometry.design import Cup, Design
 
 ROOT_TOLERANCE = 0.15
 """Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""

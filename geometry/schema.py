@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from geometry.design import Design
+from flexspline.geometry.design import Design
 
 Location = tuple[str | int, ...]
 Node = dict[str, Any]

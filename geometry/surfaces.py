@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.outline import Meridian, Segment
+from flexspline.geometry.design import Design
+from flexspline.geometry.outline import Meridian, Segment
 
 SYMMETRY_START = "symmetry_start"
 SYMMETRY_END = "symmetry_end"

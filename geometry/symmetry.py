@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from geometry.design import Design
+from flexspline.geometry.design import Design
 
 LoadCase = Literal["torsion", "lobes", "ellipse"]
 ARBITRARY_DEG = 30.0

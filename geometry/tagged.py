@@ -15,11 +15,11 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from geometry.cad import build_solid, partition_faces
-from geometry.design import Design
-from geometry.errors import GeometryError
-from geometry.meridian import meridian
-from geometry.surfaces import HoleWall, Surface, part_surfaces
+from flexspline.geometry.cad import build_solid, partition_faces
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import GeometryError
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.surfaces import HoleWall, Surface, part_surfaces
 
 if TYPE_CHECKING:
     import cadquery as cq

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Literal
 
-from geometry.design import Design
-from geometry.schema import Location, allowed, json_schema, node_at
-from geometry.toml_text import quoted
+from flexspline.geometry.design import Design
+from flexspline.geometry.schema import Location, allowed, json_schema, node_at
+from flexspline.geometry.toml_text import quoted
 
 __all__ = ["design_text", "json_schema", "template"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from geometry.errors import readable
+from flexspline.geometry.errors import readable
 
 
 def quoted(text: str) -> str:

@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import acos, asin, cos, inf, pi, radians, sin, tan
 
-from geometry.bounds import beside, span
-from geometry.check_flexspline import thickest_ring
-from geometry.design import SMALLEST_MM, Design
-from geometry.errors import DesignError
-from geometry.outline import SAME, Meridian, Point, Segment
-from geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
+from flexspline.geometry.bounds import beside, span
+from flexspline.geometry.check_flexspline import thickest_ring
+from flexspline.geometry.design import SMALLEST_MM, Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.outline import SAME, Meridian, Point, Segment
+from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 
 ADDENDUM = 1.0
 """Of the standard basic rack (ISO 53), in modules."""

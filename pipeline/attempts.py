@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeVar
 
-from geometry.errors import ComputationError
+from flexspline.geometry.errors import ComputationError
 
 T = TypeVar("T")
 

@@ -8,13 +8,13 @@ from math import cos, hypot, isfinite, pi, radians
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.bearing_play import (
+from flexspline.geometry.design import Design
+from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
     small_displacement_clearance,
 )
-from pipeline.play_spread import play_spread
+from flexspline.pipeline.play_spread import play_spread
 
 ARCSEC_PER_RAD = 180 * 3600 / pi
 MM_PER_UM = 1e-3

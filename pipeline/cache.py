@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from geometry.errors import ComputationError
-from pipeline.leftovers import discard, unfinished
-from pipeline.packing import packed, unpacked
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.leftovers import discard, unfinished
+from flexspline.pipeline.packing import packed, unpacked
 
 T = TypeVar("T")
 FORMAT = 12

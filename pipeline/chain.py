@@ -5,27 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from fea.axisymmetric.stress import torsion_stress
-from fea.deadline import STAGE_SECONDS, Deadline
-from fea.solid.peak import stress_field
-from fea.toothed_ring.equivalent import EquivalentRing
-from fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
-from geometry.design import Design
-from geometry.errors import ComputationError
-from geometry.meridian import meridian
-from geometry.sanity import warnings
-from pipeline.attempts import Attempts
-from pipeline.backlash import Backlash, backlash
-from pipeline.linear_limit import LinearLimit, linear_limit
-from pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
-from pipeline.rim import (
+from flexspline.fea.axisymmetric.stress import torsion_stress
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.peak import stress_field
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.sanity import warnings
+from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.backlash import Backlash, backlash
+from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
+from flexspline.pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
+from flexspline.pipeline.rim import (
     STRESS_TOLERANCE,
     half_seat_peak,
     rim_answers,
     wave_generator_field,
 )
-from pipeline.rim_stress import sharp_edges
-from pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.rim_stress import sharp_edges
+from flexspline.pipeline.stress_limits import PEAK_OF
 
 CACHED_TYPES: tuple[type, ...] = (
     EquivalentRing, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,

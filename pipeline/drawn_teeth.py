@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
-from fea.types import Stiffness
-from geometry.checks import check
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.tooth import tooth_cell
-from pipeline.cache import Cache
-from pipeline.progress import Progress
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
+from flexspline.fea.types import Stiffness
+from flexspline.geometry.checks import check
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.tooth import tooth_cell
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.progress import Progress
 
 
 def ring_of(design: Design, cache: Cache, progress: Progress) -> EquivalentRing | None:

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from pipeline.process_id import parsed, this_process
+from flexspline.pipeline.process_id import parsed, this_process
 
 MARK = ".flexspline-"
 FORGOTTEN_S = 10 * 86_400.0

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 
-from fea.types import NMM_PER_NM, StressPeak
-from geometry.design import Cup, Design
-from pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
+from flexspline.fea.types import NMM_PER_NM, StressPeak
+from flexspline.geometry.design import Cup, Design
+from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
 
 NOT_SOLVED = (
     "without the peak stress of notches, which `flexspline run` solves and which may end it earlier"

@@ -15,20 +15,20 @@ from typing import Literal
 
 import numpy as np
 
-from fea.axisymmetric.contact import contact_stiffness
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.stress import RevolvedField, ellipse_refinements, torsion_stress
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.types import Elastic, Stiffness
-from geometry.design import Cup, Design, Hat, Shaft
-from geometry.errors import ComputationError
-from geometry.exclusion import exclusion_mm
-from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
-from geometry.outline import Meridian
-from pipeline.diagnosis.specimens.designs import without_holes
-from pipeline.parts import DRIVEN
-from pipeline.rim import STRESS_TOLERANCE
-from pipeline.study.evaluate import with_equivalent_ring
+from flexspline.fea.axisymmetric.contact import contact_stiffness
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_refinements, torsion_stress
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.types import Elastic, Stiffness
+from flexspline.geometry.design import Cup, Design, Hat, Shaft
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
+from flexspline.geometry.outline import Meridian
+from flexspline.pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.pipeline.parts import DRIVEN
+from flexspline.pipeline.rim import STRESS_TOLERANCE
+from flexspline.pipeline.study.evaluate import with_equivalent_ring
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
 RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]

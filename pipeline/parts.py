@@ -9,25 +9,25 @@ from typing import Any
 
 import numpy as np
 
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.deadline import STAGE_SECONDS, Deadline
-from fea.shortfall import of_the_machine
-from fea.solid.defaults import first_spec, surface_to_mesh
-from fea.solid.mesh import MeshSpec, mesh_surface
-from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import can_be_swept, swept_edges, swept_mesh
-from fea.solid.swept_sizing import Finer
-from fea.toothed_ring.equivalent import EquivalentRing
-from fea.types import Elastic, Stiffness, StressPeak, TetMesh
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.exclusion import exclusion_mm
-from geometry.meridian import meridian
-from geometry.symmetry import Sector, sector_of
-from geometry.tagged import TaggedSurface
-from pipeline.cache import Cache
-from pipeline.drawn_teeth import of_toothed, ring_of, with_plain_ring
-from pipeline.progress import Progress
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.swept import can_be_swept, swept_edges, swept_mesh
+from flexspline.fea.solid.swept_sizing import Finer
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.fea.types import Elastic, Stiffness, StressPeak, TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.symmetry import Sector, sector_of
+from flexspline.geometry.tagged import TaggedSurface
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.drawn_teeth import of_toothed, ring_of, with_plain_ring
+from flexspline.pipeline.progress import Progress
 
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 RIM_ELEMENTS = 40_000

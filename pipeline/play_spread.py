@@ -6,8 +6,8 @@ from math import erfc, radians, sin, sqrt
 
 import numpy as np
 
-from geometry.design import Bearing, Gear
-from pipeline.bearing_play import involute_clearance, play_limit
+from flexspline.geometry.design import Bearing, Gear
+from flexspline.pipeline.bearing_play import involute_clearance, play_limit
 
 REACH = 8.0
 """Standard deviations on each side that are integrated: beyond lies 1e-15 of the probability."""

@@ -6,17 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from fea.axisymmetric.contact import contact_stiffness
-from fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
-from fea.axisymmetric.stress import ellipse_stress
-from fea.deadline import STAGE_SECONDS, Deadline
-from fea.types import SolidField, Stiffness, StressPeak
-from geometry.meridian import meridian, with_narrow_seat
-from geometry.outline import Meridian
-from pipeline.attempts import Attempts
-from pipeline.parts import PartModel, is_lasting
-from pipeline.rim_stress import solid_ellipse
-from pipeline.solid_lobes import solid_lobes
+from flexspline.fea.axisymmetric.contact import contact_stiffness
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.types import SolidField, Stiffness, StressPeak
+from flexspline.geometry.meridian import meridian, with_narrow_seat
+from flexspline.geometry.outline import Meridian
+from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.rim_stress import solid_ellipse
+from flexspline.pipeline.solid_lobes import solid_lobes
 
 T = TypeVar("T", Stiffness, StressPeak)
 NARROW_SEAT = 0.5

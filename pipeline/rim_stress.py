@@ -6,19 +6,19 @@ from dataclasses import replace
 from math import dist, hypot, radians
 from typing import Any
 
-from fea.axisymmetric.stress import ellipse_stress
-from fea.solid.cases import Model, ellipse
-from fea.solid.defaults import first_spec
-from fea.solid.errors import SolidError
-from fea.solid.peak import SharpEdges, stress_field
-from fea.solid.swept import can_be_swept
-from fea.solid.swept_sizing import Finer
-from fea.solid.unfold import unfolded
-from fea.types import SolidField
-from geometry.errors import ComputationError
-from geometry.meridian import meridian
-from geometry.symmetry import sector_of
-from pipeline.parts import MeshedPart, PartModel
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.solid.cases import Model, ellipse
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.peak import SharpEdges, stress_field
+from flexspline.fea.solid.swept import can_be_swept
+from flexspline.fea.solid.swept_sizing import Finer
+from flexspline.fea.solid.unfold import unfolded
+from flexspline.fea.types import SolidField
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.symmetry import sector_of
+from flexspline.pipeline.parts import MeshedPart, PartModel
 
 LARGEST_STEP = radians(5)
 EDGE_WALLS, REACH_WALLS = 0.5, 1.5

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from fea.solid.defaults import first_spec
-from fea.solid.errors import SolidError
-from fea.solid.lobes import finer_mesh, lobe_stiffness
-from fea.solid.stiffness import USUAL_EFFICIENCY
-from fea.solid.swept import can_be_swept
-from fea.solid.unfold import unfolded
-from fea.types import Stiffness, TetMesh
-from geometry.symmetry import Sector, sector_of
-from pipeline.parts import PartModel, is_lasting
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
+from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
+from flexspline.fea.solid.swept import can_be_swept
+from flexspline.fea.solid.unfold import unfolded
+from flexspline.fea.types import Stiffness, TetMesh
+from flexspline.geometry.symmetry import Sector, sector_of
+from flexspline.pipeline.parts import PartModel, is_lasting
 
 MOST_ELEMENTS = 100_000
 """Of the quarter or half: 450 000 unknowns, a minute."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from fea.types import StressPeak
-from geometry.design import Design, Material
+from flexspline.fea.types import StressPeak
+from flexspline.geometry.design import Design, Material
 
 HIGHEST_STRENGTH_MPA = 2000.0
 """Spring wire, maraging steel and metallic glass yield at about this; nothing that a flexspline is made of is

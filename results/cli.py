@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from results.job import (
+from flexspline.results.job import (
     DesignFile,
     Job,
     Json,
@@ -28,9 +28,9 @@ from results.job import (
     tell_all,
     warn,
 )
-from results.streams import show
-from results.studio.command import register as register_studio
-from results.study.command import register as register_study
+from flexspline.results.streams import show
+from flexspline.results.studio.command import register as register_studio
+from flexspline.results.study.command import register as register_study
 
 app = typer.Typer(
     name="flexspline",
@@ -54,15 +54,15 @@ def run(
 ) -> None:
     """The whole way: CAD, mesh, K_b, K_e, backlash, pictures, report.pdf and report.html."""
     with answered(design):
-        from pipeline.diagnosis.model_file import read_model_file
+        from flexspline.pipeline.diagnosis.model_file import read_model_file
 
         measured = read_model_file(model) if model is not None else None
         job = begin(design, out)
-        from pipeline.chain import run as run_chain
-        from pipeline.diagnosis.extended_backlash import extended_backlash
-        from results.pictures import write_pictures
-        from results.records import Record, extended_record, run_record, write_record
-        from results.report.build import write_run_page, write_run_report
+        from flexspline.pipeline.chain import run as run_chain
+        from flexspline.pipeline.diagnosis.extended_backlash import extended_backlash
+        from flexspline.results.pictures import write_pictures
+        from flexspline.results.records import Record, extended_record, run_record, write_record
+        from flexspline.results.report.build import write_run_page, write_run_report
 
         with kept(job, json):
             result = run_chain(job.shop)
@@ -95,7 +95,7 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """K_b and K_e with error bounds only."""
     with answered(design):
         job = begin(design, out)
-        from pipeline.chain import stiffnesses
+        from flexspline.pipeline.chain import stiffnesses
 
         found = stiffnesses(job.shop)
         keep(job, found, json)
@@ -121,14 +121,19 @@ def backlash(
 
 
 def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, Any]:
-    from geometry.sanity import warnings
-    from pipeline.backlash import backlash as total
-    from pipeline.linear_limit import linear_limit
-    from results.records import backlash_record, heading, linear_limit_record, stiffness_record
+    from flexspline.geometry.sanity import warnings
+    from flexspline.pipeline.backlash import backlash as total
+    from flexspline.pipeline.linear_limit import linear_limit
+    from flexspline.results.records import (
+        backlash_record,
+        heading,
+        linear_limit_record,
+        stiffness_record,
+    )
 
     record = {**heading(job.design), "warnings": list(warnings(job.design))}
     if kb is None or ke is None:
-        from pipeline.chain import stiffnesses
+        from flexspline.pipeline.chain import stiffnesses
 
         rim = job.design.solver.load_case == "lobes"
         found = stiffnesses(job.shop, flexspline=kb is None, shaft=ke is None, rim=rim)
@@ -154,8 +159,8 @@ def export(
     """STEP and STL of both parts, and the solved fields as VTU."""
     with answered(design):
         job = begin(design, out)
-        from results.export import write_decks, write_exports
-        from results.records import as_json, heading
+        from flexspline.results.export import write_decks, write_exports
+        from flexspline.results.records import as_json, heading
 
         files = write_exports(job.shop, job.folder)
         files += write_decks(job.shop, job.folder) if deck else []
@@ -174,7 +179,7 @@ def diagnose(
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     with answered(design):
-        from results.diagnosis.command import diagnose_and_write
+        from flexspline.results.diagnosis.command import diagnose_and_write
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
@@ -191,8 +196,8 @@ def predict(
 ) -> None:
     """The angle for a torque history, by an extended model."""
     with answered(design):
-        from geometry.load import load_design
-        from results.diagnosis.prediction import predict_and_write
+        from flexspline.geometry.load import load_design
+        from flexspline.results.diagnosis.prediction import predict_and_write
 
         gear, folder = load_design(design), folder_of(design, out)
         show(predict_and_write(gear, model, torque, folder, json, tell), json)
@@ -204,8 +209,8 @@ def init(
 ) -> None:
     """Print a commented design file to start from."""
     with answered():
-        from geometry.errors import DesignError
-        from geometry.template import template
+        from flexspline.geometry.errors import DesignError
+        from flexspline.geometry.template import template
 
         kinds: dict[str, Literal["cup", "hat"]] = {"cup": "cup", "hat": "hat"}
         if kind not in kinds:
@@ -217,8 +222,8 @@ def init(
 def schema() -> None:
     """Print the design file's JSON Schema, for editors that complete and check it."""
     with answered():
-        from geometry.template import json_schema
-        from results.records import as_json
+        from flexspline.geometry.template import json_schema
+        from flexspline.results.records import as_json
 
         show(as_json(json_schema()), json=True)
 
@@ -227,6 +232,6 @@ register_study(app)
 register_studio(app)
 
 if __name__ == "__main__":
-    from results.entry import main
+    from flexspline.results.entry import main
 
     main()

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from results.doubt import NOT_STATED
-from results.peaks import marked
-from results.quantities import QUANTITIES
+from flexspline.results.doubt import NOT_STATED
+from flexspline.results.peaks import marked
+from flexspline.results.quantities import QUANTITIES
 
 SPREAD = "backlash_arcsec.std"
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pipeline.backlash import Backlash
-from results.quantities import quantity
+from flexspline.pipeline.backlash import Backlash
+from flexspline.results.quantities import quantity
 
 SOURCES = {
     "youngs_modulus": "Young's modulus",

@@ -12,11 +12,11 @@ INTERRUPTED = 130
 def main() -> None:
     """Entry point of the console script."""
     try:
-        from results.streams import readable_streams
+        from flexspline.results.streams import readable_streams
 
         with readable_streams():
-            from results.cli import app
-            from results.scratch import own_scratch
+            from flexspline.results.cli import app
+            from flexspline.results.scratch import own_scratch
 
             with own_scratch():
                 app()

@@ -7,17 +7,17 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from fea.solid.deck import torsion_deck
-from fea.types import SolidField
-from geometry.cad import build_solid, write_step, write_stl
-from geometry.design import Design
-from geometry.errors import ComputationError
-from pipeline.chain import torque_field
-from pipeline.parts import DRIVEN, Workshop
-from pipeline.progress import Progress
-from pipeline.rim import wave_generator_field
-from results.atomic import write_bytes
-from results.renders.whole import Parity, whole_part
+from flexspline.fea.solid.deck import torsion_deck
+from flexspline.fea.types import SolidField
+from flexspline.geometry.cad import build_solid, write_step, write_stl
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.chain import torque_field
+from flexspline.pipeline.parts import DRIVEN, Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.rim import wave_generator_field
+from flexspline.results.atomic import write_bytes
+from flexspline.results.renders.whole import Parity, whole_part
 
 STL_CHORD_ERROR_MM = 0.01
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from fea.types import SolidField
-    from geometry.design import Design
-    from pipeline.chain import Stiffnesses
-    from pipeline.parts import Workshop
-    from results.report.attached import Attachment
+    from flexspline.fea.types import SolidField
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.chain import Stiffnesses
+    from flexspline.pipeline.parts import Workshop
+    from flexspline.results.report.attached import Attachment
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
 Out = Annotated[
@@ -48,7 +48,7 @@ LONGEST_LINE = 2000
 
 def tell(line: str) -> None:
     """One line of progress or warning, its control characters escaped."""
-    from geometry.errors import one_line
+    from flexspline.geometry.errors import one_line
 
     with suppress(OSError):  # whoever listened has gone: no reason to stop
         print(one_line(line, LONGEST_LINE), file=sys.stderr, flush=True)
@@ -57,8 +57,8 @@ def tell(line: str) -> None:
 @contextmanager
 def answered(path: Path | None = None) -> Iterator[None]:
     """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
-    from geometry.errors import ComputationError, DesignError, DesignFileError
-    from pipeline.diagnosis.errors import MeasurementError, ModelFileError
+    from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError
+    from flexspline.pipeline.diagnosis.errors import MeasurementError, ModelFileError
 
     where = f"{path}: " if path else ""
     try:
@@ -101,8 +101,8 @@ class Job:
 
 def begin(path: Path, out: Path | None) -> Job:
     """Load the design, say its warnings, open the cache."""
-    from geometry.load import design_from, read_raw, tables_from
-    from geometry.sanity import warnings
+    from flexspline.geometry.load import design_from, read_raw, tables_from
+    from flexspline.geometry.sanity import warnings
 
     began = time.monotonic()
     raw = read_raw(path)
@@ -110,12 +110,12 @@ def begin(path: Path, out: Path | None) -> Job:
     folder = folder_of(path, out)
     for line in warnings(design):
         tell(f"warning: {line}")
-    from pipeline.cache import Cache
-    from pipeline.chain import CACHED_TYPES
-    from pipeline.parts import Workshop
-    from pipeline.progress import Progress
-    from pipeline.storage import cache_folder
-    from results.report.attached import Attachment
+    from flexspline.pipeline.cache import Cache
+    from flexspline.pipeline.chain import CACHED_TYPES
+    from flexspline.pipeline.parts import Workshop
+    from flexspline.pipeline.progress import Progress
+    from flexspline.pipeline.storage import cache_folder
+    from flexspline.results.report.attached import Attachment
 
     shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, tell), Progress(tell))
     return Job(design, shop, folder, Attachment(path.name, raw, "Design file"), began)
@@ -123,8 +123,8 @@ def begin(path: Path, out: Path | None) -> Job:
 
 def folder_of(path: Path, out: Path | None) -> Path:
     """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes."""
-    from geometry.errors import DesignError
-    from pipeline.leftovers import discard
+    from flexspline.geometry.errors import DesignError
+    from flexspline.pipeline.leftovers import discard
 
     folder = out if out is not None else path.parent / f"{path.stem}.out"
     if folder.exists() and not folder.is_dir():
@@ -135,10 +135,10 @@ def folder_of(path: Path, out: Path | None) -> Path:
 
 def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
     """Write result.json and print it, for machines or for people."""
-    from results.console import table
-    from results.records import as_json as text
-    from results.records import write_record
-    from results.streams import show
+    from flexspline.results.console import table
+    from flexspline.results.records import as_json as text
+    from flexspline.results.records import write_record
+    from flexspline.results.streams import show
 
     write_record(folder, record)
     show(text(record) if as_json else table(record, folder), as_json)
@@ -146,7 +146,7 @@ def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
 
 def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
     """result.json with the stiffnesses that there are; what they lack is told."""
-    from results.records import heading, stiffness_record
+    from flexspline.results.records import heading, stiffness_record
 
     warn(job.design, found)
     record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
@@ -157,7 +157,7 @@ def warn(
     design: Design, found: Stiffnesses, fields: Mapping[str, SolidField] | None = None
 ) -> None:
     """A line on stderr for each figure that missed its tolerance, or is missing."""
-    from results.warned import shortfalls
+    from flexspline.results.warned import shortfalls
 
     tell_all(shortfalls(design, found, fields))
 
@@ -173,7 +173,7 @@ def tell_all(warnings: Iterable[str]) -> list[str]:
 @contextmanager
 def kept(job: Job, as_json: bool) -> Iterator[None]:
     """Where a figure that the answer needs failed, keep the others before the error goes on."""
-    from pipeline.chain import NotFoundError
+    from flexspline.pipeline.chain import NotFoundError
 
     try:
         yield
@@ -184,8 +184,8 @@ def kept(job: Job, as_json: bool) -> Iterator[None]:
 
 def stiffness_option(name: str, value: float | None) -> float | None:
     """A stiffness given on the command line, checked."""
-    from geometry.errors import DesignError
-    from geometry.ranges import STIFFNESS_Nm_per_rad
+    from flexspline.geometry.errors import DesignError
+    from flexspline.geometry.ranges import STIFFNESS_Nm_per_rad
 
     if value is not None and value not in STIFFNESS_Nm_per_rad:
         raise DesignError(name, value, f"must be a number {STIFFNESS_Nm_per_rad} N·m/rad")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fea.types import StressPeak
-from geometry.design import Material
-from pipeline.stress_limits import share_of_limit
-from results.quantities import grouped, quantity
+from flexspline.fea.types import StressPeak
+from flexspline.geometry.design import Material
+from flexspline.pipeline.stress_limits import share_of_limit
+from flexspline.results.quantities import grouped, quantity
 
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""

@@ -16,19 +16,22 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.backlash import angle_rad
-from pipeline.cache import Cache
-from pipeline.chain import RunResult
-from pipeline.diagnosis.extended_backlash import ExtendedBacklash
-from pipeline.parts import Workshop
-from results.atomic import write_bytes
-from results.figures.budget import write_budget
-from results.figures.convergence import write_convergence
-from results.figures.torque_angle import write_torque_angle
-from results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
-from results.renders.mesh_picture import write_mesh_picture
-from results.renders.process import DrawingProcess, NotDrawnError
-from results.renders.stress_picture import write_torque_stress, write_turning_torque_stress
+from flexspline.pipeline.backlash import angle_rad
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import RunResult
+from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from flexspline.pipeline.parts import Workshop
+from flexspline.results.atomic import write_bytes
+from flexspline.results.figures.budget import write_budget
+from flexspline.results.figures.convergence import write_convergence
+from flexspline.results.figures.torque_angle import write_torque_angle
+from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
+from flexspline.results.renders.mesh_picture import write_mesh_picture
+from flexspline.results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.results.renders.stress_picture import (
+    write_torque_stress,
+    write_turning_torque_stress,
+)
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}

@@ -8,23 +8,23 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import readable
-from geometry.mass import masses
-from geometry.sanity import warnings
-from pipeline.stress_limits import PEAK_OF
-from results.atomic import write_bytes
-from results.quantities import bounds_kind
-from results.warned import all_warnings, shortfalls
+from flexspline.geometry.errors import readable
+from flexspline.geometry.mass import masses
+from flexspline.geometry.sanity import warnings
+from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.results.atomic import write_bytes
+from flexspline.results.quantities import bounds_kind
+from flexspline.results.warned import all_warnings, shortfalls
 
 if TYPE_CHECKING:
-    from fea.toothed_ring.equivalent import EquivalentRing
-    from fea.types import SolidField, Stiffness, StressPeak
-    from geometry.design import Design
-    from pipeline.backlash import Backlash
-    from pipeline.chain import RunResult, Stiffnesses
-    from pipeline.diagnosis.extended_backlash import ExtendedBacklash
-    from pipeline.linear_limit import LinearLimit
-    from pipeline.live import Bounded
+    from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+    from flexspline.fea.types import SolidField, Stiffness, StressPeak
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.backlash import Backlash
+    from flexspline.pipeline.chain import RunResult, Stiffnesses
+    from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+    from flexspline.pipeline.linear_limit import LinearLimit
+    from flexspline.pipeline.live import Bounded
 
 Record = dict[str, Any]
 
@@ -147,7 +147,7 @@ def mass_record(design: Design) -> Record:
 
 def peak_of(name: str, record: Mapping[str, Any]) -> StressPeak:
     """The peak that `peak_record` wrote."""
-    from fea.types import StressPeak
+    from flexspline.fea.types import StressPeak
 
     x, y, z = record[f"{name}_at_mm"]
     return StressPeak(

@@ -16,8 +16,8 @@ def own_scratch() -> Iterator[None]:
     The libraries' too. Where no temporary folder can be written to, nothing is changed: who needs one
     will say so.
     """
-    from pipeline.leftovers import discard, mark
-    from results.job import tell
+    from flexspline.pipeline.leftovers import discard, mark
+    from flexspline.results.job import tell
 
     before = tempfile.tempdir
     try:

@@ -16,8 +16,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
-from geometry.errors import readable
-from results.letters import ASCII, PLAIN, escaped
+from flexspline.geometry.errors import readable
+from flexspline.results.letters import ASCII, PLAIN, escaped
 
 STDOUT = "standard output"
 FAILED = 1

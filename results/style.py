@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from results.atomic import write_bytes
+from flexspline.results.atomic import write_bytes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

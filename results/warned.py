@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from pipeline.stress_limits import PEAK_OF, limits_passed
-from results.quantities import quantity
+from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.results.quantities import quantity
 
 if TYPE_CHECKING:
-    from fea.types import SolidField, StressPeak
-    from geometry.design import Design
-    from pipeline.chain import RunResult, Stiffnesses
+    from flexspline.fea.types import SolidField, StressPeak
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.chain import RunResult, Stiffnesses
 
 
 def shortfalls(

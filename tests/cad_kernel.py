@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 _LOAD = """
-from geometry.kernel import CadKernelError, load_kernel
+from flexspline.geometry.kernel import CadKernelError, load_kernel
 try:
     load_kernel()
 except CadKernelError as error:

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fea.solid.assembly import NodeFrames, stiffness_matrix
-from fea.solid.cases import Model, Supports
-from fea.solid.elements import facet_points, mesh_gradients, reference_values, tet_rule
-from fea.types import Elastic, TetMesh
+from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
+from flexspline.fea.solid.cases import Model, Supports
+from flexspline.fea.solid.elements import facet_points, mesh_gradients, reference_values, tet_rule
+from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
 Traction = Callable[[np.ndarray], np.ndarray]

@@ -16,7 +16,7 @@ from cad_kernel import why_no_cad
 from opengl import why_no_pictures
 from validation_page import TOPICS, Row, has_case, markdown
 
-from geometry.kernel import CadKernelError
+from flexspline.geometry.kernel import CadKernelError
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 WRITERS = ("--write-validation", "--write-reliability")
@@ -48,7 +48,9 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&`; children would inherit it
+    if (
+        signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    ):  # a shell's `&`; children would inherit it
         signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[ROWS] = []
     if config.getoption("--write-validation"):

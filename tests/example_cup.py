@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from geometry.design import Cup
-from geometry.load import load_design
+from flexspline.geometry.design import Cup
+from flexspline.geometry.load import load_design
 
 
 def _revolved() -> Cup:

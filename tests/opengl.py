@@ -9,8 +9,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 _DRAW = """
-from geometry.errors import ComputationError
-from results.renders.opengl import choose_opengl
+from flexspline.geometry.errors import ComputationError
+from flexspline.results.renders.opengl import choose_opengl
 try:
     choose_opengl()
 except ComputationError as error:

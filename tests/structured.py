@@ -7,10 +7,10 @@ from math import degrees
 
 import numpy as np
 
-from fea.solid.elements import linear_mesh
-from fea.solid.mesh import boundary_faces
-from fea.types import TetMesh
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.solid.elements import linear_mesh
+from flexspline.fea.solid.mesh import boundary_faces
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 Where = Callable[[np.ndarray], np.ndarray]
 Mapping3 = Callable[[np.ndarray], np.ndarray]
@@ -74,7 +74,7 @@ def bent_box(
 
 
 def _positive(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    from fea.solid.tetwild import signed_volumes
+    from flexspline.fea.solid.tetwild import signed_volumes
 
     out = tets.copy()
     flipped = signed_volumes(points, tets) < 0

@@ -36,7 +36,7 @@ def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     path = f"{tools}{os.pathsep}{os.environ['PATH']}"
     return subprocess.run(
         ["bash", "-c", line], cwd=folder, capture_output=True, text=True, check=False,
-        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PATH": path},
     )  # fmt: skip
 
 
@@ -47,7 +47,7 @@ def desk(folder: Path) -> Path:
     tools = folder / ".bin"
     tools.mkdir()
     python = shlex.quote(sys.executable)
-    for name, call in (("flexspline", f"{python} -m results.cli"), ("python3", python)):
+    for name, call in (("flexspline", f"{python} -m flexspline.results.cli"), ("python3", python)):
         (tools / name).write_text(f'#!/bin/sh\nexec {call} "$@"\n', encoding="utf-8")
         (tools / name).chmod(0o755)
     return folder
@@ -91,7 +91,7 @@ def test_the_exceptions_are_all_needed() -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
 def test_commands_named_in_the_text_exist(page: Path) -> None:
     """Commands and options in running text, with places for the reader's own files, exist."""
-    from results.cli import app
+    from flexspline.results.cli import app
 
     group = typer.main.get_command(app)
     for line in INLINE.findall(page.read_text(encoding="utf-8")):

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from opengl import why_no_pictures
 
-from geometry.load import load_design
-from geometry.sanity import warnings
+from flexspline.geometry.load import load_design
+from flexspline.geometry.sanity import warnings
 
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(
@@ -52,7 +52,7 @@ def test_readme_opens_with_two_commands_in_order() -> None:
 
 
 def test_readme_names_every_command() -> None:
-    from results.cli import app
+    from flexspline.results.cli import app
 
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     for command in app.registered_commands:
@@ -68,7 +68,7 @@ def test_readme_names_every_command() -> None:
 def test_example_runs(path: Path, tmp_path: Path) -> None:
     """The whole main job on every example; they are the size of real work."""
     out = subprocess.run(
-        [sys.executable, "-m", "results.cli", "run", str(path), "--out", str(tmp_path), "--json"],
+        [sys.executable, "-m", "flexspline.results.cli", "run", str(path), "--out", str(tmp_path), "--json"],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert out.returncode == 0, out.stderr

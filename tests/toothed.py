@@ -5,8 +5,8 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-from geometry.design import Design
-from geometry.load import design_from
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
 
 CUP = Path(__file__).parents[1] / "examples" / "xb1-40.toml"
 

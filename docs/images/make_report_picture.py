@@ -26,7 +26,7 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory() as name:
         design = str(ROOT / "examples" / "xb1-40.toml")
-        command = [sys.executable, "-m", "results.cli", "run", design, "--out", name]
+        command = [sys.executable, "-m", "flexspline.results.cli", "run", design, "--out", name]
         subprocess.run(command, check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
         with chromium() as browser:
             shots = []

@@ -13,11 +13,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from geometry.load import design_from, load_design
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
+from flexspline.geometry.load import design_from, load_design
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
 
 HERE = Path(__file__).parent
 DRAWN = (

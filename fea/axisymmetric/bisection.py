@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh, edge_middles
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_middles
 
 
 def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:

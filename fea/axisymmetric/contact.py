@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import HarmonicModel
-from fea.axisymmetric.lift_off import pushing
-from fea.axisymmetric.seat import SeatCompliance, seat_compliance
-from fea.axisymmetric.triangulate import triangulate
-from fea.deadline import NO_DEADLINE, Deadline, Pace
-from fea.shortfall import next_mesh_failed
-from fea.types import Elastic, MeshLevel, Stiffness
-from geometry.errors import ComputationError
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel
+from flexspline.fea.axisymmetric.lift_off import pushing
+from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
+from flexspline.fea.shortfall import next_mesh_failed
+from flexspline.fea.types import Elastic, MeshLevel, Stiffness
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import Meridian
 
 ANGLES = 32
 """Contact points per half turn. 64 change K by 0.01 %, 48 by 0.006 % (xb1-40)."""

@@ -12,9 +12,9 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from fea.axisymmetric.points import VALUE, Term
-from fea.axisymmetric.space import Space
-from fea.types import Elastic
+from flexspline.fea.axisymmetric.points import VALUE, Term
+from flexspline.fea.axisymmetric.space import Space
+from flexspline.fea.types import Elastic
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
 

@@ -19,12 +19,19 @@ from math import pi
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL, Couplings, Layout, layout_of
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.space import Space, isoparametric, relative_residual, solved
-from fea.types import Elastic
-from geometry.errors import ComputationError
-from geometry.outline import SAME
+from flexspline.fea.axisymmetric.couplings import (
+    AXIAL,
+    RADIAL,
+    TANGENTIAL,
+    Couplings,
+    Layout,
+    layout_of,
+)
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.space import Space, isoparametric, relative_residual, solved
+from flexspline.fea.types import Elastic
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import SAME
 
 DEGREE = 6
 """Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from fea.axisymmetric.harmonics import HarmonicError
+from flexspline.fea.axisymmetric.harmonics import HarmonicError
 
 EPS = 1e-10
 """Forces times gaps, and what the gaps are off by, end below this share of the largest."""

@@ -15,16 +15,16 @@ from math import pi, sin
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, HarmonicModel, Wave
-from fea.axisymmetric.recovery import recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
-from fea.axisymmetric.triangulate import triangulate
-from fea.deadline import NO_DEADLINE, Deadline, Pace
-from fea.shortfall import largest_mesh, next_mesh_failed
-from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from geometry.errors import ComputationError
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.recovery import recovered
+from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
+from flexspline.fea.shortfall import largest_mesh, next_mesh_failed
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import Meridian
 
 HALF_WIDTH = pi / 6
 """φ0 of the contract."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.types import shortest_edge_mm
-from geometry.errors import ComputationError
-from geometry.outline import SAME, Meridian
+from flexspline.fea.types import shortest_edge_mm
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import SAME, Meridian
 
 
 class MeshingError(ComputationError):

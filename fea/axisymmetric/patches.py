@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.outline import Meridian
+from flexspline.geometry.outline import Meridian
 
 
 class PatchError(ValueError):

@@ -8,12 +8,12 @@ from math import inf
 
 import numpy as np
 
-from fea.axisymmetric.harmonics import HarmonicModel
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.points import VALUE, reference
-from fea.axisymmetric.recovery import mises_parts
-from fea.stress_rule import Largest
-from geometry.errors import ComputationError
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.points import VALUE, reference
+from flexspline.fea.axisymmetric.recovery import mises_parts
+from flexspline.fea.stress_rule import Largest
+from flexspline.geometry.errors import ComputationError
 
 STEPS = 8
 """Stress is looked at on a lattice of so many steps along each side of a triangle."""

@@ -11,10 +11,10 @@ from functools import cache
 
 import numpy as np
 
-from fea.axisymmetric.couplings import TANGENTIAL
-from fea.axisymmetric.harmonics import HarmonicModel, Wave
-from fea.axisymmetric.points import Points, Reference, mapped, reference
-from fea.types import Elastic
+from flexspline.fea.axisymmetric.couplings import TANGENTIAL
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel, Wave
+from flexspline.fea.axisymmetric.points import Points, Reference, mapped, reference
+from flexspline.fea.types import Elastic
 
 RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
 DIRECT = (RR, THETA_THETA, ZZ)

@@ -12,10 +12,10 @@ from math import pi
 
 import numpy as np
 
-from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicModel, Wave
-from fea.axisymmetric.lobes import HALF_WIDTH, TORQUE, lobe_coefficient
-from fea.axisymmetric.space import factorised
-from fea.types import NMM_PER_NM
+from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.lobes import HALF_WIDTH, TORQUE, lobe_coefficient
+from flexspline.fea.axisymmetric.space import factorised
+from flexspline.fea.types import NMM_PER_NM
 
 
 @dataclass(frozen=True)

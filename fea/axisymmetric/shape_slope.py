@@ -17,16 +17,16 @@ import numpy as np
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import spsolve
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import TANGENTIAL, Fixed, HarmonicModel, Wave
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.recovery import recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
-from fea.axisymmetric.triangulate import triangulate
-from fea.shortfall import ToleranceError, largest_mesh
-from fea.types import NMM_PER_NM, Elastic
-from geometry.errors import ComputationError
-from geometry.outline import SAME, Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.recovery import recovered
+from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.shortfall import ToleranceError, largest_mesh
+from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import SAME, Meridian
 
 BULK = 0.6
 LAYER_POINTS = 16

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
-from fea.axisymmetric.points import Points, mapped, quadrature, straight
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
+from flexspline.fea.axisymmetric.points import Points, mapped, quadrature, straight
 
 
 @dataclass(frozen=True)

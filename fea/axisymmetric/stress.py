@@ -12,18 +12,25 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Amplitudes, Fixed, HarmonicModel, Wave
-from fea.axisymmetric.peak import Peak, coarse_at_border, peak_stress
-from fea.axisymmetric.recovery import Recovered, mises_parts, recovered
-from fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
-from fea.axisymmetric.triangulate import triangulate
-from fea.deadline import NO_DEADLINE, Deadline, Pace
-from fea.shortfall import largest_mesh, next_mesh_failed
-from fea.stress_rule import judged
-from fea.types import NMM_PER_NM, Elastic, StressPeak
-from geometry.errors import ComputationError
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import (
+    RADIAL,
+    TANGENTIAL,
+    Amplitudes,
+    Fixed,
+    HarmonicModel,
+    Wave,
+)
+from flexspline.fea.axisymmetric.peak import Peak, coarse_at_border, peak_stress
+from flexspline.fea.axisymmetric.recovery import Recovered, mises_parts, recovered
+from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
+from flexspline.fea.shortfall import largest_mesh, next_mesh_failed
+from flexspline.fea.stress_rule import judged
+from flexspline.fea.types import NMM_PER_NM, Elastic, StressPeak
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import Meridian
 
 BULK = 0.5
 LOCAL = 0.5

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.patches import sorted_boundary
-from fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
-from fea.axisymmetric.triangulate import triangulate
-from fea.deadline import NO_DEADLINE, Deadline, Pace
-from fea.shortfall import largest_mesh, next_mesh_failed
-from fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from geometry.errors import ComputationError
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.patches import sorted_boundary
+from flexspline.fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
+from flexspline.fea.shortfall import largest_mesh, next_mesh_failed
+from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import Meridian
 
 BULK = 0.75
 """Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""

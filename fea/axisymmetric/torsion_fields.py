@@ -33,9 +33,9 @@ from math import pi
 
 import numpy as np
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.patches import Boundary
-from fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.patches import Boundary
+from flexspline.fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
 
 PRIMAL_DEGREE = 5
 DUAL_DEGREE = 11

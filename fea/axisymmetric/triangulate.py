@@ -15,8 +15,13 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles, signed_areas
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.meridian_mesh import (
+    MeridianMesh,
+    MeshingError,
+    edge_middles,
+    signed_areas,
+)
+from flexspline.geometry.outline import Meridian
 
 CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 
-from fea.solid.elements import mesh_gradients
-from fea.types import Elastic, TetMesh
+from flexspline.fea.solid.elements import mesh_gradients
+from flexspline.fea.types import Elastic, TetMesh
 
 CHUNK = 20_000
 """Elements handled at once: bounds the memory of the batched product."""

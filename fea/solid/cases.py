@@ -11,14 +11,14 @@ from math import pi
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fea.solid.assembly import NodeFrames, stiffness_matrix
-from fea.solid.elements import facet_points
-from fea.solid.errors import SolveError
-from fea.solid.memory import Way, check_before_assembly
-from fea.solid.solver import Solution, solve
-from fea.solid.twolevel import corner_interpolation
-from fea.types import NMM_PER_NM, Elastic, TetMesh
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
+from flexspline.fea.solid.elements import facet_points
+from flexspline.fea.solid.errors import SolveError
+from flexspline.fea.solid.memory import Way, check_before_assembly
+from flexspline.fea.solid.solver import Solution, solve
+from flexspline.fea.solid.twolevel import corner_interpolation
+from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
 LOBE_HALF_WIDTH = pi / 6

@@ -13,8 +13,8 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.outline import SAME, Meridian, Segment
+from flexspline.geometry.design import Design
+from flexspline.geometry.outline import SAME, Meridian, Segment
 
 INTERFACE = "interface"
 HOLE = "hole"

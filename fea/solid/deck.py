@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from fea.types import NMM_PER_NM, Elastic, TetMesh
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 DECK_ANGLE_RAD = 1e-3
 """Θ of the deck: the analysis is linear, so it only sets the size of the printed reactions."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
-from fea.solid.sizing import Grading, refuse_beyond
-from geometry.design import Design
-from geometry.tagged import TaggedSurface, tagged_surface
+from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
+from flexspline.fea.solid.sizing import Grading, refuse_beyond
+from flexspline.geometry.design import Design
+from flexspline.geometry.tagged import TaggedSurface, tagged_surface
 
 CHORD_PER_ENVELOPE = 1.5
 """Chord error of the tessellation over the mesher's envelope: the nodes are put back onto the exact

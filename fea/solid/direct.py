@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix, triu
 
-from fea.solid.errors import SolveError
+from flexspline.fea.solid.errors import SolveError
 
 Back = Callable[[np.ndarray], np.ndarray]
 PARDISO_OUT_OF_MEMORY = -2

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fea.types import TetMesh
+from flexspline.fea.types import TetMesh
 
 
 def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from geometry.errors import ComputationError
+from flexspline.geometry.errors import ComputationError
 
 
 class SolidError(ComputationError):

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.solid.snap import undo_inverted
-from fea.solid.unroll import Space
-from geometry.outline import SAME, Segment, distance
-from geometry.surfaces import Surface, Swept
+from flexspline.fea.solid.snap import undo_inverted
+from flexspline.fea.solid.unroll import Space
+from flexspline.geometry.outline import SAME, Segment, distance
+from flexspline.geometry.surfaces import Surface, Swept
 
 SMOOTH = 1e-6
 """Segments join smoothly where the cosine of the angle between their tangents is 1 to this."""

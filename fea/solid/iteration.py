@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.solid.errors import SolveError
+from flexspline.fea.solid.errors import SolveError
 
 Operator = Callable[[np.ndarray], np.ndarray]
 

@@ -10,19 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from math import sqrt
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import HarmonicModel
-from fea.axisymmetric.lobes import solve_lobes
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.torsion import bulk
-from fea.shortfall import last_mesh, next_mesh_failed
-from fea.solid.cases import Model, lobes
-from fea.solid.column import INTERFACE
-from fea.solid.stiffness import efficiency, level_of
-from fea.solid.stress import energy_error
-from fea.solid.swept_sizing import MOST_ELEMENTS, Finer
-from fea.types import Elastic, MeshLevel, Stiffness, TetMesh
-from geometry.errors import ComputationError
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel
+from flexspline.fea.axisymmetric.lobes import solve_lobes
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.torsion import bulk
+from flexspline.fea.shortfall import last_mesh, next_mesh_failed
+from flexspline.fea.solid.cases import Model, lobes
+from flexspline.fea.solid.column import INTERFACE
+from flexspline.fea.solid.stiffness import efficiency, level_of
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
+from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
+from flexspline.geometry.errors import ComputationError
 
 STEP = 0.40
 """Of √(t/R), about the axis, for 0.5 %: 3.3° on a wall of a fiftieth of the radius. The error of quadratic

@@ -11,8 +11,8 @@ from math import inf
 from pathlib import Path
 from typing import Literal
 
-from fea.solid.direct import pardiso
-from fea.solid.errors import MemoryShortError
+from flexspline.fea.solid.direct import pardiso
+from flexspline.fea.solid.errors import MemoryShortError
 
 Way = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 300_000, False: 50_000}

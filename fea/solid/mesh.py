@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio, linear_mesh
-from fea.solid.errors import MeshQualityError
-from fea.solid.imprint import Meshed, with_patch_edges
-from fea.solid.sizing import Grading, graded_background
-from fea.solid.snap import snap_to_surfaces, undo_inverted
-from fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
-from fea.solid.unroll import Cartesian, Space, Unrolled
-from fea.types import TetMesh
-from geometry.nearest import nearest_triangles
-from geometry.surfaces import sector_planes
-from geometry.tagged import TaggedSurface
+from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio, linear_mesh
+from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.imprint import Meshed, with_patch_edges
+from flexspline.fea.solid.sizing import Grading, graded_background
+from flexspline.fea.solid.snap import snap_to_surfaces, undo_inverted
+from flexspline.fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
+from flexspline.fea.solid.unroll import Cartesian, Space, Unrolled
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.nearest import nearest_triangles
+from flexspline.geometry.surfaces import sector_planes
+from flexspline.geometry.tagged import TaggedSurface
 
 AREA_TOLERANCE = 0.005
 """A patch whose mesh area is farther than this from its CAD area is refused: parabolas for arcs of a coarse

@@ -7,11 +7,11 @@ from math import inf
 
 import numpy as np
 
-from fea.solid.errors import SolveError
-from fea.solid.stress import nodal_stress, von_mises
-from fea.solid.unfold import folded
-from fea.stress_rule import judged
-from fea.types import Elastic, SolidField, StressPeak, TetMesh
+from flexspline.fea.solid.errors import SolveError
+from flexspline.fea.solid.stress import nodal_stress, von_mises
+from flexspline.fea.solid.unfold import folded
+from flexspline.fea.stress_rule import judged
+from flexspline.fea.types import Elastic, SolidField, StressPeak, TetMesh
 
 LATTICE = 6
 """Stresses are looked at on a lattice of this many steps along the sides of every boundary facet, so

@@ -10,9 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.solid.column import HOLE, INTERFACE, Column
-from geometry.outline import SAME
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.solid.column import HOLE, INTERFACE, Column
+from flexspline.geometry.outline import SAME
 
 FILLED = (0.6, 0.25)
 """Rings of nodes within a hole's circle, where material closes the hole above."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.solid.errors import SolidError
-from fea.solid.tetwild import Background
+from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.tetwild import Background
 
 MOST_POINTS = 500_000
 """Of a grid of the wanted edge length in the part's box: the mesher would take hours."""

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fea.solid.errors import MeshQualityError
-from fea.solid.tetwild import signed_volumes
-from geometry.surfaces import Plane, Surface
+from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.tetwild import signed_volumes
+from flexspline.geometry.surfaces import Plane, Surface
 
 ROUNDS = 40
 """Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the

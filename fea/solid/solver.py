@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fea.solid.direct import direct
-from fea.solid.errors import SolveError
-from fea.solid.memory import Way, way
-from fea.solid.twolevel import iterate
+from flexspline.fea.solid.direct import direct
+from flexspline.fea.solid.errors import SolveError
+from flexspline.fea.solid.memory import Way, way
+from flexspline.fea.solid.twolevel import iterate
 
 LOST_ENERGY_LIMIT = 1e-6
 """Largest |u·(Ku − f)| over u·Ku, as in `fea.axisymmetric.harmonics`: the ‖Ku − f‖/‖f‖ of a thin part

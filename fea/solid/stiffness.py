@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.shortfall import last_mesh, next_mesh_failed
-from fea.solid.cases import Model, Solved, torsion
-from fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
-from fea.solid.sizing import Grading
-from fea.solid.stress import energy_error
-from fea.types import Elastic, MeshLevel, Stiffness, TetMesh
-from geometry.errors import ComputationError
+from flexspline.fea.shortfall import last_mesh, next_mesh_failed
+from flexspline.fea.solid.cases import Model, Solved, torsion
+from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
+from flexspline.geometry.errors import ComputationError
 
 Mesher = Callable[[MeshSpec], TetMesh]
 MAX_LEVELS = 5

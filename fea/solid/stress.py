@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.solid.elements import NODES, Gradients, gradients, reference_values, tet_rule
-from fea.types import Elastic, TetMesh
+from flexspline.fea.solid.elements import NODES, Gradients, gradients, reference_values, tet_rule
+from flexspline.fea.types import Elastic, TetMesh
 
 
 def _stress(g: Gradients, u_cells: np.ndarray, material: Elastic) -> np.ndarray:

@@ -12,27 +12,27 @@ from math import ceil, radians
 
 import numpy as np
 
-from fea.axisymmetric.meridian_mesh import MeshingError
-from fea.axisymmetric.triangulate import triangulate
-from fea.solid.column import INTERFACE, Column, column_of
-from fea.solid.elements import element_volumes, facet_areas
-from fea.solid.errors import MeshQualityError
-from fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
-from fea.solid.prisms import along, cut, extruded, revolved
-from fea.solid.sizing import Grading
-from fea.solid.snap import snap_to_surfaces
-from fea.solid.swept_sizing import (
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.solid.column import INTERFACE, Column, column_of
+from flexspline.fea.solid.elements import element_volumes, facet_areas
+from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
+from flexspline.fea.solid.prisms import along, cut, extruded, revolved
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.snap import snap_to_surfaces
+from flexspline.fea.solid.swept_sizing import (
     Finer,
     critical_points,
     graded_mesh,
     plan_mesh,
     refuse_beyond_memory,
 )
-from fea.types import TetMesh
-from geometry.design import Design
-from geometry.meridian import meridian
-from geometry.outline import Meridian
-from geometry.surfaces import Surface, part_surfaces
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.outline import Meridian
+from flexspline.geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.triangulate import triangulate
-from fea.solid.column import CORE_RIM, LARGEST_ARC, Column
-from fea.solid.errors import MeshQualityError, SolidError
-from fea.solid.sizing import Grading
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, Column
+from flexspline.fea.solid.errors import MeshQualityError, SolidError
+from flexspline.fea.solid.sizing import Grading
+from flexspline.geometry.outline import Meridian
 
 PLAN_EDGE = 1.2
 """Largest edge in the plan beside a hole, in hole radii."""

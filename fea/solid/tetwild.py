@@ -1,7 +1,7 @@
 """fTetWild in a child process: it is C++ that can hang or crash, so it gets a time limit.
 
-Run as ``python -m fea.solid.tetwild IN.npz OUT.npz PARENT`` it is the child; PARENT is its parent's process
-number, without which it does not go on.
+Run as ``python -m flexspline.fea.solid.tetwild IN.npz OUT.npz PARENT`` it is the child; PARENT is its
+parent's process number, without which it does not go on.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from fea.solid.errors import MesherError
+from flexspline.fea.solid.errors import MesherError
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def tetrahedralize(
         if background is not None:
             values |= {f"bg_{k}": v for k, v in vars(background).items()}
         np.savez(given, vertices=vertices, triangles=triangles, **values)
-        child = [sys.executable, "-m", "fea.solid.tetwild"]
+        child = [sys.executable, "-m", "flexspline.fea.solid.tetwild"]
         command = [*child, str(given), str(made), str(os.getpid())]
         try:
             done = subprocess.run(

@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, dia_matrix, diags
 
-from fea.solid.assembly import NodeFrames
-from fea.solid.direct import factorised
-from fea.solid.errors import IterationError
-from fea.solid.iteration import Operator, conjugate_gradients
-from fea.types import TetMesh
+from flexspline.fea.solid.assembly import NodeFrames
+from flexspline.fea.solid.direct import factorised
+from flexspline.fea.solid.errors import IterationError
+from flexspline.fea.solid.iteration import Operator, conjugate_gradients
+from flexspline.fea.types import TetMesh
 
 EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
 """Corners at the ends of each middle node 4 to 9."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.types import TetMesh
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 """Ten nodes with corners 1 and 2 exchanged: a reflection turns the element inside out."""

@@ -22,11 +22,11 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.points import VALUE
-from fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
-from geometry.errors import ComputationError
-from geometry.tooth import ToothCell
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.points import VALUE
+from flexspline.fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.tooth import ToothCell
 
 DEGREE = 6
 """Of quadrature: exact for r·|∇u|² and more; 1/r varies little over an element."""

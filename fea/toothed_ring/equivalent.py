@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeridianMesh
-from fea.axisymmetric.triangulate import triangulate
-from fea.toothed_ring import plain
-from fea.toothed_ring.cell import CellModel, ToothedRingError
-from geometry.tooth import ToothCell
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.toothed_ring import plain
+from flexspline.fea.toothed_ring.cell import CellModel, ToothedRingError
+from flexspline.geometry.tooth import ToothCell
 
 SMALLEST_CHANGE = 1e-4
 """Relative change of every thickness over a refinement at which the mesh is fine enough."""

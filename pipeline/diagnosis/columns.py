@@ -8,10 +8,10 @@ from math import log
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Rig, Shape
-from pipeline.diagnosis.effects.torque_program import holds, torque_noise_Nm
-from pipeline.diagnosis.record import History
-from pipeline.diagnosis.unnamed import Unnamed, competitors
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.unnamed import Unnamed, competitors
 
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""

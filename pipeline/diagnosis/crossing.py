@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
-from pipeline.diagnosis.effects.operators import rising
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.operators import rising
+from flexspline.pipeline.diagnosis.record import History
 
 REACH = 0.35
 """Offsets searched, as a share of the largest torque."""

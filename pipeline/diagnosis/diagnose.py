@@ -7,25 +7,31 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.diagnosis.end_points.diagnose import diagnose_end_points
-from pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from pipeline.diagnosis.holdout import gain_of
-from pipeline.diagnosis.leftover import ChannelTest, channel_tests
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.naming import model_of, named_causes
-from pipeline.diagnosis.prediction import Prediction, prediction_of
-from pipeline.diagnosis.record import EndPoints, Specimens, Sweep, read_measurement
-from pipeline.diagnosis.result import NextMeasurement, Outcome
-from pipeline.diagnosis.specimens.diagnose import diagnose_specimens
-from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from pipeline.diagnosis.sweep import Explained, TooFewRowsError, diagnosed
-from pipeline.diagnosis.verdict import next_of, notes_of, summary_of, unexplained_of, verdict_of
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.storage import cache_folder
+from flexspline.geometry.design import Design
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.holdout import gain_of
+from flexspline.pipeline.diagnosis.leftover import ChannelTest, channel_tests
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.naming import model_of, named_causes
+from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
+from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep, read_measurement
+from flexspline.pipeline.diagnosis.result import NextMeasurement, Outcome
+from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
+from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep import Explained, TooFewRowsError, diagnosed
+from flexspline.pipeline.diagnosis.verdict import (
+    next_of,
+    notes_of,
+    summary_of,
+    unexplained_of,
+    verdict_of,
+)
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.storage import cache_folder
 
 STILL = 0.1
 """Torque that varies by less than this share of its largest value is constant."""

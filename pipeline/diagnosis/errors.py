@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from geometry.errors import one_line
+from flexspline.geometry.errors import one_line
 
 
 class MeasurementError(ValueError):

@@ -9,11 +9,11 @@ from math import copysign
 
 import numpy as np
 
-from pipeline.backlash import Backlash
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.prediction import REFERENCE_C
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.record import History
 
 RAMP_S = 600.0
 """From 0 to T_L: slow, so that what lags torque counts for little."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.weighing import Weighed
+from flexspline.pipeline.diagnosis.weighing import Weighed
 
 OWN_NATS = 5.0
 """Evidence that separate amplitudes must gain over a common one."""

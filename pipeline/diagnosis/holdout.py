@@ -6,14 +6,14 @@ from collections.abc import Collection
 
 import numpy as np
 
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
-from pipeline.diagnosis.record import History
-from pipeline.diagnosis.result import Gain
-from pipeline.diagnosis.rows import turning
-from pipeline.diagnosis.search import Search
-from pipeline.diagnosis.solution import calibrated_residual, less_zero, solved
-from pipeline.diagnosis.sweep import Explained, Prepared
-from pipeline.diagnosis.terms import Race, race
+from flexspline.pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.rows import turning
+from flexspline.pipeline.diagnosis.search import Search
+from flexspline.pipeline.diagnosis.solution import calibrated_residual, less_zero, solved
+from flexspline.pipeline.diagnosis.sweep import Explained, Prepared
+from flexspline.pipeline.diagnosis.terms import Race, race
 
 FEWEST_ROWS = 12
 CROSSING_SIGMAS, CROSSING_LEAST = 3.0, 0.15

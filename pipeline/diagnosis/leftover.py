@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from pipeline.diagnosis.effects.operators import rising, steadied
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
-from pipeline.diagnosis.solution import Solution
-from pipeline.diagnosis.sweep import Prepared
+from flexspline.pipeline.diagnosis.effects.operators import rising, steadied
+from flexspline.pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.solution import Solution
+from flexspline.pipeline.diagnosis.sweep import Prepared
 
 RANK = 1e-3
 """Of the largest singular value: bins that the model's terms can be count for nothing."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.record import History
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geometry.input_file import InputFileError, read_input
-from geometry.toml_read import TomlError, toml_tables
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element, Shape
-from pipeline.diagnosis.errors import ModelFileError
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.shape_check import fault_of
-from pipeline.diagnosis.table import LARGEST_NUMBER
+from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.geometry.toml_read import TomlError, toml_tables
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element, Shape
+from flexspline.pipeline.diagnosis.errors import ModelFileError
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.shape_check import fault_of
+from flexspline.pipeline.diagnosis.table import LARGEST_NUMBER
 
 FORMAT = 1
 LARGEST_BYTES = 1_000_000

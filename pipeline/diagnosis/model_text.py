@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from geometry.errors import one_line
-from geometry.toml_text import quoted
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.model_file import FORMAT, Provenance
-from pipeline.diagnosis.result import Gain, NamedCause
+from flexspline.geometry.errors import one_line
+from flexspline.geometry.toml_text import quoted
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.model_file import FORMAT, Provenance
+from flexspline.pipeline.diagnosis.result import Gain, NamedCause
 
 ABOUT = """\
 # angle [arcsec] = zero + T·compliance + sign(T)·gap/2 + what each cause below adds; T in N·m.

@@ -7,14 +7,14 @@ from math import hypot
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.record import Sweep
-from pipeline.diagnosis.result import NamedCause
-from pipeline.diagnosis.solution import Solution, solved
-from pipeline.diagnosis.sweep import Explained
-from pipeline.diagnosis.weighing import Weighed
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.pipeline.diagnosis.solution import Solution, solved
+from flexspline.pipeline.diagnosis.sweep import Explained
+from flexspline.pipeline.diagnosis.weighing import Weighed
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""

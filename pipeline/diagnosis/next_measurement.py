@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.torque_program import ramp_s
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.prediction import REFERENCE_C
-from pipeline.diagnosis.record import History
-from pipeline.diagnosis.result import NextMeasurement
-from pipeline.diagnosis.sweep import Prepared
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.torque_program import ramp_s
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.result import NextMeasurement
+from flexspline.pipeline.diagnosis.sweep import Prepared
 
 ROWS = 64
 """Of one triangular cycle."""

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import nnls
 from scipy.signal import lfilter
 
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.record import History
 
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""

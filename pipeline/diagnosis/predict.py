@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.model_file import ModelFile
-from pipeline.diagnosis.record import History, NamedHistory, history_of
-from pipeline.diagnosis.shape_check import channels_needed
-from pipeline.diagnosis.table import Table, read_table
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.model_file import ModelFile
+from flexspline.pipeline.diagnosis.record import History, NamedHistory, history_of
+from flexspline.pipeline.diagnosis.shape_check import channels_needed
+from flexspline.pipeline.diagnosis.table import Table, read_table
 
 CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
 """Causes that go on from the record's first cycle and from its first row's time."""

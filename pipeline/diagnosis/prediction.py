@@ -7,9 +7,9 @@ from math import hypot
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
-from pipeline.diagnosis.record import History
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
+from flexspline.pipeline.diagnosis.record import History
 
 REFERENCE_C = 20.0
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
-from pipeline.diagnosis.table import Table, read_table
+from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
+from flexspline.pipeline.diagnosis.table import Table, read_table
 
 LARGEST_CYCLE = 1_000_000
 FEWEST_SWEEP_ROWS = 4

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.diagnosis.effects.operators import rising
-from pipeline.diagnosis.effects.torque_program import deadband_Nm
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.operators import rising
+from flexspline.pipeline.diagnosis.effects.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.record import History
 
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
 """Of the largest torque; of a unit's rows."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pipeline.diagnosis.columns import Term
-from pipeline.diagnosis.terms import Race, column_indices
+from flexspline.pipeline.diagnosis.columns import Term
+from flexspline.pipeline.diagnosis.terms import Race, column_indices
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import History
 
 CHANNELS = ("time_s", "temperature_C", "input_angle_deg")
 """That a record may lack."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.columns import NOISE_WINDOWS
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element, Rig
-from pipeline.diagnosis.record import History
-from pipeline.diagnosis.terms import Fit, Race, fitted
+from flexspline.pipeline.diagnosis.columns import NOISE_WINDOWS
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
+from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.terms import Fit, Race, fitted
 
 ALLOWED = 2.0
 """Standard deviations by which a calibration may move without being a finding."""

@@ -7,13 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from pipeline.diagnosis.columns import Columns, columns_of
-from pipeline.diagnosis.crossing import Crossing, crossing, first_offset
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Cause, Rig
-from pipeline.diagnosis.effects.torque_program import torque_noise_Nm
-from pipeline.diagnosis.fleet import UnitShare, unit_shares
-from pipeline.diagnosis.noise import (
+from flexspline.pipeline.diagnosis.columns import Columns, columns_of
+from flexspline.pipeline.diagnosis.crossing import Crossing, crossing, first_offset
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Rig
+from flexspline.pipeline.diagnosis.effects.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.fleet import UnitShare, unit_shares
+from flexspline.pipeline.diagnosis.noise import (
     Noise,
     crossing_band_Nm,
     estimated,
@@ -21,15 +21,15 @@ from pipeline.diagnosis.noise import (
     rough_residual,
     stretches_of,
 )
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import Sweep
-from pipeline.diagnosis.rows import naming_rows, settling, turning
-from pipeline.diagnosis.search import NAMED_COST, Candidate, Search
-from pipeline.diagnosis.solution import Solution, solved
-from pipeline.diagnosis.terms import Race, race, with_terms
-from pipeline.diagnosis.thinning import thinned
-from pipeline.diagnosis.tune import tuned
-from pipeline.diagnosis.weighing import Weighed, weigh
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.pipeline.diagnosis.rows import naming_rows, settling, turning
+from flexspline.pipeline.diagnosis.search import NAMED_COST, Candidate, Search
+from flexspline.pipeline.diagnosis.solution import Solution, solved
+from flexspline.pipeline.diagnosis.terms import Race, race, with_terms
+from flexspline.pipeline.diagnosis.thinning import thinned
+from flexspline.pipeline.diagnosis.tune import tuned
+from flexspline.pipeline.diagnosis.weighing import Weighed, weigh
 
 ROUNDS = 1
 """Of noise estimated from what the best set leaves."""

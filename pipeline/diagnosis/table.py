@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.input_file import InputFileError, read_input
-from geometry.ranges import SMALLEST_NUMBER
-from pipeline.diagnosis.errors import MeasurementError
+from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.geometry.ranges import SMALLEST_NUMBER
+from flexspline.pipeline.diagnosis.errors import MeasurementError
 
 LARGEST_BYTES = 200_000_000
 """Two million rows of 100 letters; a file beyond this is some other file, or never ends."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.columns import Columns, Term
-from pipeline.diagnosis.effects.cause import Shape
-from pipeline.diagnosis.noise import Noise, stretches_of
+from flexspline.pipeline.diagnosis.columns import Columns, Term
+from flexspline.pipeline.diagnosis.effects.cause import Shape
+from flexspline.pipeline.diagnosis.noise import Noise, stretches_of
 
 MOST_ROWS = 4000
 """Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.diagnosis.noise import crossing_band_Nm
-from pipeline.diagnosis.record import History, Sweep
+from flexspline.pipeline.diagnosis.noise import crossing_band_Nm
+from flexspline.pipeline.diagnosis.record import History, Sweep
 
 MOST_ROWS = 6000
 FEWEST_PER_CYCLE = 150

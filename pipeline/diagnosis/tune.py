@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.columns import Term
-from pipeline.diagnosis.effects.cause import Shape
-from pipeline.diagnosis.terms import Race
+from flexspline.pipeline.diagnosis.columns import Term
+from flexspline.pipeline.diagnosis.effects.cause import Shape
+from flexspline.pipeline.diagnosis.terms import Race
 
 STEPS = 4
 STEP_STD = 0.4

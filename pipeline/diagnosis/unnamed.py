@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.effects.operators import lags, rising, steadied, stops
-from pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
-from pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.effects.operators import lags, rising, steadied, stops
+from flexspline.pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
 NEW_SHARE = 0.25
 """Of a column's own size: one of which less is new beside torque and gap is no competitor."""

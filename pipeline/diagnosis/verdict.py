@@ -5,15 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import floor, hypot, log10
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.naming import model_of
-from pipeline.diagnosis.next_measurement import to_tell_apart
-from pipeline.diagnosis.result import NamedCause, NextMeasurement, Unexplained, Verdict, left_out
-from pipeline.diagnosis.search import Candidate
-from pipeline.diagnosis.solution import solved
-from pipeline.diagnosis.sweep import Explained
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.leftover import SIGNIFICANT, ChannelTest
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.naming import model_of
+from flexspline.pipeline.diagnosis.next_measurement import to_tell_apart
+from flexspline.pipeline.diagnosis.result import (
+    NamedCause,
+    NextMeasurement,
+    Unexplained,
+    Verdict,
+    left_out,
+)
+from flexspline.pipeline.diagnosis.search import Candidate
+from flexspline.pipeline.diagnosis.solution import solved
+from flexspline.pipeline.diagnosis.sweep import Explained
 
 UNEXPLAINED_SHARE = 0.5
 """Of the named effects' rms: with more left unexplained the verdict is `unknown`."""

@@ -8,11 +8,11 @@ from math import log
 
 import numpy as np
 
-from pipeline.diagnosis.columns import Term
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.search import Candidate, Search
-from pipeline.diagnosis.solution import Solution, owner_rms, solved
-from pipeline.diagnosis.terms import Race
+from flexspline.pipeline.diagnosis.columns import Term
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.search import Candidate, Search
+from flexspline.pipeline.diagnosis.solution import Solution, owner_rms, solved
+from flexspline.pipeline.diagnosis.terms import Race
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: one of several by more, as the

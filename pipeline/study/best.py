@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fea.types import SolidField
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.rim import wave_generator_field
-from pipeline.storage import cache_folder
-from pipeline.study.evaluate import OUR_ERRORS
-from pipeline.study.result import StudyResult
+from flexspline.fea.types import SolidField
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.rim import wave_generator_field
+from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.study.evaluate import OUR_ERRORS
+from flexspline.pipeline.study.result import StudyResult
 
 
 @dataclass(frozen=True)

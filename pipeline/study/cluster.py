@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.study.load import StudyError
-from pipeline.study.local_workers import LocalWorkers, WorkerDiedError
+from flexspline.pipeline.study.load import StudyError
+from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerDiedError
 
 CONNECT_S = 30.0
 

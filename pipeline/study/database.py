@@ -8,9 +8,9 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import DesignError
-from pipeline.process_id import this_process
-from pipeline.study.store import Ledger, said
+from flexspline.geometry.errors import DesignError
+from flexspline.pipeline.process_id import this_process
+from flexspline.pipeline.study.store import Ledger, said
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler

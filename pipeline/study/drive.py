@@ -8,10 +8,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from pipeline.study.cluster import Hands
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.local_workers import WORKER_DIED
-from pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
+from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.local_workers import WORKER_DIED
+from flexspline.pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
 
 if TYPE_CHECKING:
     from optuna.trial import FrozenTrial

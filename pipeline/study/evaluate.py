@@ -15,28 +15,28 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
-from fea.axisymmetric.contact import contact_stiffness
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.stress import ellipse_stress, torsion_stress
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.shortfall import settled_peak
-from fea.types import Elastic, Stiffness, StressPeak
-from geometry.design import Cup, Design, Hat, Shaft
-from geometry.errors import ComputationError, DesignError
-from geometry.exclusion import exclusion_mm
-from geometry.load import design_from
-from geometry.mass import masses
-from geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
-from geometry.outline import Meridian
-from pipeline.backlash import StiffnessValueError, backlash
-from pipeline.bearing_play import BearingPlayDomainError
-from pipeline.cache import Cache
-from pipeline.diagnosis.specimens.designs import with_values, without_holes
-from pipeline.parts import DRIVEN, Workshop
-from pipeline.progress import Progress
-from pipeline.storage import cache_folder
-from pipeline.study.figures import SIZES, Solve
-from pipeline.study.holes import Holes, with_holes
+from flexspline.fea.axisymmetric.contact import contact_stiffness
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.shortfall import settled_peak
+from flexspline.fea.types import Elastic, Stiffness, StressPeak
+from flexspline.geometry.design import Cup, Design, Hat, Shaft
+from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.load import design_from
+from flexspline.geometry.mass import masses
+from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
+from flexspline.geometry.outline import Meridian
+from flexspline.pipeline.backlash import StiffnessValueError, backlash
+from flexspline.pipeline.bearing_play import BearingPlayDomainError
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
+from flexspline.pipeline.parts import DRIVEN, Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.study.figures import SIZES, Solve
+from flexspline.pipeline.study.holes import Holes, with_holes
 
 TORSION_TOLERANCE = 2e-3
 LOBE_TOLERANCE = 1e-2
@@ -150,7 +150,7 @@ def with_equivalent_ring(design: Design) -> Design:
 
 
 def _ring_types() -> tuple[type, ...]:
-    from pipeline.chain import CACHED_TYPES
+    from flexspline.pipeline.chain import CACHED_TYPES
 
     return CACHED_TYPES
 

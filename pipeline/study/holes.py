@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from geometry.design import Design
-from geometry.errors import ComputationError
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.diagnosis.specimens.designs import HOLES
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.storage import cache_folder
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.diagnosis.specimens.designs import HOLES
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.storage import cache_folder
 
 DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""

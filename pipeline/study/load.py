@@ -10,13 +10,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from geometry.design import Design
-from geometry.errors import MISSING, DesignError
-from geometry.load import load_design, read_toml
-from geometry.schema import Location, allowed, node_at
-from pipeline.diagnosis.specimens.designs import STEP, value_at
-from pipeline.study.figures import FIGURES, not_a_figure
-from pipeline.study.schema import KEYS, WORDS, Span, Spread, StudyFile, pattern
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.load import load_design, read_toml
+from flexspline.geometry.schema import Location, allowed, node_at
+from flexspline.pipeline.diagnosis.specimens.designs import STEP, value_at
+from flexspline.pipeline.study.figures import FIGURES, not_a_figure
+from flexspline.pipeline.study.schema import KEYS, WORDS, Span, Spread, StudyFile, pattern
 
 SPREAD = "backlash_arcsec.std"
 

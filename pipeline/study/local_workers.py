@@ -18,8 +18,8 @@ from contextlib import suppress
 from functools import partial
 from typing import Any, cast
 
-from geometry.errors import ComputationError
-from pipeline.study.worker import READY, read_frame, write_frame
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.study.worker import READY, read_frame, write_frame
 
 RETRIES = 2
 """A design whose worker dies is tried again so many times."""
@@ -33,7 +33,10 @@ ENVIRONMENT = {
 }
 """One thread per worker; and glibc keeps freed memory, since giving arrays of some hundred kB back to the
 system after every use made a design take 0.54 s instead of 0.38 s."""
-START = "import sys; sys.path[:] = sys.argv[1:]; from pipeline.study.worker import serve; serve()"
+START = """import sys
+sys.path[:] = sys.argv[1:]
+from flexspline.pipeline.study.worker import serve
+serve()"""
 
 
 class WorkerDiedError(ComputationError):

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from pipeline.study.load import Study
+from flexspline.pipeline.study.load import Study
 
 Values = Mapping[str, float]
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.study.load import Study
-from pipeline.study.plan import linked
-from pipeline.study.scatter import Scatter
-from pipeline.study.store import Row
-from pipeline.study.verified import Verified
+from flexspline.geometry.design import Design
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.plan import linked
+from flexspline.pipeline.study.scatter import Scatter
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.verified import Verified
 
 USUAL_FIGURES = (
     "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total",

@@ -9,21 +9,21 @@ from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-from pipeline.study.cluster import Hands
-from pipeline.study.database import StorageError, open_ledger
-from pipeline.study.drive import Progress, Source, carry_out, is_complete
-from pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
-from pipeline.study.figures import USUAL
-from pipeline.study.holes import Factor, Holes, holes_of
-from pipeline.study.load import Study
-from pipeline.study.plan import Sobol, grid
-from pipeline.study.result import StudyResult
-from pipeline.study.samplers import sampler_of
-from pipeline.study.scatter import ScatterError, scatter_of
-from pipeline.study.source import Planned, Sampled, solves_of, study_name
-from pipeline.study.store import Ledger, LedgerError
-from pipeline.study.tolerance import Scattered, outputs_of, scattered
-from pipeline.study.verify import verify
+from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.database import StorageError, open_ledger
+from flexspline.pipeline.study.drive import Progress, Source, carry_out, is_complete
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
+from flexspline.pipeline.study.figures import USUAL
+from flexspline.pipeline.study.holes import Factor, Holes, holes_of
+from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.plan import Sobol, grid
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.samplers import sampler_of
+from flexspline.pipeline.study.scatter import ScatterError, scatter_of
+from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
+from flexspline.pipeline.study.store import Ledger, LedgerError
+from flexspline.pipeline.study.tolerance import Scattered, outputs_of, scattered
+from flexspline.pipeline.study.verify import verify
 
 HOLES_NOTE = "holes"
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.errors import ComputationError
-from pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
-from pipeline.study.store import Row
-from pipeline.study.surface import Surface, surface_through
-from pipeline.study.tolerance import Input
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.surface import Surface, surface_through
+from flexspline.pipeline.study.tolerance import Input
 
 FACTORS = (0.75, 0.5, 0.25, 0.0)
 """A tolerance times this; 0 is a perfect part."""

@@ -10,17 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.shortfall import settled
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.meridian import meridian
-from pipeline.backlash import ARCSEC_PER_RAD
-from pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
-from pipeline.parts import DRIVEN
-from pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
+from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.shortfall import settled
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
+from flexspline.pipeline.parts import DRIVEN
+from flexspline.pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
 
 HELD_STEP = 1e-4
 """Of the dimension: the energy's difference is smooth, so only rounding limits the step."""

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.figures import Solve, needed
-from pipeline.study.holes import Holes
-from pipeline.study.load import Study
-from pipeline.study.plan import Plan, from_unit, linked
-from pipeline.study.store import CLAIM, Job, Ledger
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.figures import Solve, needed
+from flexspline.pipeline.study.holes import Holes
+from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.plan import Plan, from_unit, linked
+from flexspline.pipeline.study.store import CLAIM, Job, Ledger
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

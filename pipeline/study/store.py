@@ -15,9 +15,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import ComputationError, one_line
-from pipeline.process_id import parsed
-from pipeline.study.evaluate import Outcome
+from flexspline.geometry.errors import ComputationError, one_line
+from flexspline.pipeline.process_id import parsed
+from flexspline.pipeline.study.evaluate import Outcome
 
 if TYPE_CHECKING:
     from optuna import Study as Trials

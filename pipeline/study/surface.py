@@ -14,8 +14,8 @@ from itertools import combinations
 
 import numpy as np
 
-from pipeline.study.indices import Indices, groups_of, reach, students_factor, within
-from pipeline.study.tolerance import Input
+from flexspline.pipeline.study.indices import Indices, groups_of, reach, students_factor, within
+from flexspline.pipeline.study.tolerance import Input
 
 NODES = 4096
 """Of the quadrature over each input's distribution."""

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.schema import node_at
-from pipeline.diagnosis.specimens.designs import value_at, with_values
-from pipeline.study.evaluate import Task
-from pipeline.study.holes import Holes
-from pipeline.study.load import Study, StudyError, location_of
-from pipeline.study.plan import Listed, linked
-from pipeline.study.source import Planned, solves_of
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.schema import node_at
+from flexspline.pipeline.diagnosis.specimens.designs import value_at, with_values
+from flexspline.pipeline.study.evaluate import Task
+from flexspline.pipeline.study.holes import Holes
+from flexspline.pipeline.study.load import Study, StudyError, location_of
+from flexspline.pipeline.study.plan import Listed, linked
+from flexspline.pipeline.study.source import Planned, solves_of
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

@@ -6,20 +6,20 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import as_completed
 from dataclasses import asdict
 
-from geometry.load import design_from
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.storage import cache_folder
-from pipeline.study.cluster import Hands
-from pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
-from pipeline.study.figures import GIVEN_BY
-from pipeline.study.local_workers import WORKER_DIED
-from pipeline.study.result import StudyResult
-from pipeline.study.store import Ledger, Row
-from pipeline.study.verified import Check, Verified
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
+from flexspline.pipeline.study.figures import GIVEN_BY
+from flexspline.pipeline.study.local_workers import WORKER_DIED
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.store import Ledger, Row
+from flexspline.pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
 RIM = {*GIVEN_BY["lobes"], *GIVEN_BY["unsupported"], *GIVEN_BY["ellipse"]}

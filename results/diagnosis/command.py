@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pipeline.chain import Stiffnesses as Solved
-from pipeline.chain import stiffnesses
-from pipeline.diagnosis.diagnose import diagnose_file
-from pipeline.diagnosis.record import read_measurement
-from pipeline.parts import Workshop
-from results.diagnosis.console import diagnosis_table
-from results.diagnosis.files import write_diagnosis
-from results.diagnosis.record import diagnosis_record
-from results.records import as_json
-from results.report.attached import Attachment
-from results.report.compared import Stiffnesses
+from flexspline.pipeline.chain import Stiffnesses as Solved
+from flexspline.pipeline.chain import stiffnesses
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.parts import Workshop
+from flexspline.results.diagnosis.console import diagnosis_table
+from flexspline.results.diagnosis.files import write_diagnosis
+from flexspline.results.diagnosis.record import diagnosis_record
+from flexspline.results.records import as_json
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.compared import Stiffnesses
 
 
 def diagnose_and_write(

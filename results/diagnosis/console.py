@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from results.diagnosis.words import (
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
     capital,

@@ -5,18 +5,18 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.model_file import Provenance
-from pipeline.diagnosis.model_text import model_text
-from pipeline.diagnosis.record import Sweep
-from results.atomic import write_bytes
-from results.diagnosis.record import EXTENDED_MODEL, Record
-from results.figures.diagnosis.draw import draw_figures
-from results.records import as_json, program_version
-from results.report.attached import Attachment
-from results.report.both import reports_of
-from results.report.compared import Stiffnesses
-from results.report.diagnosis import diagnosis_document
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.model_file import Provenance
+from flexspline.pipeline.diagnosis.model_text import model_text
+from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.results.atomic import write_bytes
+from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
+from flexspline.results.figures.diagnosis.draw import draw_figures
+from flexspline.results.records import as_json, program_version
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.both import reports_of
+from flexspline.results.report.compared import Stiffnesses
+from flexspline.results.report.diagnosis import diagnosis_document
 
 DIAGNOSIS = "diagnosis.json"
 

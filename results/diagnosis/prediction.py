@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.errors import one_line
-from geometry.input_file import InputFileError, read_input
-from pipeline.diagnosis.errors import MeasurementError
-from pipeline.diagnosis.model_file import read_model_file
-from pipeline.diagnosis.predict import predict_file
-from pipeline.diagnosis.table import LARGEST_BYTES
-from results.atomic import write_bytes
-from results.records import as_json
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import one_line
+from flexspline.geometry.input_file import InputFileError, read_input
+from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.model_file import read_model_file
+from flexspline.pipeline.diagnosis.predict import predict_file
+from flexspline.pipeline.diagnosis.table import LARGEST_BYTES
+from flexspline.results.atomic import write_bytes
+from flexspline.results.records import as_json
 
 PREDICTION = "prediction.csv"
 COLUMN = "angle_predicted_arcsec"

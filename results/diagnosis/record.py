@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.result import Gain, NamedCause
-from results.records import heading
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.result import Gain, NamedCause
+from flexspline.results.records import heading
 
 EXTENDED_MODEL = "extended_model.toml"
 Record = dict[str, Any]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import floor, log10
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.result import Gain, NamedCause, Outcome, left_out
-from results.quantities import grouped
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.result import Gain, NamedCause, Outcome, left_out
+from flexspline.results.quantities import grouped
 
 CHANNELS = {
     "torque_Nm": "torque",

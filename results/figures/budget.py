@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.backlash import Backlash
-from pipeline.diagnosis.extended_backlash import ExtendedBacklash
-from results.doubt import NOT_STATED, SOURCES
-from results.figures.words import fit, wrapped
-from results.quantities import quantity
-from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from flexspline.results.doubt import NOT_STATED, SOURCES
+from flexspline.results.figures.words import fit, wrapped
+from flexspline.results.quantities import quantity
+from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

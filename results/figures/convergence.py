@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fea.types import Stiffness
-from results.quantities import grouped, quantity
-from results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
+from flexspline.fea.types import Stiffness
+from flexspline.results.quantities import grouped, quantity
+from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.backlash import Backlash
-from results.figures.words import GROUND, keep_inside
-from results.quantities import quantity
-from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.backlash import Backlash
+from flexspline.results.figures.words import GROUND, keep_inside
+from flexspline.results.quantities import quantity
+from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

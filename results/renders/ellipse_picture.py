@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fea.types import SolidField
-from results.renders.scene import Shot, View, shoot
-from results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
-from results.renders.shown import (
+from flexspline.fea.types import SolidField
+from flexspline.results.renders.scene import Shot, View, shoot
+from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
+from flexspline.results.renders.shown import (
     Seen,
     goes_beyond,
     magnification,
@@ -20,10 +20,10 @@ from results.renders.shown import (
     stress_note,
     wires,
 )
-from results.renders.surface import crease_edges, lines, skin
-from results.renders.turntable import Drawn, Said, turning
-from results.renders.whole import WholePart, whole_part
-from results.style import ACCENT
+from flexspline.results.renders.surface import crease_edges, lines, skin
+from flexspline.results.renders.turntable import Drawn, Said, turning
+from flexspline.results.renders.whole import WholePart, whole_part
+from flexspline.results.style import ACCENT
 
 _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))
 """Along the minor axis more than the major, so that the ellipse's long side lies across. The first

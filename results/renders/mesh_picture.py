@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fea.types import TetMesh
-from results.quantities import grouped
-from results.renders.scene import Layer, shoot
-from results.renders.sheet import LARGE_INSET, MAIN, Sheet, write_sheet
-from results.renders.shown import MATT, below_view, cut_view, sector_words, wires
-from results.renders.surface import Skin, creases, element_edges, opening, skin, surface
-from results.renders.whole import WholePart, whole_part
-from results.style import INK, PALETTE, STEEL
+from flexspline.fea.types import TetMesh
+from flexspline.results.quantities import grouped
+from flexspline.results.renders.scene import Layer, shoot
+from flexspline.results.renders.sheet import LARGE_INSET, MAIN, Sheet, write_sheet
+from flexspline.results.renders.shown import MATT, below_view, cut_view, sector_words, wires
+from flexspline.results.renders.surface import Skin, creases, element_edges, opening, skin, surface
+from flexspline.results.renders.whole import WholePart, whole_part
+from flexspline.results.style import INK, PALETTE, STEEL
 
 # patch: (colour, words of the legend)
 _PATCHES = {

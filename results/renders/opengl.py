@@ -6,7 +6,7 @@ import ctypes
 import os
 import sys
 
-from geometry.errors import ComputationError
+from flexspline.geometry.errors import ComputationError
 
 EGL = ("libEGL.so.1", "libEGL.so")
 OSMESA = ("libOSMesa.so", "libOSMesa.so.8", "libOSMesa.so.6")

@@ -20,10 +20,10 @@ from pathlib import Path
 from threading import Timer
 from typing import Any, TextIO
 
-from fea.types import SolidField, StressPeak, TetMesh
-from geometry.errors import ComputationError, one_line
-from pipeline.packing import packed, unpacked
-from results.renders.opengl import ADVICE
+from flexspline.fea.types import SolidField, StressPeak, TetMesh
+from flexspline.geometry.errors import ComputationError, one_line
+from flexspline.pipeline.packing import packed, unpacked
+from flexspline.results.renders.opengl import ADVICE
 
 TYPES: tuple[type, ...] = (SolidField, StressPeak, TetMesh)
 """What may be drawn, beside arrays and plain values."""
@@ -31,8 +31,10 @@ SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
 _VTK_LOG = re.compile(r"^(\x1b\[[0-9;]*m)*[\d-]+ [\d:.]+ \([^)]*\) \[[^]]*\]|\x1b\[[0-9;]*m")
 """Colours, time and thread before VTK's words: with them no two reasons are alike."""
-_ROOT = Path(__file__).parents[2]
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from results.renders.process import serve; serve()"
+_START = """import sys
+sys.path[:] = sys.argv[1:]
+from flexspline.results.renders.process import serve
+serve()"""
 
 
 class NotDrawnError(ComputationError):
@@ -111,7 +113,7 @@ class DrawingProcess:
             assert self._folder is not None
             with (Path(self._folder.name) / "said.txt").open("wb") as said:
                 self._process = subprocess.Popen(
-                    [sys.executable, "-P", "-c", _START, str(_ROOT)],
+                    [sys.executable, "-P", "-c", _START, *sys.path],
                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
                 )  # fmt: skip
         return self._process

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from results.renders.opengl import choose_opengl
+from flexspline.results.renders.opengl import choose_opengl
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from results.renders.scene import Shot
-from results.style import ACCENT, COLOUR_MAP, INK, MUTED, new_figure, save_png, styled
+from flexspline.results.renders.scene import Shot
+from flexspline.results.style import ACCENT, COLOUR_MAP, INK, MUTED, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

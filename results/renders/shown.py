@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fea.types import StressPeak
-from results.quantities import quantity
-from results.renders.scene import Layer, View
-from results.renders.sheet import Bar, Mark
-from results.renders.surface import Opening, Skin, creases, surface
-from results.style import COLOUR_MAP, INK
+from flexspline.fea.types import StressPeak
+from flexspline.results.quantities import quantity
+from flexspline.results.renders.scene import Layer, View
+from flexspline.results.renders.sheet import Bar, Mark
+from flexspline.results.renders.surface import Opening, Skin, creases, surface
+from flexspline.results.style import COLOUR_MAP, INK
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fea.types import SolidField
-from results.renders.scene import shoot
-from results.renders.sheet import INSET, MAIN, Sheet, write_sheet
-from results.renders.shown import (
+from flexspline.fea.types import SolidField
+from flexspline.results.renders.scene import shoot
+from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
+from flexspline.results.renders.shown import (
     Seen,
     below_view,
     cut_view,
@@ -17,9 +17,9 @@ from results.renders.shown import (
     stress_layers,
     stress_note,
 )
-from results.renders.surface import opening, skin
-from results.renders.turntable import Drawn, Said, turning
-from results.renders.whole import WholePart, whole_part
+from flexspline.results.renders.surface import opening, skin
+from flexspline.results.renders.turntable import Drawn, Said, turning
+from flexspline.results.renders.whole import WholePart, whole_part
 
 
 def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm: float) -> None:

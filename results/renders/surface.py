@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from results.renders.whole import FACES, WholePart
+from flexspline.results.renders.whole import FACES, WholePart
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -9,12 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from fea.types import StressPeak
-from results.renders.scene import View
-from results.renders.sheet import Bar, Mark, ticks
-from results.renders.surface import Skin, crease_edges, surface
-from results.renders.vtkjs import actor, array, colour_table, polydata, short, window, zipped
-from results.style import ACCENT, INK
+from flexspline.fea.types import StressPeak
+from flexspline.results.renders.scene import View
+from flexspline.results.renders.sheet import Bar, Mark, ticks
+from flexspline.results.renders.surface import Skin, crease_edges, surface
+from flexspline.results.renders.vtkjs import (
+    actor,
+    array,
+    colour_table,
+    polydata,
+    short,
+    window,
+    zipped,
+)
+from flexspline.results.style import ACCENT, INK
 
 COARSE_BEYOND = 45_000
 """Facets beyond which each is one flat triangle, not four: a view stays below about 2 MB."""

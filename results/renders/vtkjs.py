@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from results.renders.shown import FLAT_LIT
-from results.style import COLOUR_MAP, INK
+from flexspline.results.renders.shown import FLAT_LIT
+from flexspline.results.style import COLOUR_MAP, INK
 
 
 def colour_table() -> list[list[int]]:

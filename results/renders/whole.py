@@ -10,7 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from fea.types import TetMesh
+from flexspline.fea.types import TetMesh
 
 Parity = Literal["symmetric", "antisymmetric"]
 

@@ -6,7 +6,7 @@ import base64
 import hashlib
 from dataclasses import dataclass
 
-from results.quantities import grouped
+from flexspline.results.quantities import grouped
 
 TOML = "application/toml"
 SAFE = str.maketrans({c: "_" for c in '/\\:*?"<>|'})

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from results.report.document import Document
-from results.report.page import page_of, png
-from results.report.pdf import pdf_of
+from flexspline.results.report.document import Document
+from flexspline.results.report.page import page_of, png
+from flexspline.results.report.pdf import pdf_of
 
 PDF, HTML = "report.pdf", "report.html"
 

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from results.doubt import spread_sentence
-from results.report import tables
-from results.report.content import ReportContent
-from results.report.document import Block, Column, Formula, Heading, Node, Paragraph, Picture, Table
-from results.report.shown import shown
-from results.report.spans import Words, plain, symbol
+from flexspline.results.doubt import spread_sentence
+from flexspline.results.report import tables
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.document import (
+    Block,
+    Column,
+    Formula,
+    Heading,
+    Node,
+    Paragraph,
+    Picture,
+    Table,
+)
+from flexspline.results.report.shown import shown
+from flexspline.results.report.spans import Words, plain, symbol
 
 _DELTA: Node = ("symbol", "Δ_bl")
 _SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])

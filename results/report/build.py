@@ -5,18 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.chain import RunResult
-from pipeline.parts import Workshop
-from results.atomic import write_bytes
-from results.pictures import RunPictures, small
-from results.records import program_version
-from results.report.attached import Attachment
-from results.report.content import Pictures, ReportContent
-from results.report.page import page_of, png
-from results.report.sections import run_document
-from results.report.versions import library_versions
-from results.report.write import pictures_of, write_report
-from results.warned import all_warnings
+from flexspline.pipeline.chain import RunResult
+from flexspline.pipeline.parts import Workshop
+from flexspline.results.atomic import write_bytes
+from flexspline.results.pictures import RunPictures, small
+from flexspline.results.records import program_version
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.content import Pictures, ReportContent
+from flexspline.results.report.page import page_of, png
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.versions import library_versions
+from flexspline.results.report.write import pictures_of, write_report
+from flexspline.results.warned import all_warnings
 
 RENDERED = (
     "flexspline_stress", "shaft_stress", "wave_generator", "flexspline_mesh", "shaft_mesh",

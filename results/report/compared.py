@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import EndPoints, Specimens, Sweep
-from results.diagnosis.words import channel_words, figures_text
-from results.quantities import grouped
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep
+from flexspline.results.diagnosis.words import channel_words, figures_text
+from flexspline.results.quantities import grouped
 
 
 @dataclass(frozen=True)

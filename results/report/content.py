@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fea.toothed_ring.equivalent import EquivalentRing
-from fea.types import Stiffness, StressPeak
-from geometry.design import Design
-from pipeline.backlash import Backlash
-from pipeline.linear_limit import LinearLimit
-from results.report.attached import Attachment
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.fea.types import Stiffness, StressPeak
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.results.report.attached import Attachment
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.result import Gain, NamedCause, Outcome, Unexplained
-from results.diagnosis.words import (
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.result import Gain, NamedCause, Outcome, Unexplained
+from flexspline.results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
     capital,
@@ -19,11 +19,11 @@ from results.diagnosis.words import (
     sure_words,
     title_of,
 )
-from results.figures.diagnosis.draw import Drawn
-from results.quantities import grouped
-from results.report.attached import Attachment
-from results.report.compared import Stiffnesses, compared, measured
-from results.report.document import (
+from flexspline.results.figures.diagnosis.draw import Drawn
+from flexspline.results.quantities import grouped
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.compared import Stiffnesses, compared, measured
+from flexspline.results.report.document import (
     Block,
     Break,
     Bullets,
@@ -37,8 +37,8 @@ from results.report.document import (
     Pictures,
     Table,
 )
-from results.report.issued import issued
-from results.report.spans import Text, bold, code, note, plain, worded
+from flexspline.results.report.issued import issued
+from flexspline.results.report.spans import Text, bold, code, note, plain, worded
 
 OPEN = ("ambiguous", "unknown", "insufficient")
 """Verdicts that leave something to do."""

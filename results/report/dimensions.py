@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import Any
 
-from geometry.design import Design
-from geometry.mass import masses
-from geometry.schema import UNITS
-from results.doubt import NOT_STATED
-from results.quantities import quantity
-from results.report.document import Block, Facts, Heading, Paragraph
-from results.report.spans import Words, bold, plain
+from flexspline.geometry.design import Design
+from flexspline.geometry.mass import masses
+from flexspline.geometry.schema import UNITS
+from flexspline.results.doubt import NOT_STATED
+from flexspline.results.quantities import quantity
+from flexspline.results.report.document import Block, Facts, Heading, Paragraph
+from flexspline.results.report.spans import Words, bold, plain
 
 NBSP = "\N{NO-BREAK SPACE}"
 

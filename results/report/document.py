@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from typing import Any, Literal
 
-from results.report.attached import Attachment
-from results.report.spans import Span, Text, words
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.spans import Span, Text, words
 
 Node = Sequence[Any]
 """Of a formula: ("symbol", letter), ("text", letters), ("over", above, below) of lists of nodes."""

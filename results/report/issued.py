@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from datetime import UTC, datetime
 
-from results.records import program_version
+from flexspline.results.records import program_version
 
 
 def issued(version: str = "") -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from pipeline.linear_limit import LinearLimit
-from pipeline.stress_limits import share_of_limit
-from results.doubt import spread_sentence
-from results.peaks import BORDER, MEANING
-from results.quantities import quantity
-from results.report.content import ReportContent
+from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.pipeline.stress_limits import share_of_limit
+from flexspline.results.doubt import spread_sentence
+from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.quantities import quantity
+from flexspline.results.report.content import ReportContent
 
 
 def assumptions(content: ReportContent) -> list[list[str]]:

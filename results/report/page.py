@@ -17,8 +17,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import readable
-from results.report.document import Document
+from flexspline.geometry.errors import readable
+from flexspline.results.report.document import Document
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -128,7 +128,7 @@ def _viewer() -> str:
 
 
 def _file(name: str) -> str:
-    return files("results.report").joinpath(name).read_text(encoding="utf-8")
+    return files("flexspline.results.report").joinpath(name).read_text(encoding="utf-8")
 
 
 @cache

@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 
-from geometry.errors import ComputationError, readable
-from results.report.document import Document
-from results.report.letters import font_folder, notice, printable
+from flexspline.geometry.errors import ComputationError, readable
+from flexspline.results.report.document import Document
+from flexspline.results.report.letters import font_folder, notice, printable
 
 TEMPLATE = "document.typ"
 
@@ -34,7 +34,9 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
 
     with tempfile.TemporaryDirectory(prefix="flexspline-report-") as scratch:
         root = Path(scratch)
-        (root / TEMPLATE).write_bytes(files("results.report").joinpath(TEMPLATE).read_bytes())
+        (root / TEMPLATE).write_bytes(
+            files("flexspline.results.report").joinpath(TEMPLATE).read_bytes()
+        )
         for name, source in pictures.items():
             shutil.copyfile(source, root / f"{name}.png")
         for i, attachment in enumerate(document.attached):

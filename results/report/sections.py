@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
-from results.quantities import bounds_kind, quantity
-from results.report import limits, tables
-from results.report.budget import budget
-from results.report.content import ReportContent
-from results.report.dimensions import dimensions
-from results.report.document import (
+from flexspline.results.quantities import bounds_kind, quantity
+from flexspline.results.report import limits, tables
+from flexspline.results.report.budget import budget
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.dimensions import dimensions
+from flexspline.results.report.document import (
     Block,
     Break,
     Callout,
@@ -24,9 +24,9 @@ from results.report.document import (
     Tile,
     Tiles,
 )
-from results.report.issued import issued
-from results.report.shown import shown
-from results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
+from flexspline.results.report.issued import issued
+from flexspline.results.report.shown import shown
+from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
 
 ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from results.report.content import ReportContent
-from results.report.document import Block, Callout, Picture, Pictures
-from results.report.spans import bold, plain
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.document import Block, Callout, Picture, Pictures
+from flexspline.results.report.spans import bold, plain
 
 
 def shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Block]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from fea.types import Stiffness
-from geometry.design import Cup, Design, Hat, Material
-from pipeline.stress_limits import PART_OF, limits_passed
-from results.doubt import plus_minus, spread_text
-from results.peaks import border_note, limit_note
-from results.quantities import Quantity, bounds_kind, grouped, quantity, with_power
-from results.report.content import ReportContent
-from results.report.dimensions import ratio, weights
+from flexspline.fea.types import Stiffness
+from flexspline.geometry.design import Cup, Design, Hat, Material
+from flexspline.pipeline.stress_limits import PART_OF, limits_passed
+from flexspline.results.doubt import plus_minus, spread_text
+from flexspline.results.peaks import border_note, limit_note
+from flexspline.results.quantities import Quantity, bounds_kind, grouped, quantity, with_power
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.dimensions import ratio, weights
 
 Row = dict[str, str]
 UNCHECKED = "–"

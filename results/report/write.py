@@ -6,10 +6,10 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from results.atomic import write_bytes
-from results.report.content import ReportContent
-from results.report.pdf import ReportError, pdf_of
-from results.report.sections import run_document
+from flexspline.results.atomic import write_bytes
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.pdf import ReportError, pdf_of
+from flexspline.results.report.sections import run_document
 
 __all__ = ["ReportError", "payload", "pictures_of", "write_report"]
 

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
-from pipeline.linear_limit import linear_limit
-from pipeline.live import left_out
-from pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
-from results.doubt import NOT_STATED, SOURCES, spread_text
-from results.figures.torque_angle import REACH, band
-from results.peaks import BORDER, marked
-from results.quantities import bounds_kind, quantity
-from results.records import backlash_record, peak_of
-from results.style import PALETTE
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
+from flexspline.pipeline.linear_limit import linear_limit
+from flexspline.pipeline.live import left_out
+from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
+from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
+from flexspline.results.figures.torque_angle import REACH, band
+from flexspline.results.peaks import BORDER, marked
+from flexspline.results.quantities import bounds_kind, quantity
+from flexspline.results.records import backlash_record, peak_of
+from flexspline.results.style import PALETTE
 
 STIFFNESSES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e", "K_series")
 PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")

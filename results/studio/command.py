@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from results.job import answered, tell
+from flexspline.results.job import answered, tell
 
 INSTALL = "pip install 'flexspline[studio]'"
 
@@ -37,6 +37,6 @@ def studio(
         except ImportError:
             tell(f"flexspline: the page needs aiohttp: {INSTALL}")
             raise typer.Exit(2) from None
-        from results.studio.serve import serve, starting_design
+        from flexspline.results.studio.serve import serve, starting_design
 
         serve(starting_design(design), host, port, browser)

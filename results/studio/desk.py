@@ -8,12 +8,12 @@ from typing import Any
 
 from aiohttp import web
 
-from geometry.errors import DesignError
-from results.studio.fields import received
-from results.studio.jobs import Done, Job, Kind
-from results.studio.notes import Start, Want, note_from
-from results.studio.results import told
-from results.studio.tab import Tab, Workers
+from flexspline.geometry.errors import DesignError
+from flexspline.results.studio.fields import received
+from flexspline.results.studio.jobs import Done, Job, Kind
+from flexspline.results.studio.notes import Start, Want, note_from
+from flexspline.results.studio.results import told
+from flexspline.results.studio.tab import Tab, Workers
 
 
 class Desk:

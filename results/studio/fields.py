@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from math import floor, log10
 from typing import Any
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import design_from
-from geometry.schema import UNITS, Location, Node, dotted, node_at
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.geometry.schema import UNITS, Location, Node, dotted, node_at
 
 GROUPS: tuple[tuple[str, Location], ...] = (
     ("Flexspline", ("flexspline",)),

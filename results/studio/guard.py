@@ -17,7 +17,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 from aiohttp.typedefs import Handler, Middleware
 
-from results.job import tell
+from flexspline.results.job import tell
 
 COOKIE = "flexspline-studio"
 HEADERS = {

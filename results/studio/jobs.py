@@ -17,9 +17,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from geometry.design import Design
-from geometry.template import design_text
-from pipeline.live import left_out
+from flexspline.geometry.design import Design
+from flexspline.geometry.template import design_text
+from flexspline.pipeline.live import left_out
 
 Kind = Literal["solid", "report", "step", "diagnose"]
 SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step",
@@ -135,10 +135,10 @@ class Done:
     files: list[str] = field(default_factory=list)
 
 
-_CLI = "results.entry"
+_CLI = "flexspline.results.entry"
 _COMMANDS: dict[Kind, tuple[str, ...]] = {
     "solid": (_CLI, "stiffness", _DESIGN, "--out", _OUT, "--json"),
     "report": (_CLI, "run", _DESIGN, "--out", _OUT, "--json"),
-    "step": ("results.studio.step", _DESIGN, _OUT),
+    "step": ("flexspline.results.studio.step", _DESIGN, _OUT),
     "diagnose": (_CLI, "diagnose", _DESIGN, _MEASURED, "--out", _OUT, "--json"),
 }

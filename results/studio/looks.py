@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from results.style import ACCENT, COLOUR_MAP, PALETTE
+from flexspline.results.style import ACCENT, COLOUR_MAP, PALETTE
 
 
 @cache

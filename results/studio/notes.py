@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from pipeline.live import View
-from results.studio.jobs import Kind
+from flexspline.pipeline.live import View
+from flexspline.results.studio.jobs import Kind
 
 _LARGEST_EXACT = 2**53
 """A browser counts no farther without rounding."""

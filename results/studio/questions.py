@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
-from fea.axisymmetric.stress import RevolvedField
-from geometry.design import Design
-from geometry.errors import ComputationError, DesignError
-from geometry.load import design_from
-from pipeline.live import (
+from flexspline.fea.axisymmetric.stress import RevolvedField
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.live import (
     RimCase,
     View,
     field,
@@ -19,9 +19,9 @@ from pipeline.live import (
     rim,
     torsion,
 )
-from results.records import bounded_record, peak_record
-from results.studio.shape import field_message, profile_message
-from results.studio.worker import Fault
+from flexspline.results.records import bounded_record, peak_record
+from flexspline.results.studio.shape import field_message, profile_message
+from flexspline.results.studio.worker import Fault
 
 VIEWS: tuple[View, ...] = get_args(View)
 RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from geometry.design import Design
-from pipeline.diagnosis.result import NamedCause
-from results.diagnosis.words import (
+from flexspline.geometry.design import Design
+from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.results.diagnosis.words import (
     VERDICTS,
     capital,
     channel_words,
@@ -16,8 +16,8 @@ from results.diagnosis.words import (
     sure_words,
     title_of,
 )
-from results.studio.answer import message
-from results.studio.jobs import Kind
+from flexspline.results.studio.answer import message
+from flexspline.results.studio.jobs import Kind
 
 Told = dict[str, Any]
 

@@ -14,13 +14,13 @@ from threading import Thread
 
 from aiohttp import web
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import design_from, load_design, tables_from
-from geometry.template import template
-from results.job import tell
-from results.studio.guard import Guard
-from results.studio.server import Studio, application
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from, load_design, tables_from
+from flexspline.geometry.template import template
+from flexspline.results.job import tell
+from flexspline.results.studio.guard import Guard
+from flexspline.results.studio.server import Studio, application
 
 LARGEST_PORT = 65535
 _REASONS = {

@@ -10,16 +10,16 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import LARGEST_BYTES, design_from, tables_from
-from geometry.template import design_text, template
-from results.studio.desk import Desk
-from results.studio.fields import form, received
-from results.studio.guard import Guard, add_headers
-from results.studio.jobs import SERVED
-from results.studio.looks import looks
-from results.studio.tab import Workers
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import LARGEST_BYTES, design_from, tables_from
+from flexspline.geometry.template import design_text, template
+from flexspline.results.studio.desk import Desk
+from flexspline.results.studio.fields import form, received
+from flexspline.results.studio.guard import Guard, add_headers
+from flexspline.results.studio.jobs import SERVED
+from flexspline.results.studio.looks import looks
+from flexspline.results.studio.tab import Workers
 
 LARGEST_MESSAGE = 2 * LARGEST_BYTES
 """A design as JSON is at most a little larger than as TOML."""
@@ -69,7 +69,8 @@ async def _workers(app: web.Application) -> AsyncIterator[None]:
 def _page() -> dict[str, tuple[bytes, str]]:
     """Every file of the page by name, read once: a request picks from these and reads no disk."""
     found = {}
-    for folder in (files("results.studio") / "page", files("results.studio") / "page" / "vendor"):
+    page = files("flexspline.results.studio") / "page"
+    for folder in (page, page / "vendor"):
         for entry in folder.iterdir():
             kind = _TYPES.get(entry.name.rpartition(".")[2])
             if kind and entry.is_file():

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from fea.axisymmetric.stress import RevolvedField
-from results.renders.shown import magnification
-from results.studio.thin import thinned
+from flexspline.fea.axisymmetric.stress import RevolvedField
+from flexspline.results.renders.shown import magnification
+from flexspline.results.studio.thin import thinned
 
 _PIECES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """A triangle with edge middles (corners 0 to 2, middles of 01, 12, 02) as four straight ones."""

@@ -1,14 +1,14 @@
-"""`python -m results.studio.step DESIGN.toml DIR`: both parts as STEP, without solving anything."""
+"""`python -m flexspline.results.studio.step DESIGN.toml DIR`: both parts as STEP, nothing solved."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-from geometry.load import load_design
-from pipeline.progress import Progress
-from results.export import write_step_files
-from results.job import answered, tell
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.progress import Progress
+from flexspline.results.export import write_step_files
+from flexspline.results.job import answered, tell
 
 
 def main() -> None:

@@ -12,15 +12,15 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.sanity import warnings
-from pipeline.bearing_play import BearingPlayDomainError
-from pipeline.live import left_out
-from results.studio.answer import agreement, message
-from results.studio.fields import received
-from results.studio.questions import FIRST, PEAK_KEYS, RIM_CASES, VIEWS
-from results.studio.worker import Fault, Worker
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.sanity import warnings
+from flexspline.pipeline.bearing_play import BearingPlayDomainError
+from flexspline.pipeline.live import left_out
+from flexspline.results.studio.answer import agreement, message
+from flexspline.results.studio.fields import received
+from flexspline.results.studio.questions import FIRST, PEAK_KEYS, RIM_CASES, VIEWS
+from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
 STILL_S = 0.35

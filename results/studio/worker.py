@@ -111,7 +111,7 @@ def _serve(pipe: Connection, niceness: int) -> None:
     """The process: load everything, then answer until the other end closes."""
     if hasattr(os, "nice"):  # Windows has none: there slow questions share evenly with quick ones
         os.nice(niceness)
-    from results.studio.questions import answer
+    from flexspline.results.studio.questions import answer
 
     while True:
         try:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.meridian import meridian
-from pipeline.study.result import StudyResult
-from results.study.labels import entry
-from results.style import ACCENT, INK, MUTED, RULE, STEEL, new_figure, save_png, styled
+from flexspline.geometry.design import Design
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.study.labels import entry
+from flexspline.results.style import ACCENT, INK, MUTED, RULE, STEEL, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

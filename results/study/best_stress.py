@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from pipeline.study.best import BestField
-from results.atomic import write_bytes
-from results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
-from results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.pipeline.study.best import BestField
+from flexspline.results.atomic import write_bytes
+from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
+from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 
 PICTURE = "best_stress.png"
 VIEW = "best_stress"

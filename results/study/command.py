@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from results.job import DesignFile, Json, Out, answered, folder_of, tell
-from results.streams import show
+from flexspline.results.job import DesignFile, Json, Out, answered, folder_of, tell
+from flexspline.results.streams import show
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
 
@@ -23,20 +23,20 @@ def register(app: typer.Typer) -> None:
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
     with answered(file):
-        from geometry.load import read_raw, tables_from
-        from pipeline.study.best import best_field
-        from pipeline.study.cluster import check_scheduler, hands_of
-        from pipeline.study.load import study_from
-        from pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
-        from results.records import as_json
-        from results.report.attached import Attachment
-        from results.study.best_stress import draw_best_stress
-        from results.study.figures import write_figures
-        from results.study.progress import Watch
-        from results.study.record import summary, words
-        from results.study.report import write_study_reports
-        from results.study.tables import table_of, write_csv, write_parquet
-        from results.study.why import unfollowed
+        from flexspline.geometry.load import read_raw, tables_from
+        from flexspline.pipeline.study.best import best_field
+        from flexspline.pipeline.study.cluster import check_scheduler, hands_of
+        from flexspline.pipeline.study.load import study_from
+        from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
+        from flexspline.results.records import as_json
+        from flexspline.results.report.attached import Attachment
+        from flexspline.results.study.best_stress import draw_best_stress
+        from flexspline.results.study.figures import write_figures
+        from flexspline.results.study.progress import Watch
+        from flexspline.results.study.record import summary, words
+        from flexspline.results.study.report import write_study_reports
+        from flexspline.results.study.tables import table_of, write_csv, write_parquet
+        from flexspline.results.study.why import unfollowed
 
         raw = read_raw(file, "study")
         asked = study_from(tables_from(raw, file), file.parent, file.stem)
@@ -81,10 +81,10 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """How K_b and K_e change with every dimension, found in two ways."""
     with answered(design):
-        from geometry.load import load_design
-        from pipeline.study.sensitivity import sensitivities
-        from results.records import as_json
-        from results.study.sensitivity import lines, record, write_sensitivity
+        from flexspline.geometry.load import load_design
+        from flexspline.pipeline.study.sensitivity import sensitivities
+        from flexspline.results.records import as_json
+        from flexspline.results.study.sensitivity import lines, record, write_sensitivity
 
         gear, folder = load_design(design), folder_of(design, out)
         slopes = sensitivities(gear, tell)

@@ -7,12 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.study.result import StudyResult
-from pipeline.study.store import Row
-from results.study.best_figure import write_best
-from results.study.labels import axis_label, entry, lines_of
-from results.study.tolerance_figure import write_scatter
-from results.style import ACCENT, COLOUR_MAP, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.store import Row
+from flexspline.results.study.best_figure import write_best
+from flexspline.results.study.labels import axis_label, entry, lines_of
+from flexspline.results.study.tolerance_figure import write_scatter
+from flexspline.results.style import (
+    ACCENT,
+    COLOUR_MAP,
+    INK,
+    MUTED,
+    PALETTE,
+    new_figure,
+    save_png,
+    styled,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from results.peaks import BORDER
-from results.quantities import BY_KEY, Quantity
+from flexspline.results.peaks import BORDER
+from flexspline.results.quantities import BY_KEY, Quantity
 
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
 _UNITS = {"mm": "mm", "um": "µm", "GPa": "GPa", "MPa": "MPa", "Nm": "N·m", "deg": "deg", "pct": "%"}

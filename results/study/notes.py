@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from geometry.design import Design
-from pipeline.stress_limits import PART_OF
-from pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
-from pipeline.study.holes import DRIFT, pierced
-from pipeline.study.result import StudyResult
-from results.peaks import BORDER, MEANING
-from results.study.labels import at_border, entry
-from results.study.why import signed, unfollowed
+from flexspline.geometry.design import Design
+from flexspline.pipeline.stress_limits import PART_OF
+from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
+from flexspline.pipeline.study.holes import DRIFT, pierced
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.study.labels import at_border, entry
+from flexspline.results.study.why import signed, unfollowed
 
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 

@@ -7,10 +7,10 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from pipeline.study.drive import Progress
-from pipeline.study.load import Study
-from pipeline.study.result import StudyResult
-from results.study.labels import valued
+from flexspline.pipeline.study.drive import Progress
+from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.study.labels import valued
 
 EVERY_S = 5.0
 """Between two lines where stderr is no terminal; on one the line is renewed in place."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from pipeline.study.result import StudyResult
-from pipeline.study.scatter import Scatter
-from pipeline.study.store import Row
-from pipeline.study.verified import Verified
-from results.records import program_version
-from results.study.labels import entry, valued
-from results.study.scatter_section import index_text, source_words
-from results.study.why import disagreement, misses, signed
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.scatter import Scatter
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.verified import Verified
+from flexspline.results.records import program_version
+from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.scatter_section import index_text, source_words
+from flexspline.results.study.why import disagreement, misses, signed
 
 SHOWN = 5
 

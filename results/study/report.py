@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 
-from pipeline.study.result import StudyResult
-from results.atomic import write_bytes
-from results.report.attached import Attachment
-from results.report.both import reports_of
-from results.report.document import (
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.atomic import write_bytes
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.both import reports_of
+from flexspline.results.report.document import (
     Block,
     Bullets,
     Callout,
@@ -22,13 +22,13 @@ from results.report.document import (
     Pictures,
     Table,
 )
-from results.report.issued import issued
-from results.report.spans import Text, alarm, bold, plain, worded
-from results.study.best_stress import PICTURE, VIEW, BestStress
-from results.study.labels import at_border, entry
-from results.study.notes import notes
-from results.study.scatter_section import scatter_section
-from results.study.why import disagreement, failures, influences, limits, misses
+from flexspline.results.report.issued import issued
+from flexspline.results.report.spans import Text, alarm, bold, plain, worded
+from flexspline.results.study.best_stress import PICTURE, VIEW, BestStress
+from flexspline.results.study.labels import at_border, entry
+from flexspline.results.study.notes import notes
+from flexspline.results.study.scatter_section import scatter_section
+from flexspline.results.study.why import disagreement, failures, influences, limits, misses
 
 COLUMNS = 5
 """Best designs side by side."""

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pipeline.study.scatter import FACTORS, Scatter
-from results.report.document import Block, Column, Heading, Paragraph, Table
-from results.study.labels import entry
+from flexspline.pipeline.study.scatter import FACTORS, Scatter
+from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
+from flexspline.results.study.labels import entry
 
 MOST = 1_000_000
 """Evaluations that a study file may ask for."""

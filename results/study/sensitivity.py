@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from geometry.design import Design
-from pipeline.study.sensitivity import Slope
-from results.atomic import write_bytes
-from results.records import as_json, heading
+from flexspline.geometry.design import Design
+from flexspline.pipeline.study.sensitivity import Slope
+from flexspline.results.atomic import write_bytes
+from flexspline.results.records import as_json, heading
 
 K_OF = {"flexspline": "K_b_Nm_per_rad", "shaft": "K_e_Nm_per_rad"}
 

@@ -7,8 +7,8 @@ import io
 from pathlib import Path
 from typing import Any
 
-from pipeline.study.result import StudyResult
-from results.atomic import write_bytes
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.atomic import write_bytes
 
 Table = dict[str, list[Any]]
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.study.indices import Indices
-from pipeline.study.scatter import FACTORS, Scatter
-from results.study.labels import axis_label, entry, long_name
-from results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.study.indices import Indices
+from flexspline.pipeline.study.scatter import FACTORS, Scatter
+from flexspline.results.study.labels import axis_label, entry, long_name
+from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

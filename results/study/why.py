@@ -6,11 +6,11 @@ from collections import Counter
 
 import numpy as np
 
-from pipeline.study.holes import of_holes
-from pipeline.study.load import Study
-from pipeline.study.result import StudyResult
-from pipeline.study.verified import STRESS_SHARE, Check
-from results.study.labels import entry, valued
+from flexspline.pipeline.study.holes import of_holes
+from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.verified import STRESS_SHARE, Check
+from flexspline.results.study.labels import entry, valued
 
 STRONG = 0.3
 """Rank correlation from which an influence is worth a sentence."""

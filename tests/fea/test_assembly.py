@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
-from fea.solid.assembly import NodeFrames, stiffness_matrix
-from fea.solid.cases import Model, torsion
-from fea.solid.elements import NODES, quadratic_mesh, reference_values
-from fea.solid.errors import SolveError
-from fea.solid.solver import solve
-from fea.solid.unfold import folded, unfolded
-from fea.types import Elastic
+from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
+from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.elements import NODES, quadratic_mesh, reference_values
+from flexspline.fea.solid.errors import SolveError
+from flexspline.fea.solid.solver import solve
+from flexspline.fea.solid.unfold import folded, unfolded
+from flexspline.fea.types import Elastic
 
 STEEL = Elastic(206e3, 0.3)
 
@@ -86,6 +86,6 @@ def test_an_unsupported_body_is_refused_with_a_reason() -> None:
 def test_superlu_stands_in_for_pardiso(monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = small()
     with_mkl = torsion(Model.of(mesh, STEEL), "mesh").K_energy
-    monkeypatch.setattr("fea.solid.direct.pardiso", lambda: None)
+    monkeypatch.setattr("flexspline.fea.solid.direct.pardiso", lambda: None)
     without = torsion(Model.of(mesh, STEEL), "mesh").K_energy
     assert without == pytest.approx(with_mkl, rel=1e-10)

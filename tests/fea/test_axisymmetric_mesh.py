@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from example_cup import CUP
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
-from fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
-from geometry.meridian import cup_meridian
-from geometry.outline import Meridian, Segment
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
+from flexspline.fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
+from flexspline.geometry.meridian import cup_meridian
+from flexspline.geometry.outline import Meridian, Segment
 
 
 def angles(points, triangles):

@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 from example_cup import CUP
 
-from fea.axisymmetric import contact, lobes, stress, torsion
-from fea.axisymmetric.contact import contact_stiffness
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.stress import ellipse_stress, torsion_stress
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.deadline import Deadline, OutOfTimeError, Pace
-from fea.shortfall import of_the_machine
-from fea.types import Elastic, Stiffness
-from geometry.meridian import cup_meridian
+from flexspline.fea.axisymmetric import contact, lobes, stress, torsion
+from flexspline.fea.axisymmetric.contact import contact_stiffness
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.deadline import Deadline, OutOfTimeError, Pace
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.fea.types import Elastic, Stiffness
+from flexspline.geometry.meridian import cup_meridian
 
 STEEL = Elastic(206e3, 0.3)
 OUTLINE = cup_meridian(CUP)

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
-from fea.solid.cases import Model, torsion
-from fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
-from fea.solid.defaults import first_spec, surface_to_mesh
-from fea.solid.elements import NODES
-from fea.solid.mesh import mesh_surface
-from fea.types import Elastic, TetMesh
-from geometry.load import load_design
-from geometry.symmetry import sector_of
+from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
+from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.elements import NODES
+from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.load import load_design
+from flexspline.geometry.symmetry import sector_of
 
 CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 STEEL = Elastic(206e3, 0.3)

@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 from toothed import toothed
 
-from fea.toothed_ring import equivalent, plain
-from fea.toothed_ring.cell import ToothedRingError
-from fea.toothed_ring.equivalent import (
+from flexspline.fea.toothed_ring import equivalent, plain
+from flexspline.fea.toothed_ring.cell import ToothedRingError
+from flexspline.fea.toothed_ring.equivalent import (
     LARGEST_CHANGE,
     SMALLEST_CHANGE,
     EquivalentRing,
     equivalent_ring,
 )
-from geometry.tooth import ToothCell, tooth_cell
+from flexspline.geometry.tooth import ToothCell, tooth_cell
 
 RIM, HALF_PITCH, INNER = 0.55, pi / 200, 19.2
 ROOT = INNER + RIM

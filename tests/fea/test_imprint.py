@@ -9,12 +9,12 @@ import pytest
 from skfem import MeshTet
 from structured import from_cylindrical
 
-from fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
-from fea.solid.mesh import boundary_faces
-from fea.solid.tetwild import signed_volumes
-from fea.solid.unroll import Cartesian, Space, Unrolled
-from geometry.outline import Segment
-from geometry.surfaces import Surface, Swept, sector_planes
+from flexspline.fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
+from flexspline.fea.solid.mesh import boundary_faces
+from flexspline.fea.solid.tetwild import signed_volumes
+from flexspline.fea.solid.unroll import Cartesian, Space, Unrolled
+from flexspline.geometry.outline import Segment
+from flexspline.geometry.surfaces import Surface, Swept, sector_planes
 
 INNER, EDGE, OUTER, HEIGHT = 2.0, 4.0, 6.0, 1.5
 SECTOR = pi / 3

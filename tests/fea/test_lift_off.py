@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import cholesky
 from scipy.optimize import nnls
 
-from fea.axisymmetric.lift_off import EPS, pushing
+from flexspline.fea.axisymmetric.lift_off import EPS, pushing
 
 KINDS = ("mixed", "all touch", "all lifted", "neither", "just touching", "two places in one")
 

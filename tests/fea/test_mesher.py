@@ -9,21 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.defaults import first_spec, surface_to_mesh
-from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
-from fea.solid.errors import MesherError, MeshQualityError
-from fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, _refuse_flat, mesh_surface
-from fea.solid.sizing import Grading
-from fea.solid.stiffness import solid_stiffness
-from fea.solid.tetwild import TetwildSettings, tetrahedralize
-from fea.types import Elastic, TetMesh
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.meridian import meridian
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_planes
-from geometry.symmetry import sector_of
-from geometry.tagged import TaggedSurface
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
+from flexspline.fea.solid.errors import MesherError, MeshQualityError
+from flexspline.fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, _refuse_flat, mesh_surface
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_planes
+from flexspline.geometry.symmetry import sector_of
+from flexspline.geometry.tagged import TaggedSurface
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 

@@ -8,19 +8,19 @@ from typing import Any
 import pytest
 from example_cup import CUP
 
-from fea.axisymmetric import lobes, stress, torsion
-from fea.shortfall import ToleranceError, of_the_machine, settled
-from fea.solid import stiffness as solid
-from fea.solid.defaults import first_spec
-from fea.solid.errors import MesherError
-from fea.solid.mesh import MeshSpec
-from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import swept_mesh
-from fea.types import Elastic, Stiffness, TetMesh
-from geometry.errors import ComputationError
-from geometry.load import load_design
-from geometry.meridian import cup_meridian
-from geometry.symmetry import sector_of
+from flexspline.fea.axisymmetric import lobes, stress, torsion
+from flexspline.fea.shortfall import ToleranceError, of_the_machine, settled
+from flexspline.fea.solid import stiffness as solid
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import MesherError
+from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import cup_meridian
+from flexspline.geometry.symmetry import sector_of
 
 STEEL = Elastic(206e3, 0.3)
 OUTLINE = cup_meridian(CUP)

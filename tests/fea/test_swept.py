@@ -12,25 +12,25 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.cases import Model, torsion
-from fea.solid.column import column_of
-from fea.solid.defaults import first_spec, surface_to_mesh
-from fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
-from fea.solid.errors import SolidError
-from fea.solid.mesh import mesh_surface
-from fea.solid.sizing import Grading
-from fea.solid.stiffness import solid_stiffness
-from fea.solid.stress import energy_error
-from fea.solid.swept import swept_edges, swept_mesh
-from fea.solid.unfold import unfolded
-from fea.types import Elastic, TetMesh
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.meridian import meridian
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
-from geometry.symmetry import sector_of
-from geometry.tagged import tagged_surface
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.column import column_of
+from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
+from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.swept import swept_edges, swept_mesh
+from flexspline.fea.solid.unfold import unfolded
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.geometry.symmetry import sector_of
+from flexspline.geometry.tagged import tagged_surface
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
@@ -222,7 +222,7 @@ def test_what_cannot_be_swept_is_left_to_the_mesher(
 def test_mesh_that_fails_a_check_is_left_to_the_mesher(monkeypatch: pytest.MonkeyPatch) -> None:
     """No mesh is exact to a tolerance of 0: the check must say so, and nothing must pass it."""
     design = design_of("xb1-40.toml", "flexspline", {})
-    monkeypatch.setattr("fea.solid.swept.TOLERANCE", 0.0)
+    monkeypatch.setattr("flexspline.fea.solid.swept.TOLERANCE", 0.0)
     assert swept_mesh(design, "flexspline", 30.0, first_spec(design, "flexspline")) is None
 
 

@@ -11,19 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import fea.solid.memory as memory
-import fea.solid.twolevel as twolevel
-from fea.solid.assembly import NodeFrames
-from fea.solid.cases import Model, Solved, ellipse, lobes, torsion
-from fea.solid.defaults import first_spec
-from fea.solid.errors import IterationError, MemoryShortError, SolveError
-from fea.solid.iteration import conjugate_gradients
-from fea.solid.sizing import Grading
-from fea.solid.solver import solve
-from fea.solid.swept import swept_mesh
-from fea.solid.unfold import unfolded
-from fea.types import Elastic, TetMesh
-from geometry.load import design_from
+from flexspline.fea.solid import memory, twolevel
+from flexspline.fea.solid.assembly import NodeFrames
+from flexspline.fea.solid.cases import Model, Solved, ellipse, lobes, torsion
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import IterationError, MemoryShortError, SolveError
+from flexspline.fea.solid.iteration import conjugate_gradients
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.solver import solve
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.unfold import unfolded
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.load import design_from
 
 STEEL = Elastic(206e3, 0.3)
 EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
@@ -124,7 +123,7 @@ def test_an_unsupported_body_is_found_by_iteration_too(quarter: Model) -> None:
 
 def test_iteration_without_mkl(quarter: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     with_mkl = torsion(replace(quarter, solve_by="iterative"), "mesh").K_energy
-    monkeypatch.setattr("fea.solid.direct.pardiso", lambda: None)
+    monkeypatch.setattr("flexspline.fea.solid.direct.pardiso", lambda: None)
     without = torsion(replace(quarter, solve_by="iterative"), "mesh").K_energy
     assert without == pytest.approx(with_mkl, rel=1e-8)
 
@@ -169,7 +168,7 @@ def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) ->
 
 
 def test_memory_left_is_bounded_by_the_address_space() -> None:
-    code = "import fea.solid.memory as m; print(m.available_bytes())"
+    code = "import flexspline.fea.solid.memory as m; print(m.available_bytes())"
     command = f"ulimit -v {3 * 2**20}; exec {sys.executable} -c '{code}'"
     said = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True).stdout
     # 3 GB less what the process holds already

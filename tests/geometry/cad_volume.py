@@ -6,9 +6,9 @@ from math import pi
 
 import pytest
 
-from geometry.cad import build_solid
-from geometry.design import Cup, Design
-from geometry.meridian import meridian
+from flexspline.geometry.cad import build_solid
+from flexspline.geometry.design import Cup, Design
+from flexspline.geometry.meridian import meridian
 
 VOLUME = 1e-7
 """Relative: the kernel integrates volumes to about 1e-8."""

@@ -6,8 +6,8 @@ import re
 import tomllib
 from pathlib import Path
 
-from geometry.design import Design
-from geometry.load import design_from
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

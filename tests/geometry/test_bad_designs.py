@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 from changed_design import changed_text
 
-from geometry.errors import DesignError, DesignFileError
-from geometry.load import LARGEST_BYTES, load_design
+from flexspline.geometry.errors import DesignError, DesignFileError
+from flexspline.geometry.load import LARGEST_BYTES, load_design
 
 
 @dataclass(frozen=True)

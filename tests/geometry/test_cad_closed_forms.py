@@ -14,9 +14,9 @@ import pytest
 from changed_design import EXAMPLES, changed_design, shaft_of
 from scipy.integrate import dblquad
 
-from geometry.cad import build_solid, write_step, write_stl
-from geometry.load import load_design
-from geometry.tagged import tagged_surface
+from flexspline.geometry.cad import build_solid, write_step, write_stl
+from flexspline.geometry.load import load_design
+from flexspline.geometry.tagged import tagged_surface
 
 KERNEL = 1e-7
 """Relative: the kernel integrates volumes and areas to about 1e-8."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from changed_design import EXAMPLES, changed_design, shaft_of
 
-from geometry.exclusion import exclusion_mm
-from geometry.load import load_design
+from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.load import load_design
 
 
 def test_a_flexsplines_is_its_wall() -> None:

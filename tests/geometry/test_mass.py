@@ -6,9 +6,9 @@ import pytest
 from cad_volume import VOLUME
 from changed_design import EXAMPLES, changed_design
 
-from geometry.cad import build_solid
-from geometry.load import load_design
-from geometry.mass import masses
+from flexspline.geometry.cad import build_solid
+from flexspline.geometry.load import load_design
+from flexspline.geometry.mass import masses
 
 TITANIUM, ALUMINIUM = 4430.0, 2700.0
 SHAFT = {

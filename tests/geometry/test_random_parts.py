@@ -8,11 +8,11 @@ from changed_design import changed_design, shaft_of
 from hypothesis import HealthCheck, assume, given, settings
 from random_parts import Segments, cups, hats, shafts
 
-from geometry.cad import build_solid
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.meridian import meridian
-from geometry.tagged import tagged_surface
+from flexspline.geometry.cad import build_solid
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.tagged import tagged_surface
 
 SHORT = settings(max_examples=15, deadline=None, derandomize=True)
 LONG = settings(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from changed_design import EXAMPLES, changed_design
 
-from geometry.load import load_design
-from geometry.sanity import ring_bending_stress_MPa, warnings
+from flexspline.geometry.load import load_design
+from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
 
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75

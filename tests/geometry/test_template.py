@@ -8,11 +8,11 @@ import tomllib
 
 import pytest
 
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.sanity import warnings
-from geometry.schema import json_schema, resolved
-from geometry.template import design_text, template
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.sanity import warnings
+from flexspline.geometry.schema import json_schema, resolved
+from flexspline.geometry.template import design_text, template
 
 KINDS = ("cup", "hat")
 UNIT = re.compile(r"_(mm|um|GPa|MPa|Nm|deg|pct)$")

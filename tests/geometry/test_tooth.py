@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from toothed import CUP, toothed
 
-from geometry.errors import DesignError
-from geometry.load import design_from
-from geometry.tooth import half_thickness, tip_radius, tooth_cell
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.geometry.tooth import half_thickness, tip_radius, tooth_cell
 
 PITCH, ALPHA, HALF_PITCH = 20.0, radians(20), pi / 200
 FLANKS = ("involute", "trapezoid")

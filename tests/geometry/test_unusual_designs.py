@@ -8,10 +8,10 @@ import pytest
 from cad_volume import assert_volume
 from changed_design import changed_design, changed_text, shaft_of
 
-from geometry.cad import build_solid
-from geometry.design import Design
-from geometry.load import load_design
-from geometry.meridian import meridian
+from flexspline.geometry.cad import build_solid
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import meridian
 
 FLEXSPLINES = {
     "no holes": ("xb1-40", {"bolt_count": "0"}),

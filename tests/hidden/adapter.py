@@ -6,14 +6,14 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-from geometry.load import design_from
+from flexspline.geometry.load import design_from
 from hidden.case import Case
 
 
 def diagnose(case: Case) -> dict:
     """`flexspline diagnose` without the command line: the same file, the same record."""
-    from pipeline.diagnosis.diagnose import diagnose_file
-    from results.diagnosis.record import diagnosis_record
+    from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+    from flexspline.results.diagnosis.record import diagnosis_record
 
     with tempfile.TemporaryDirectory() as folder:
         csv = Path(folder) / "measured.csv"

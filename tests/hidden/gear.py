@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.design import Design
-from geometry.load import design_from
-from pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
-from pipeline.bearing_play import BearingPlayDomainError
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
+from flexspline.pipeline.bearing_play import BearingPlayDomainError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STIFFNESS = {  # K_b, K_e [N·m/rad], of the size that finite elements give for these examples

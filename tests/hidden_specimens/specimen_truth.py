@@ -13,13 +13,13 @@ from typing import Literal
 
 import numpy as np
 
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.load import design_from, read_toml
-from geometry.meridian import meridian
-from pipeline.diagnosis.record import Specimens
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from, read_toml
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.diagnosis.record import Specimens
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPECIMENS = 8

@@ -15,15 +15,15 @@ import numpy as np
 import pytest
 from specimen_truth import MODULUS_STD, OFF_MM, Kind, batch, hidden
 
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.diagnosis.record import Specimens
-from pipeline.diagnosis.result import NamedCause
-from pipeline.diagnosis.specimens.diagnose import weighed
-from pipeline.diagnosis.specimens.race import Data
-from pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.pipeline.diagnosis.specimens.diagnose import weighed
+from flexspline.pipeline.diagnosis.specimens.race import Data
+from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
 
 KINDS: tuple[Kind, ...] = ("clean", "softer", "joint", "lobes", "wall", "diaphragm")
 ALL_ALIKE = {"joint", "lobes"}

@@ -14,15 +14,15 @@ from hatchling.builders.wheel import WheelBuilder
 ROOT = Path(__file__).parents[2]
 ROOMS = ("geometry", "fea", "pipeline", "results")
 TOP = {
-    *ROOMS, "tests", "examples", "benchmarks", "docs", ".ci",
+    *ROOMS, "__init__.py", "py.typed", "tests", "examples", "benchmarks", "docs", ".ci",
     "README.md", "LICENSE", "CHANGELOG.md", "pyproject.toml", "PKG-INFO", ".gitignore",
 }  # fmt: skip
 JUNK = ("__pycache__", ".pyc", ".out/", ".egg-info", "_cache/", ".hypothesis", ".swp", ".orig")
 
 
 def sources() -> set[str]:
-    """Files of the four rooms, less what Python leaves beside them."""
-    return {
+    """Files of the four rooms and the face, less what Python leaves beside them."""
+    return {"__init__.py", "py.typed"} | {
         str(p.relative_to(ROOT))
         for room in ROOMS
         for p in (ROOT / room).rglob("*")
@@ -46,8 +46,7 @@ def archive(tmp_path_factory: pytest.TempPathFactory) -> tarfile.TarFile:
 
 def test_wheel_holds_the_four_rooms_and_nothing_else(wheel: zipfile.ZipFile) -> None:
     names = {n for n in wheel.namelist() if ".dist-info/" not in n}
-    assert names == sources()
-    assert {f"{room}/py.typed" for room in ROOMS} <= names
+    assert names == {f"flexspline/{source}" for source in sources()}
     assert any(n.endswith(".typ") for n in names)  # the reports' templates
     assert not [n for n in names if any(j in n for j in JUNK)]
 
@@ -63,7 +62,7 @@ def test_wheel_says_what_it_needs_and_offers(wheel: zipfile.ZipFile) -> None:
     assert not [n for n in needed if n.startswith("ngsolve")]  # LGPL: for the benchmarks only
     assert f"{info}/licenses/LICENSE" in wheel.namelist()
     points = wheel.read(f"{info}/entry_points.txt").decode()
-    assert "flexspline = results.entry:main" in points
+    assert "flexspline = flexspline.results.entry:main" in points
 
 
 def test_source_archive_is_whole_and_clean(archive: tarfile.TarFile) -> None:

@@ -78,7 +78,7 @@ def test_every_command_works(programs: Path, desk: Path) -> None:
 
 
 def test_what_is_installed_is_what_runs(programs: Path, desk: Path) -> None:
-    code = "import geometry, fea, pipeline, results; print(results.__file__)"
+    code = "import flexspline.results; print(flexspline.results.__file__)"
     for imported in (code, "import ngsolve; print(ngsolve.__file__)"):
         out = subprocess.run(
             [str(programs / "python"), "-I", "-c", imported],

@@ -79,7 +79,7 @@ def guarded(
     (folder / "sitecustomize.py").write_text(GUARD, encoding="utf-8")
     noted = folder / "noted.txt"
     env = {
-        **os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)]), "NOTED": str(noted),
+        **os.environ, "PYTHONPATH": str(folder), "NOTED": str(noted),
     }  # fmt: skip
     out = subprocess.run(
         [*prefix, sys.executable, *call],
@@ -105,7 +105,7 @@ def test_commands_work_without_network(
         '[run]\nmethod = "grid"\nworkers = 1\n',
         encoding="utf-8",
     )
-    call = ["-m", "results.cli", *arguments, "--out", str(tmp_path / "out")]
+    call = ["-m", "flexspline.results.cli", *arguments, "--out", str(tmp_path / "out")]
     out, noted = guarded(call, prefix, tmp_path)
     assert out.returncode == 0, out.stderr
     assert noted == ""
@@ -124,7 +124,7 @@ def test_help_answers_within_half_a_second() -> None:
     for _ in range(5):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
-            [sys.executable, "-m", "results.cli", "--help"],
+            [sys.executable, "-m", "flexspline.results.cli", "--help"],
             cwd=ROOT, capture_output=True, check=True,
         )  # fmt: skip
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

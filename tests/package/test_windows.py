@@ -47,7 +47,7 @@ for name in NAMES:
 """
 LOW_PRIORITY = """
 from multiprocessing import Pipe
-from results.studio.worker import _serve
+from flexspline.results.studio.worker import _serve
 ours, theirs = Pipe()
 ours.close()
 _serve(theirs, 10)
@@ -55,7 +55,7 @@ _serve(theirs, 10)
 STOPPED_JOB = """
 import time
 import psutil
-from results.studio.jobs import Job
+from flexspline.results.studio.jobs import Job
 START = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import time; time.sleep(600)'])"
 
 async def stop():
@@ -75,7 +75,7 @@ asyncio.run(stop())
 """
 SERVED = """
 import threading
-from results.studio.serve import serve, starting_design
+from flexspline.results.studio.serve import serve, starting_design
 
 def none(self, *_):
     raise NotImplementedError
@@ -87,7 +87,7 @@ threading.Timer(8.0, os.kill, (os.getpid(), signal.SIGINT)).start()  # Ctrl-C
 serve(starting_design(None), "127.0.0.1", 0, browser=False)
 """
 MEMORY = """
-from fea.solid.memory import available_bytes
+from flexspline.fea.solid.memory import available_bytes
 assert available_bytes() > 0
 """
 

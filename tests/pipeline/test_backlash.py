@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import pipeline.backlash
-import pipeline.bearing_play
-from geometry.design import Design
-from pipeline.backlash import (
+from flexspline.geometry.design import Design
+from flexspline.pipeline import backlash as sums
+from flexspline.pipeline import bearing_play
+from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
     StiffnessValueError,
     angle_rad,
@@ -22,13 +22,13 @@ from pipeline.backlash import (
     gap_rad,
     play_clearance,
 )
-from pipeline.bearing_play import (
+from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
     involute_clearance_slope,
     play_limit,
 )
-from pipeline.play_spread import play_spread
+from flexspline.pipeline.play_spread import play_spread
 
 EXAMPLE = Path(__file__).parents[2] / "examples/xb1-40.toml"
 K_B, K_E = 4.0e4, 3.0e4
@@ -162,7 +162,7 @@ def test_line_ends_are_the_sum_apart() -> None:
     assert slope == pytest.approx(1 / K_B + 1 / K_E, rel=1e-9)
 
 
-@pytest.mark.parametrize("module", [pipeline.backlash, pipeline.bearing_play])
+@pytest.mark.parametrize("module", [sums, bearing_play])
 def test_docstring_examples(module) -> None:
     found = doctest.testmod(module)
     assert found.attempted > 1

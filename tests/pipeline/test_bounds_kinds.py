@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 from toothed import toothed
 
-from fea.toothed_ring.equivalent import EquivalentRing
-from geometry.design import Design
-from geometry.load import design_from
-from pipeline import parts
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from results.records import stiffness_record
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.pipeline import parts
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.results.records import stiffness_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LOOSE_PCT = 5.0

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from fea.types import StressPeak
-from geometry.design import Design
-from geometry.load import load_design
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.linear_limit import linear_limit
+from flexspline.fea.types import StressPeak
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.linear_limit import linear_limit
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SOFT, STIFF = 1.0, 1e9

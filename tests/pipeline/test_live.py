@@ -6,14 +6,14 @@ import tomllib
 
 import pytest
 
-from fea.axisymmetric.stress import ellipse_stress
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.template import template
-from pipeline import live
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.rim import STRESS_TOLERANCE
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
+from flexspline.pipeline import live
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.rim import STRESS_TOLERANCE
 
 CUP = live.revolved(design_from(tomllib.loads(template("cup"))))
 
@@ -48,7 +48,7 @@ def test_a_first_answer_after_the_last_leaves_it_as_it_is() -> None:
 
 def test_refinements_cut_short_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
     design = walled(0.4437)  # no other test asks for it, so it is not remembered
-    monkeypatch.setattr("fea.axisymmetric.stress.MOST_TRIANGLES", 10)
+    monkeypatch.setattr("flexspline.fea.axisymmetric.stress.MOST_TRIANGLES", 10)
     assert live.first_field(design).levels  # the first mesh is not refused
     ended = live.field(design, "wave_generator")
     assert len(ended.levels) == 1

@@ -7,16 +7,16 @@ from pathlib import Path
 import pytest
 from example_cup import CUP
 
-from fea.axisymmetric import lobes
-from fea.deadline import Deadline
-from fea.shortfall import of_the_machine
-from geometry.load import load_design
-from pipeline import rim
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from results.warned import shortfalls
+from flexspline.fea.axisymmetric import lobes
+from flexspline.fea.deadline import Deadline
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import rim
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.results.warned import shortfalls
 
 DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
 DESIGN = DESIGN.model_copy(update={"flexspline": CUP})

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from in_process import flexspline
 
-from geometry.errors import ComputationError
-from pipeline.study.cluster import Hands
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.study.cluster import Hands
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CUP = EXAMPLES / "xb1-40.toml"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from results.cli import app
+from flexspline.results.cli import app
 
 STATUS = {0: "answered", 1: "failed", 2: "refused"}
 SCRATCH = (".part", ".export-", ".tmp")

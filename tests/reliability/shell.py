@@ -7,14 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
-
 
 def environment(
     cache: Path, scratch: Path | None = None, threads: int | None = None
 ) -> dict[str, str]:
-    """Of a process that uses these folders, and this tree's modules."""
-    env = os.environ | {"FLEXSPLINE_CACHE": str(cache), "PYTHONPATH": str(ROOT)}
+    """Of a process that uses these folders."""
+    env = os.environ | {"FLEXSPLINE_CACHE": str(cache)}
     if scratch is not None:
         env["TMPDIR"] = str(scratch)
     if threads is not None:
@@ -23,7 +21,7 @@ def environment(
 
 
 def command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "results.entry", *map(str, words)]
+    return [sys.executable, "-m", "flexspline.results.entry", *map(str, words)]
 
 
 def run(

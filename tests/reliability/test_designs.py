@@ -17,11 +17,11 @@ from in_process import flexspline
 from random_designs import design_of, toml
 from reliability_page import counted
 
-from fea.solid.swept import can_be_swept
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import design_from
-from pipeline.study.evaluate import Task, evaluate
+from flexspline.fea.solid.swept import can_be_swept
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.study.evaluate import Task, evaluate
 
 FAST, FAST_BLOCK = 2000, 500
 SOLID = {"swept": (160, 5), "meshed": (40, 4)}

@@ -35,7 +35,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The working folder, where an injected path or command would leave its trace."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path.parent / f"{tmp_path.name}-cache"))
-    monkeypatch.setattr("pipeline.study.cluster.hands_of", hands)
+    monkeypatch.setattr("flexspline.pipeline.study.cluster.hands_of", hands)
     return tmp_path
 
 

@@ -13,17 +13,17 @@ import pytest
 from bases import CUP, EXAMPLES, GIVEN, STUDY, head
 from in_process import flexspline
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import design_from
-from geometry.ranges import STIFFNESS_Nm_per_rad
-from geometry.sanity import warnings
-from geometry.template import template
-from pipeline.backlash import backlash
-from pipeline.diagnosis.errors import MeasurementError
-from pipeline.diagnosis.record import read_measurement
-from pipeline.study.load import study_from
-from results.records import as_json, backlash_record
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.geometry.ranges import STIFFNESS_Nm_per_rad
+from flexspline.geometry.sanity import warnings
+from flexspline.geometry.template import template
+from flexspline.pipeline.backlash import backlash
+from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.study.load import study_from
+from flexspline.results.records import as_json, backlash_record
 
 NUMBERS: tuple[float | int | bool, ...] = (
     0, 0.0, -0.0, -1, 1e-320, 5e-324, 1e-300, 3e-173, 1e-30, 1e-9, 1e9, 1e30, 1e300, 1e308, -1e308,

@@ -92,7 +92,7 @@ def test_every_command_refuses(role: str, tmp_path: Path) -> None:
     script = (
         "import resource, sys\n"
         "from typer.testing import CliRunner\n"
-        "from results.cli import app\n"
+        "from flexspline.results.cli import app\n"
         "resource.setrlimit(resource.RLIMIT_AS, (4 << 30,) * 2)\n"
         f"for words in {calls!r}:\n"
         "    done = CliRunner().invoke(app, words)\n"
@@ -121,7 +121,7 @@ def test_process_substitution_says_what_to_do(tmp_path: Path) -> None:
 
 
 def test_a_link_to_a_file_is_read(tmp_path: Path) -> None:
-    from geometry.load import load_design
+    from flexspline.geometry.load import load_design
 
     (tmp_path / "link.toml").symlink_to(CUP)
     assert load_design(tmp_path / "link.toml") == load_design(CUP)
@@ -129,8 +129,8 @@ def test_a_link_to_a_file_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can become another user")
 def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
-    from geometry.errors import DesignFileError
-    from geometry.load import load_design
+    from flexspline.geometry.errors import DesignFileError
+    from flexspline.geometry.load import load_design
 
     path = tmp_path / "closed.toml"
     path.write_bytes(CUP.read_bytes())

@@ -15,7 +15,7 @@ import psutil
 import pytest
 from shell import command, environment, run
 
-from pipeline.leftovers import MARK
+from flexspline.pipeline.leftovers import MARK
 
 GONE_WITHIN_S = 20.0
 """Children notice at once that their parent is gone, but may be in the middle of a library's call."""

@@ -12,15 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.cache import Cache
-from pipeline.leftovers import FORGOTTEN_S, MARK, clear, mark, unfinished
-from pipeline.process_id import ProcessId, _born, parsed, this_process
-from results.atomic import write_bytes
-from results.job import folder_of
-from results.scratch import own_scratch
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.leftovers import FORGOTTEN_S, MARK, clear, mark, unfinished
+from flexspline.pipeline.process_id import ProcessId, _born, parsed, this_process
+from flexspline.results.atomic import write_bytes
+from flexspline.results.job import folder_of
+from flexspline.results.scratch import own_scratch
 
-GONE = "import os, sys; sys.path.insert(0, sys.argv[1]); from pipeline.leftovers import mark; print(mark())"
-ROOT = Path(__file__).parents[2]
+GONE = "from flexspline.pipeline.leftovers import mark; print(mark())"
 
 
 def _of(pid: int) -> ProcessId:
@@ -31,9 +30,7 @@ def _of(pid: int) -> ProcessId:
 @pytest.fixture(scope="module")
 def of_the_dead() -> str:
     """How a process that is no more named its files."""
-    done = subprocess.run(
-        [sys.executable, "-c", GONE, str(ROOT)], capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", GONE], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 
@@ -109,7 +106,7 @@ def test_no_temporary_folder_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatc
 CLEAR = """
 import sys
 from pathlib import Path
-from pipeline.leftovers import clear
+from flexspline.pipeline.leftovers import clear
 print(clear(Path(sys.argv[1])))
 """
 UNSHARED = ("unshare", "--pid", "--fork")
@@ -127,7 +124,7 @@ def test_another_container_of_the_same_host_name_leaves_ours(
     (tmp_path / f"{mark()}scratch").mkdir()
     done = subprocess.run(
         [*words, sys.executable, "-c", CLEAR, str(tmp_path)],
-        capture_output=True, text=True, check=True, cwd=ROOT,
+        capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stdout == "[]\n"
     assert len(list(tmp_path.iterdir())) == 1

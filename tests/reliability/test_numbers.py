@@ -10,7 +10,7 @@ import bases
 import pytest
 from shell import run
 
-from fea.solid.stiffness import near_step
+from flexspline.fea.solid.stiffness import near_step
 
 SAME = 1e-9
 """Relative, on the same mesh: threads add in another order, and the conditioning (1e6) magnifies 1e-16."""

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from random_designs import SLIPS, design_of
 
-from geometry.bounds import beside, from_zero, outside, span
-from geometry.errors import DesignError
-from geometry.load import design_from
-from geometry.template import template
+from flexspline.geometry.bounds import beside, from_zero, outside, span
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
 
 REFUSALS = 600
 STEPS = 8

@@ -12,8 +12,8 @@ import bases
 import pytest
 from shell import command, environment
 
-from fea.solid.errors import MemoryShortError
-from fea.solid.memory import available_bytes, check_before_assembly
+from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.solid.memory import available_bytes, check_before_assembly
 
 GB = 2**30
 PROMISED = 8 * GB
@@ -24,13 +24,13 @@ KEYED = bases.EXAMPLES / "keyed-shaft.toml"
 SOLVE = """
 import json, resource, sys, time
 from dataclasses import replace
-from fea.solid.cases import Model, torsion
-from fea.solid.defaults import first_spec
-from fea.solid.errors import MemoryShortError
-from fea.solid.sizing import Grading
-from fea.solid.swept import swept_mesh
-from fea.types import Elastic
-from geometry.load import load_design
+from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import MemoryShortError
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.types import Elastic
+from flexspline.geometry.load import load_design
 
 design, far = load_design(sys.argv[1]), float(sys.argv[2])
 spec = replace(first_spec(design, "flexspline"), grading=Grading(0.4 * far, far, 1.0))

@@ -16,9 +16,9 @@ import pytest
 from bases import CUP, GIVEN, head, plain
 from shell import command, environment
 
-from geometry.load import load_design
-from results.letters import STAND_INS
-from results.letters import plain as plain_letters
+from flexspline.geometry.load import load_design
+from flexspline.results.letters import STAND_INS
+from flexspline.results.letters import plain as plain_letters
 
 C_LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 NARROW = {
@@ -62,7 +62,7 @@ def test_a_first_design_goes_through_a_file(env: dict[str, str], tmp_path: Path)
 
 
 def _design(text: bytes) -> dict:
-    from geometry.load import design_from
+    from flexspline.geometry.load import design_from
 
     return design_from(tomllib.loads(text.decode("utf-8"))).model_dump()
 

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from fea.types import MeshLevel, Stiffness, StressPeak
-from geometry.design import Design
-from pipeline.backlash import Backlash
-from results.report.content import ReportContent
+from flexspline.fea.types import MeshLevel, Stiffness, StressPeak
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import Backlash
+from flexspline.results.report.content import ReportContent
 
 STEEL = {"name": "34CrNiMo6", "youngs_modulus_GPa": 206.0, "poissons_ratio": 0.3}
 

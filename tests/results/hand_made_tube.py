@@ -4,8 +4,8 @@ from itertools import permutations
 
 import numpy as np
 
-from fea.types import SolidField, StressPeak, TetMesh
-from geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.types import SolidField, StressPeak, TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 INNER, OUTER, LENGTH = 8.0, 10.0, 12.0
 RING_START = 8.0

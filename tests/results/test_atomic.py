@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from results.atomic import write_bytes
+from flexspline.results.atomic import write_bytes
 
 
 def test_written_file_replaces_the_old_one(tmp_path):

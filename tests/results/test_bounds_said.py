@@ -12,16 +12,16 @@ import pytest
 from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
 
-from fea.types import Stiffness
-from pipeline.chain import Stiffnesses
-from results.console import table
-from results.quantities import bounds_kind
-from results.records import stiffness_record
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.tables import UNCHECKED, solves
-from results.report.write import write_report
-from results.studio.answer import message
+from flexspline.fea.types import Stiffness
+from flexspline.pipeline.chain import Stiffnesses
+from flexspline.results.console import table
+from flexspline.results.quantities import bounds_kind
+from flexspline.results.records import stiffness_record
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.tables import UNCHECKED, solves
+from flexspline.results.report.write import write_report
+from flexspline.results.studio.answer import message
 
 FIGURES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e")
 ESTIMATE = replace(K_E, guaranteed=False, method="recovery estimate")

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from geometry.load import load_design
-from geometry.template import design_text
-from pipeline.diagnosis.specimens.designs import with_values, without_holes
+from flexspline.geometry.load import load_design
+from flexspline.geometry.template import design_text
+from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
 
 LIMIT, TOLERANCE = "material.flexspline.fatigue_limit_MPa", "solver.tolerance_pct"
 ROOT = Path(__file__).parents[2]
@@ -26,7 +26,7 @@ CUP = ROOT / "examples" / "xb1-40.toml"
 def flexspline(*words: object, cache: Path | None = None) -> subprocess.CompletedProcess[str]:
     env = os.environ | ({"FLEXSPLINE_CACHE": str(cache)} if cache else {})
     return subprocess.run(
-        [sys.executable, "-m", "results.cli", *map(str, words)],
+        [sys.executable, "-m", "flexspline.results.cli", *map(str, words)],
         capture_output=True, text=True, check=False, env=env,
     )  # fmt: skip
 
@@ -180,7 +180,7 @@ def test_wrong_design_writes_nothing(tmp_path: Path) -> None:
 def test_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
     env = os.environ | {"FLEXSPLINE_CACHE": str(tmp_path / "cache")}
     process = subprocess.Popen(
-        [sys.executable, "-m", "results.cli", "run", str(CUP), "--out", str(tmp_path / "out")],
+        [sys.executable, "-m", "flexspline.results.cli", "run", str(CUP), "--out", str(tmp_path / "out")],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env,
     )  # fmt: skip
     for line in process.stderr:

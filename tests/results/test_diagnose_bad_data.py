@@ -8,8 +8,8 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from pipeline.diagnosis import table
-from results.cli import app
+from flexspline.pipeline.diagnosis import table
+from flexspline.results.cli import app
 
 ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"

@@ -16,7 +16,7 @@ from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from results.cli import app
+from flexspline.results.cli import app
 
 ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"

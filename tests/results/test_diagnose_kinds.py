@@ -12,8 +12,8 @@ from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from results.cli import app
-from results.diagnosis.words import odds_words, plus_minus, title_of
+from flexspline.results.cli import app
+from flexspline.results.diagnosis.words import odds_words, plus_minus, title_of
 
 ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"

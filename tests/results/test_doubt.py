@@ -8,17 +8,17 @@ from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from unlike_gears import GEARS
 
-from geometry.design import Design
-from pipeline.backlash import backlash
-from pipeline.diagnosis.prediction import prediction_of
-from pipeline.study.load import StudyError, study_from
-from results.console import table
-from results.doubt import missing, spread_sentence
-from results.records import as_json, backlash_record
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.write import write_report
-from results.studio.answer import message
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import backlash
+from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.study.load import StudyError, study_from
+from flexspline.results.console import table
+from flexspline.results.doubt import missing, spread_sentence
+from flexspline.results.records import as_json, backlash_record
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.write import write_report
+from flexspline.results.studio.answer import message
 
 SILENT, PART, FULL = GEARS["no uncertainty"], GEARS["one source"], GEARS["cup"]
 ZERO = re.compile(r"±\s*0(\.0)?(?![.\d])")

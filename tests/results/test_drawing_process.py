@@ -11,9 +11,9 @@ import pytest
 from hand_made_tube import tube
 from opengl import machine_without
 
-from results.renders.mesh_picture import write_mesh_picture
-from results.renders.opengl import ADVICE
-from results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.results.renders.mesh_picture import write_mesh_picture
+from flexspline.results.renders.opengl import ADVICE
+from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 
 
 @pytest.fixture(autouse=True)

@@ -14,9 +14,9 @@ import pytest
 from hand_made_gear import content
 from hand_made_gear import design as hand_made
 
-from fea.toothed_ring.equivalent import EquivalentRing
-from geometry.load import load_design
-from results.report.limits import assumptions
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.geometry.load import load_design
+from flexspline.results.report.limits import assumptions
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
 DRAWN = 'ring_thickness_mm = 0.55\nteeth = "drawn"'
@@ -52,7 +52,7 @@ def written(folder: Path, name: str, ring: str, changes: Mapping[str, str] = NON
 
 def stiffness(path: Path, cache: str = "cache") -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "results.cli", "stiffness", str(path), "--json"],
+        [sys.executable, "-m", "flexspline.results.cli", "stiffness", str(path), "--json"],
         capture_output=True, text=True, check=False,
         env=os.environ | {"FLEXSPLINE_CACHE": str(path.parent / cache)},
     )  # fmt: skip

@@ -5,9 +5,9 @@ import pytest
 from hand_made_gear import BACKLASH, K_B, K_E
 from PIL import Image
 
-from results.figures.budget import write_budget
-from results.figures.convergence import write_convergence
-from results.figures.torque_angle import band, write_torque_angle
+from flexspline.results.figures.budget import write_budget
+from flexspline.results.figures.convergence import write_convergence
+from flexspline.results.figures.torque_angle import band, write_torque_angle
 
 
 def line(torque):

@@ -7,11 +7,11 @@ from hand_made_gear import K_B, K_E
 from legibility import drawn_figures, faults
 from unlike_gears import GEARS
 
-from fea.types import MeshLevel
-from results.figures.budget import write_budget
-from results.figures.convergence import write_convergence
-from results.figures.torque_angle import write_torque_angle
-from results.style import new_figure
+from flexspline.fea.types import MeshLevel
+from flexspline.results.figures.budget import write_budget
+from flexspline.results.figures.convergence import write_convergence
+from flexspline.results.figures.torque_angle import write_torque_angle
+from flexspline.results.style import new_figure
 
 
 def settled(K, *dofs):

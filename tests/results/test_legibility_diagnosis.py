@@ -8,7 +8,7 @@ import pytest
 from legibility import drawn_figures, faults
 from typer.testing import CliRunner
 
-from results.cli import app
+from flexspline.results.cli import app
 
 ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from legibility import drawn_figures, faults
 
-from fea.types import StressPeak
-from results.renders.scene import Shot, View
-from results.renders.sheet import INSET, LARGE_INSET, MAIN, Bar, Mark, Sheet, write_sheet
-from results.renders.shown import stress_note
+from flexspline.fea.types import StressPeak
+from flexspline.results.renders.scene import Shot, View
+from flexspline.results.renders.sheet import INSET, LARGE_INSET, MAIN, Bar, Mark, Sheet, write_sheet
+from flexspline.results.renders.shown import stress_note
 
 
 def shot(size):

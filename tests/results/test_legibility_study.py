@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from legibility import drawn_figures, faults
 
-from pipeline.study.evaluate import Outcome
-from pipeline.study.load import study_from
-from pipeline.study.result import StudyResult
-from pipeline.study.scatter import scatter_of
-from pipeline.study.store import Row
-from pipeline.study.tolerance import TOTAL, Input, saltelli
-from results.study.best_figure import best_figure
-from results.study.figures import write_convergence, write_parallel, write_pareto
-from results.study.tolerance_figure import write_scatter
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.scatter import scatter_of
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.tolerance import TOTAL, Input, saltelli
+from flexspline.results.study.best_figure import best_figure
+from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
+from flexspline.results.study.tolerance_figure import write_scatter
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"

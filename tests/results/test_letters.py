@@ -5,11 +5,11 @@ from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
 
-from results.report import letters as module
-from results.report.letters import STAND_IN, printable
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.write import write_report
+from flexspline.results.report import letters as module
+from flexspline.results.report.letters import STAND_IN, printable
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.write import write_report
 
 CHINESE = "谐波减速器 柔轮"
 PRINTED = {

@@ -10,19 +10,19 @@ import pytest
 from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
 
-from geometry.errors import ComputationError
-from geometry.load import load_design
-from pipeline import chain
-from pipeline.cache import Cache
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from results.cli import app
-from results.pictures import RunPictures
-from results.report import build
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.write import write_report
-from results.warned import all_warnings
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.load import load_design
+from flexspline.pipeline import chain
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.results.cli import app
+from flexspline.results.pictures import RunPictures
+from flexspline.results.report import build
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.write import write_report
+from flexspline.results.warned import all_warnings
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
 WHY = "the contact on the seat did not settle in 60 rounds"
@@ -80,7 +80,7 @@ def asked(command: str, design: Path) -> Answer:
     ],
 )  # fmt: skip
 def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolved, monkeypatch):
-    monkeypatch.setattr(f"pipeline.rim.{broken}", fail)
+    monkeypatch.setattr(f"flexspline.pipeline.rim.{broken}", fail)
     answer = asked("stiffness", revolved)
     assert answer.status == 0
     assert {k for k in (*BOTH, *LOBES, PEAK) if k not in answer.record} == {lost}
@@ -88,7 +88,7 @@ def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolve
 
 
 def test_without_k_b_the_rest_is_kept_and_the_status_is_1(revolved, monkeypatch):
-    from pipeline import parts
+    from flexspline.pipeline import parts
 
     solve = parts.torsional_stiffness
     monkeypatch.setattr(
@@ -113,7 +113,7 @@ def test_without_k_b_the_rest_is_kept_and_the_status_is_1(revolved, monkeypatch)
 
 def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):
     for module in ("torsion", "lobes"):
-        monkeypatch.setattr(f"fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
+        monkeypatch.setattr(f"flexspline.fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
     text = revolved.read_text(encoding="utf-8")
     revolved.write_text(text.replace("pct = 2.0", "pct = 1.0"), encoding="utf-8")
     answer = asked("stiffness", revolved)
@@ -133,7 +133,7 @@ def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     """Neither fields nor contact: the report says so, and has the rest."""
     for broken in ("torque_field", "wave_generator_field"):
         monkeypatch.setattr(chain, broken, fail)
-    monkeypatch.setattr("pipeline.rim.contact_stiffness", fail)
+    monkeypatch.setattr("flexspline.pipeline.rim.contact_stiffness", fail)
     cache = Cache(tmp_path / "cache", chain.CACHED_TYPES)
     result = chain.run(Workshop(load_design(revolved), cache, Progress()))
     assert not result.fields

@@ -9,21 +9,21 @@ import pytest
 from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
 
-from fea.types import StressPeak
-from geometry.design import Design
-from pipeline.chain import Stiffnesses
-from pipeline.linear_limit import LinearLimit
-from pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passed, share_of_limit
-from results.console import table
-from results.peaks import BORDER
-from results.records import peak_record, stiffness_record
-from results.renders.shown import stress_note
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.tables import answers
-from results.report.write import write_report
-from results.studio.answer import message
-from results.warned import shortfalls
+from flexspline.fea.types import StressPeak
+from flexspline.geometry.design import Design
+from flexspline.pipeline.chain import Stiffnesses
+from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passed, share_of_limit
+from flexspline.results.console import table
+from flexspline.results.peaks import BORDER
+from flexspline.results.records import peak_record, stiffness_record
+from flexspline.results.renders.shown import stress_note
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.tables import answers
+from flexspline.results.report.write import write_report
+from flexspline.results.studio.answer import message
+from flexspline.results.warned import shortfalls
 
 NAMES = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
 

@@ -8,10 +8,10 @@ from page_text import strings
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from fea.toothed_ring.equivalent import EquivalentRing
-from results.cli import app
-from results.report.content import Pictures
-from results.report.write import payload
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.results.cli import app
+from flexspline.results.report.content import Pictures
+from flexspline.results.report.write import payload
 
 ROOT = Path(__file__).parents[2]
 RING = EquivalentRing(0.55, 0.71, 0.66, 0.69, 0.01, 1000)

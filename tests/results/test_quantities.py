@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from results.quantities import QUANTITIES, THIN, grouped, quantity
+from flexspline.results.quantities import QUANTITIES, THIN, grouped, quantity
 
 # the example of the contract, section 2, with its values left out
 CONTRACT = json.loads("""

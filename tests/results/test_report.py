@@ -7,11 +7,18 @@ from hand_made_gear import BACKLASH, content, design
 from PIL import Image
 from pypdf import PdfReader
 
-from results.quantities import THIN
-from results.report.content import Pictures as Drawn
-from results.report.document import Break, Document, Heading, Paragraph, Picture, Pictures
-from results.report.pdf import pdf_of
-from results.report.write import ReportError, write_report
+from flexspline.results.quantities import THIN
+from flexspline.results.report.content import Pictures as Drawn
+from flexspline.results.report.document import (
+    Break,
+    Document,
+    Heading,
+    Paragraph,
+    Picture,
+    Pictures,
+)
+from flexspline.results.report.pdf import pdf_of
+from flexspline.results.report.write import ReportError, write_report
 
 NASTY = [
     '#read("/etc/passwd")',

@@ -12,13 +12,13 @@ from hand_made_gear import content, design
 from hand_made_tube import LENGTH, OUTER, field, oval, tube, twisted
 from PIL import Image
 
-from results.renders.ellipse_picture import turning_ellipse
-from results.renders.stress_picture import turning_torque_stress
-from results.report.attached import Attachment
-from results.report.content import Pictures
-from results.report.page import WORDS, page_of, png
-from results.report.sections import run_document
-from results.report.write import pictures_of
+from flexspline.results.renders.ellipse_picture import turning_ellipse
+from flexspline.results.renders.stress_picture import turning_torque_stress
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.content import Pictures
+from flexspline.results.report.page import WORDS, page_of, png
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.write import pictures_of
 
 NASTY = '</script><script>window.hacked = 1</script><img src=x onerror="window.hacked = 1">'
 VIEWS = ("flexspline_torque", "shaft_torque", "wave_generator")

@@ -8,12 +8,12 @@ from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page, spans, strings
 from PIL import Image
 
-from results.report.content import Pictures
-from results.report.document import Document, Heading, Paragraph
-from results.report.page import page_of, png
-from results.report.sections import run_document
-from results.report.spans import ref
-from results.report.write import payload, pictures_of, write_report
+from flexspline.results.report.content import Pictures
+from flexspline.results.report.document import Document, Heading, Paragraph
+from flexspline.results.report.page import page_of, png
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.spans import ref
+from flexspline.results.report.write import payload, pictures_of, write_report
 
 NASTY = [
     '#read("/etc/passwd")',

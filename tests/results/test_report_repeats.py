@@ -11,14 +11,14 @@ from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
 
-from geometry.design import Design
-from geometry.load import load_design
-from results.report.attached import Attachment
-from results.report.dimensions import ratio
-from results.report.issued import issued
-from results.report.page import page_of
-from results.report.sections import run_document
-from results.report.write import write_report
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import load_design
+from flexspline.results.report.attached import Attachment
+from flexspline.results.report.dimensions import ratio
+from flexspline.results.report.issued import issued
+from flexspline.results.report.page import page_of
+from flexspline.results.report.sections import run_document
+from flexspline.results.report.write import write_report
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NASTY = (

@@ -9,7 +9,7 @@ from opengl import why_no_pictures
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from results.cli import app
+from flexspline.results.cli import app
 
 DESIGN = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 STUDY = """
@@ -78,11 +78,11 @@ def test_a_grid_on_one_and_on_three_processes(tmp_path: Path) -> None:
 def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
     from pyarrow import parquet
 
-    from pipeline.study.evaluate import Outcome
-    from pipeline.study.load import load_study
-    from pipeline.study.result import StudyResult
-    from pipeline.study.store import Row
-    from results.study.tables import table_of, write_csv, write_parquet
+    from flexspline.pipeline.study.evaluate import Outcome
+    from flexspline.pipeline.study.load import load_study
+    from flexspline.pipeline.study.result import StudyResult
+    from flexspline.pipeline.study.store import Row
+    from flexspline.results.study.tables import table_of, write_csv, write_parquet
 
     values = {"flexspline.wall_thickness_mm": 0.4, "flexspline.diaphragm_thickness_mm": 0.5}
     figures = {"K_b_Nm_per_rad": 3.0, "flexspline_mass_g": 1.0, "backlash_arcsec.total": 90.0}
@@ -110,7 +110,7 @@ def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
 def test_a_wrong_study_leaves_nothing(
     old: str, new: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pipeline.study.cluster.CONNECT_S", 1.0)
+    monkeypatch.setattr("flexspline.pipeline.study.cluster.CONNECT_S", 1.0)
     out = tmp_path / "out"
     done = CliRunner().invoke(
         app, ["study", str(written(tmp_path, text=STUDY.replace(old, new))), "--out", str(out)]

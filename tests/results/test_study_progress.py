@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.study.drive import Progress
-from pipeline.study.evaluate import Outcome
-from pipeline.study.load import study_from
-from pipeline.study.store import Row
-from results.study.progress import Watch, line
+from flexspline.pipeline.study.drive import Progress
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.store import Row
+from flexspline.results.study.progress import Watch, line
 
 WALL = "flexspline.wall_thickness_mm"
 STUDY = f"""

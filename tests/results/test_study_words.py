@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.study.evaluate import Outcome
-from pipeline.study.load import study_from
-from pipeline.study.result import StudyResult
-from pipeline.study.store import Row
-from pipeline.study.verified import Check, Verified
-from results.report.pdf import pdf_of
-from results.study.labels import valued
-from results.study.notes import notes
-from results.study.report import study_document
-from results.study.why import disagreement, influences, misses, unfollowed
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.verified import Check, Verified
+from flexspline.results.report.pdf import pdf_of
+from flexspline.results.study.labels import valued
+from flexspline.results.study.notes import notes
+from flexspline.results.study.report import study_document
+from flexspline.results.study.why import disagreement, influences, misses, unfollowed
 
 WALL = "flexspline.wall_thickness_mm"
 FLAG = "wave_generator_peak_at_excluded_border"

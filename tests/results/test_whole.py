@@ -12,8 +12,8 @@ from hand_made_tube import (
     twisted,
 )  # fmt: skip
 
-from results.renders.surface import opening, skin
-from results.renders.whole import whole_part
+from flexspline.results.renders.surface import opening, skin
+from flexspline.results.renders.whole import whole_part
 
 SECTORS = [(30.0, 2), (90.0, 6), (180.0, 12), (360.0, 24)]
 ROUNDING = 1e-12  # of sums of a few thousand terms of order one

@@ -26,7 +26,7 @@ def flexspline(cache: Path, *words: object, without: Path | None = None) -> Run:
         env |= machine_without(without)
         env.pop("DISPLAY", None)
     return subprocess.run(
-        [sys.executable, "-m", "results.cli", *map(str, words)],
+        [sys.executable, "-m", "flexspline.results.cli", *map(str, words)],
         capture_output=True, text=True, check=False, env=env,
     )  # fmt: skip
 
@@ -86,8 +86,8 @@ def test_a_missing_picture_is_not_remembered(bare, tmp_path: Path) -> None:
 
 
 def test_the_answer_is_on_disk_before_anything_is_drawn(bare, tmp_path, monkeypatch) -> None:
-    import results.pictures
-    from results.cli import app
+    from flexspline.results import pictures
+    from flexspline.results.cli import app
 
     seen = []
 
@@ -96,7 +96,7 @@ def test_the_answer_is_on_disk_before_anything_is_drawn(bare, tmp_path, monkeypa
         raise KeyboardInterrupt
 
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(bare[0].parent / "cache"))
-    monkeypatch.setattr(results.pictures, "write_pictures", stop)
+    monkeypatch.setattr(pictures, "write_pictures", stop)
     done = CliRunner().invoke(app, ["run", str(bare[0]), "--out", str(tmp_path)])
     assert done.exit_code == 130
     answer = json.loads(bare[2].stdout)

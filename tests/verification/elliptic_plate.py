@@ -8,7 +8,7 @@ import numpy as np
 from cartesian import at
 from structured import bent_box
 
-from fea.types import TetMesh
+from flexspline.fea.types import TetMesh
 
 INNER, OUTER = np.array([2000.0, 1000.0]), np.array([3250.0, 2750.0])
 POINT_D = np.array([2000.0, 0.0])

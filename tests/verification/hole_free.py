@@ -12,16 +12,16 @@ from typing import Any
 
 import pytest
 
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.solid.defaults import first_spec, surface_to_mesh
-from fea.solid.mesh import MeshSpec, mesh_surface
-from fea.solid.stiffness import solid_stiffness
-from fea.solid.swept import swept_mesh
-from fea.types import Elastic, Stiffness, TetMesh
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.meridian import meridian
-from geometry.symmetry import sector_of
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.symmetry import sector_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}

@@ -14,19 +14,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.stress import ellipse_stress
-from fea.solid.cases import Model, ellipse, lobes
-from fea.solid.defaults import first_spec
-from fea.solid.mesh import mesh_surface
-from fea.solid.peak import SharpEdges, stress_field
-from fea.solid.sizing import Grading
-from fea.solid.stress import energy_error
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.load import design_from
-from geometry.meridian import meridian
-from geometry.tagged import tagged_surface
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.solid.cases import Model, ellipse, lobes
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.peak import SharpEdges, stress_field
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.load import design_from
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.tagged import tagged_surface
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 WALL, W0 = 0.9, 0.2

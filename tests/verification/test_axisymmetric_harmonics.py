@@ -10,15 +10,27 @@ from axisymmetric_shapes import MODEL_CUP, cups, hats, outline
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.harmonics import AXIAL, RADIAL, Fixed, HarmonicError, HarmonicModel, Wave
-from fea.axisymmetric.lobes import HALF_WIDTH, lobe_coefficient, lobe_stiffness, solve_lobes
-from fea.axisymmetric.recovery import recovered
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.axisymmetric.triangulate import triangulate
-from fea.types import Elastic
-from geometry.meridian import cup_meridian
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import (
+    AXIAL,
+    RADIAL,
+    Fixed,
+    HarmonicError,
+    HarmonicModel,
+    Wave,
+)
+from flexspline.fea.axisymmetric.lobes import (
+    HALF_WIDTH,
+    lobe_coefficient,
+    lobe_stiffness,
+    solve_lobes,
+)
+from flexspline.fea.axisymmetric.recovery import recovered
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.types import Elastic
+from flexspline.geometry.meridian import cup_meridian
+from flexspline.geometry.outline import Meridian
 
 STEEL = Elastic(200e3, 0.3)
 

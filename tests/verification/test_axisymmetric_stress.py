@@ -9,11 +9,11 @@ import pytest
 from axisymmetric_shapes import annular_plate, tube
 from example_cup import CUP
 
-from fea.axisymmetric.peak import StressError
-from fea.axisymmetric.stress import ellipse_stress, torsion_stress
-from fea.types import NMM_PER_NM, Elastic
-from geometry.meridian import cup_meridian
-from geometry.outline import Meridian, Segment
+from flexspline.fea.axisymmetric.peak import StressError
+from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.geometry.meridian import cup_meridian
+from flexspline.geometry.outline import Meridian, Segment
 
 STEEL = Elastic(206e3, 0.3)
 

@@ -10,15 +10,15 @@ from axisymmetric_shapes import MODEL_CUP, annular_plate, cups, hats, outline, s
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.patches import PatchError, sorted_boundary
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.axisymmetric.torsion_fields import bracket
-from fea.axisymmetric.triangulate import triangulate
-from fea.types import NMM_PER_NM, Elastic
-from geometry.design import Shaft, ShaftSegment
-from geometry.meridian import cup_meridian, shaft_meridian
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.patches import PatchError, sorted_boundary
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.axisymmetric.torsion_fields import bracket
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.geometry.design import Shaft, ShaftSegment
+from flexspline.geometry.meridian import cup_meridian, shaft_meridian
+from flexspline.geometry.outline import Meridian
 
 STEEL = Elastic(200e3, 0.3)
 ROUNDING = 1e-9

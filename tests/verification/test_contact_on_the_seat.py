@@ -12,17 +12,22 @@ import numpy as np
 import pytest
 from scipy.linalg import cho_factor
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.contact import MOST_PLACES, contact_stiffness, held_forces, lift_off_forces
-from fea.axisymmetric.harmonics import HarmonicModel
-from fea.axisymmetric.lift_off import pushing
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.seat import SeatCompliance, seat_compliance
-from fea.axisymmetric.triangulate import triangulate
-from fea.types import Elastic, Stiffness
-from geometry.load import design_from
-from geometry.meridian import meridian
-from geometry.outline import Meridian
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.contact import (
+    MOST_PLACES,
+    contact_stiffness,
+    held_forces,
+    lift_off_forces,
+)
+from flexspline.fea.axisymmetric.harmonics import HarmonicModel
+from flexspline.fea.axisymmetric.lift_off import pushing
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.types import Elastic, Stiffness
+from flexspline.geometry.load import design_from
+from flexspline.geometry.meridian import meridian
+from flexspline.geometry.outline import Meridian
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
 
@@ -102,7 +107,7 @@ def test_contact_settles_on_a_thin_rim(places: int, monkeypatch) -> None:
         rounds.append(len(matrix))
         return cho_factor(matrix, **how)
 
-    monkeypatch.setattr("fea.axisymmetric.lift_off.cho_factor", counted)
+    monkeypatch.setattr("flexspline.fea.axisymmetric.lift_off.cho_factor", counted)
     seat = seat_compliance(HarmonicModel(triangulate(SHALLOW), STEEL), 32, places)
     assert seat.free.shape == (32, min(places, 65))
     assert_contact(seat)
@@ -130,7 +135,7 @@ def test_a_wide_seat_on_a_thin_wall_costs_no_more_than_a_narrow_one(monkeypatch)
         sizes.append(len(free))
         return pushing(matrix, free)
 
-    monkeypatch.setattr("fea.axisymmetric.contact.pushing", counted)
+    monkeypatch.setattr("flexspline.fea.axisymmetric.contact.pushing", counted)
     held = Stiffness(1.0, 1.0, 1.0, False, "axisymmetric", "", "", ())
     found = contact_stiffness(THIN_WIDE_SEAT, STEEL, held)
     assert max(sizes) <= 32 * MOST_PLACES

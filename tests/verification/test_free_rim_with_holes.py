@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from fea.axisymmetric.lobes import lobe_stiffness
-from geometry.load import load_design
-from geometry.meridian import meridian
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.diagnosis.specimens.designs import without_holes
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TOLERANCE = 0.005

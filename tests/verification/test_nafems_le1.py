@@ -21,9 +21,9 @@ from cartesian import (
 )
 from elliptic_plate import POINT_D, quarter
 
-from fea.solid.cases import Supports
-from fea.solid.stress import nodal_stress
-from fea.types import Elastic
+from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.stress import nodal_stress
+from flexspline.fea.types import Elastic
 
 STEEL = Elastic(210e3, 0.3)
 THICKNESS = 100.0
@@ -64,7 +64,7 @@ def test_le1_stress_at_d(record) -> None:
 
 def test_the_plate_is_the_benchmarks() -> None:
     """Area of the quarter between the ellipses, π(ab − cd)/4, times the thickness."""
-    from fea.solid.elements import element_volumes
+    from flexspline.fea.solid.elements import element_volumes
 
     mesh = quarter(4, THICKNESS, layers=1)
     exact = pi / 4 * (3250 * 2750 - 2000 * 1000) * THICKNESS

@@ -11,9 +11,9 @@ import pytest
 from cartesian import X, Y, Z, cartesian_model, displacement, surface_load
 from elliptic_plate import POINT_D, quarter
 
-from fea.solid.cases import Supports
-from fea.solid.stress import nodal_stress
-from fea.types import Elastic
+from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.stress import nodal_stress
+from flexspline.fea.types import Elastic
 
 STEEL = Elastic(210e3, 0.3)
 THICKNESS = 600.0

@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 from hole_free import hole_free
 
-from fea.axisymmetric.stress import ellipse_stress
-from geometry.meridian import meridian
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
-from pipeline.rim_stress import REACH_WALLS, solid_ellipse
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.rim_stress import REACH_WALLS, solid_ellipse
 
 CASES = {
     "cup": ("xb1-40.toml", {}),

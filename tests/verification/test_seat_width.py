@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from hole_free import EXAMPLES
 
-from fea.axisymmetric.stress import RevolvedField, ellipse_stress
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.exclusion import exclusion_mm
-from geometry.load import load_design
-from geometry.meridian import meridian, with_narrow_seat
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.rim import NARROW_SEAT, SEAT_TOLERANCE
+from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_stress
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import meridian, with_narrow_seat
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.rim import NARROW_SEAT, SEAT_TOLERANCE
 
 PAGE = Path(__file__).parents[2] / "docs" / "theory.md"
 RING = "flexspline.ring_width_mm"

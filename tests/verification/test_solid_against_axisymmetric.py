@@ -11,15 +11,15 @@ from dataclasses import replace
 import pytest
 from hole_free import EXAMPLES, SOLUTIONS, mesher, solved
 
-from fea.solid.cases import Model, torsion
-from fea.solid.defaults import first_spec
-from fea.solid.mesh import mesh_surface
-from fea.solid.sizing import Grading
-from fea.solid.stress import energy_error
-from fea.solid.unfold import unfolded
-from fea.types import Elastic
-from geometry.load import design_from
-from geometry.tagged import tagged_surface
+from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stress import energy_error
+from flexspline.fea.solid.unfold import unfolded
+from flexspline.fea.types import Elastic
+from flexspline.geometry.load import design_from
+from flexspline.geometry.tagged import tagged_surface
 
 
 @pytest.mark.parametrize(("name", "kind", "tolerance"), SOLUTIONS)

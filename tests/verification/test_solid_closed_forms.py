@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
-from fea.solid.assembly import NodeFrames
-from fea.solid.cases import AXIAL, RADIAL, TANGENTIAL, Model, Supports, ellipse, torsion
-from fea.solid.stress import nodal_stress, von_mises
-from fea.types import Elastic
+from flexspline.fea.solid.assembly import NodeFrames
+from flexspline.fea.solid.cases import AXIAL, RADIAL, TANGENTIAL, Model, Supports, ellipse, torsion
+from flexspline.fea.solid.stress import nodal_stress, von_mises
+from flexspline.fea.types import Elastic
 
 STEEL = Elastic(206e3, 0.3)
 BOOK = "Timoshenko and Goodier"

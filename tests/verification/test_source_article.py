@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.backlash import ARCSEC_PER_RAD, gap_angle, windup
-from pipeline.bearing_play import (
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, gap_angle, windup
+from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
     involute_clearance_slope,

@@ -10,13 +10,13 @@ from axisymmetric_shapes import tube
 from example_cup import CUP
 from hole_free import EXAMPLES
 
-from fea.axisymmetric.stress import ellipse_stress, torsion_stress
-from fea.stress_rule import judged
-from fea.types import Elastic, StressPeak
-from geometry.load import load_design
-from geometry.meridian import cup_meridian
-from pipeline.diagnosis.specimens.designs import with_values
-from pipeline.study.evaluate import figures_of
+from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
+from flexspline.fea.stress_rule import judged
+from flexspline.fea.types import Elastic, StressPeak
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import cup_meridian
+from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.pipeline.study.evaluate import figures_of
 
 STEEL = Elastic(206e3, 0.3)
 FAR = 0.5

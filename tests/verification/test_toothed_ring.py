@@ -17,11 +17,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fea.axisymmetric.bisection import refined
-from fea.axisymmetric.triangulate import triangulate
-from fea.toothed_ring.cell import CellModel
-from fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
-from geometry.tooth import ToothCell
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.toothed_ring.cell import CellModel
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing, equivalent_ring
+from flexspline.geometry.tooth import ToothCell
 
 INNER, OUTER, NU = 5.0, 10.0, 0.3
 TIMOSHENKO = "Timoshenko and Goodier, Theory of Elasticity, art. "

@@ -9,20 +9,20 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.catalogue.soft import (
+from flexspline.pipeline.diagnosis.catalogue.soft import (
     TOP,
     SoftShape,
     soft_shape,
     straight_stiffness,
     torques,
 )
-from pipeline.diagnosis.catalogue.table import (
+from flexspline.pipeline.diagnosis.catalogue.table import (
     ARCSEC_PER_RAD,
     CatalogueRow,
     read_catalogue,
     twist_rad,
 )
-from pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.result import Gain
 
 LOST_MOTION_SHARE = 0.04
 """Of rated torque; 0.03 at some makers."""

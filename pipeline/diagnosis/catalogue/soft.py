@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.catalogue.table import ARCSEC_PER_RAD, CatalogueRow, twist_rad
-from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.effects.stiffness_hardening import LAWS
+from flexspline.pipeline.diagnosis.catalogue.table import ARCSEC_PER_RAD, CatalogueRow, twist_rad
+from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.effects.stiffness_hardening import LAWS
 
 TOP = 2.0
 """Curves are compared up to this multiple of T2, about a gear's repeated peak torque."""

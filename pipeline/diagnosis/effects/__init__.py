@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
-from pipeline.diagnosis.effects.cause import Cause
+from flexspline.pipeline.diagnosis.effects.cause import Cause
 
 
 @cache

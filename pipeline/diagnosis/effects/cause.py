@@ -10,8 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import History
 
 Shape = Mapping[str, float]
 """Shape parameters by name, each with its unit in the name."""

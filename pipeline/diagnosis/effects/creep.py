@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import lags
-from pipeline.diagnosis.effects.torque_program import hold_s, ramp_s
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.operators import lags
+from flexspline.pipeline.diagnosis.effects.torque_program import hold_s, ramp_s
+from flexspline.pipeline.diagnosis.record import History
 
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
 SHORTEST_HOLD = 0.06

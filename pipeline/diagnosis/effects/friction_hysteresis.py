@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import dahl, steadied, stops
-from pipeline.diagnosis.effects.torque_program import deadband_Nm, torque_noise_Nm
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.operators import dahl, steadied, stops
+from flexspline.pipeline.diagnosis.effects.torque_program import deadband_Nm, torque_noise_Nm
+from flexspline.pipeline.diagnosis.record import History
 
 THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 """Of the elements, as shares of the largest torque."""

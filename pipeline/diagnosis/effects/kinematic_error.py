@@ -6,9 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.periodic import harmonic, harmonic_shapes, largest_amplitude
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.periodic import (
+    harmonic,
+    harmonic_shapes,
+    largest_amplitude,
+)
+from flexspline.pipeline.diagnosis.record import History
 
 
 class KinematicError(Cause):

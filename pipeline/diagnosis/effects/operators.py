@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.record import History
 
 
 def stops(

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Element, Rig, Shape
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Element, Rig, Shape
+from flexspline.pipeline.diagnosis.record import History
 
 HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
 """Per turn, and which come together: eccentricity, the two lobes, and their multiples."""

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import lags, steadied
-from pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.operators import lags, steadied
+from flexspline.pipeline.diagnosis.effects.torque_program import deadband_Nm, ramp_s, shortest_lag_s
+from flexspline.pipeline.diagnosis.record import History
 
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""

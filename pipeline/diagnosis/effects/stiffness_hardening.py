@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.record import History
 
 LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))

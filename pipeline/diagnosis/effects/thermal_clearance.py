@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import lags
-from pipeline.diagnosis.prediction import REFERENCE_C
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.operators import lags
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.record import History
 
 LAGS = (0.02, 0.05, 0.12, 0.3)
 """As shares of the record's duration; besides none."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.record import History
 
 STILL = 0.08
 """A hold's torque moves at less than this share of the ramps' rate,"""

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.operators import within_cycle
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.operators import within_cycle
+from flexspline.pipeline.diagnosis.record import History
 
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 

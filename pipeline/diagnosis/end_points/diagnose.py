@@ -15,21 +15,37 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.end_points.envelope import Envelope, envelope
-from pipeline.diagnosis.end_points.finding import EndPointAnalysis, MidPositions, UnitFinding
-from pipeline.diagnosis.end_points.fleet import Fleet, Weighed, readings, weigh
-from pipeline.diagnosis.end_points.models import extended, gain_of, rivals_for_unit
-from pipeline.diagnosis.end_points.next_measurement import PlanSeparation, separations
-from pipeline.diagnosis.end_points.race import SUSPECTS, UNNAMED, Hypothesis, race, several_torques
-from pipeline.diagnosis.end_points.say import notes_of, summary_of
-from pipeline.diagnosis.end_points.terms import rig_of
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import EndPoints
-from pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Unexplained, Verdict
+from flexspline.geometry.design import Design
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, envelope
+from flexspline.pipeline.diagnosis.end_points.finding import (
+    EndPointAnalysis,
+    MidPositions,
+    UnitFinding,
+)
+from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, readings, weigh
+from flexspline.pipeline.diagnosis.end_points.models import extended, gain_of, rivals_for_unit
+from flexspline.pipeline.diagnosis.end_points.next_measurement import PlanSeparation, separations
+from flexspline.pipeline.diagnosis.end_points.race import (
+    SUSPECTS,
+    UNNAMED,
+    Hypothesis,
+    race,
+    several_torques,
+)
+from flexspline.pipeline.diagnosis.end_points.say import notes_of, summary_of
+from flexspline.pipeline.diagnosis.end_points.terms import rig_of
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import EndPoints
+from flexspline.pipeline.diagnosis.result import (
+    NamedCause,
+    NextMeasurement,
+    Outcome,
+    Unexplained,
+    Verdict,
+)
 
 NAMING_NATS = 4.0
 """The simulation within its uncertainty is a rival too, by the contract's limit of evidence."""

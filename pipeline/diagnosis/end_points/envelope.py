@@ -9,9 +9,9 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from geometry.design import Design
-from pipeline.backlash import ARCSEC_PER_RAD, gap_angle
-from pipeline.bearing_play import involute_clearance, small_displacement_clearance
+from flexspline.geometry.design import Design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, gap_angle
+from flexspline.pipeline.bearing_play import involute_clearance, small_displacement_clearance
 
 REACH = 6.0
 """Standard deviations of the play that are integrated."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pipeline.diagnosis.end_points.envelope import Envelope, Explanation
-from pipeline.diagnosis.end_points.next_measurement import PlanSeparation
-from pipeline.diagnosis.end_points.race import Hypothesis
+from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, Explanation
+from flexspline.pipeline.diagnosis.end_points.next_measurement import PlanSeparation
+from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 
 SIGNIFICANT = 0.05
 """A unit is beyond the envelope where its p-value, corrected for all units looked at, is below this."""

@@ -15,7 +15,7 @@ from math import log, pi
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
-from pipeline.diagnosis.end_points.terms import Term
+from flexspline.pipeline.diagnosis.end_points.terms import Term
 
 SHARES = (0.1, 0.5, 0.9)
 """ρ; even odds."""

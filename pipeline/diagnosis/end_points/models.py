@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.diagnosis.effects.cause import Element, Rig
-from pipeline.diagnosis.end_points.finding import UnitFinding
-from pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
-from pipeline.diagnosis.end_points.race import Hypothesis
-from pipeline.diagnosis.end_points.terms import Term, terms_of
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import EndPoints
-from pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
+from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
+from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
+from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
+from flexspline.pipeline.diagnosis.end_points.terms import Term, terms_of
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import EndPoints
+from flexspline.pipeline.diagnosis.result import Gain
 
 FEWEST_UNITS = 3
 """To hold out one and still see what is common."""

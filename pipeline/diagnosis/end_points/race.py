@@ -10,10 +10,10 @@ from math import log
 import numpy as np
 from scipy.special import logsumexp
 
-from pipeline.diagnosis.effects.cause import Element, Rig
-from pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
-from pipeline.diagnosis.end_points.terms import Term, terms_of
-from pipeline.diagnosis.record import EndPoints
+from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
+from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
+from flexspline.pipeline.diagnosis.end_points.terms import Term, terms_of
+from flexspline.pipeline.diagnosis.record import EndPoints
 
 SUSPECTS = 5
 """Units that may have a cause of their own: those furthest from the prediction."""

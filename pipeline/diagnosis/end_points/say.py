@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.end_points.envelope import Envelope
-from pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from pipeline.diagnosis.result import NamedCause, Verdict, left_out
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
+from flexspline.pipeline.diagnosis.result import NamedCause, Verdict, left_out
 
 LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""

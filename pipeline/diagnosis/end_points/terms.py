@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
-from pipeline.diagnosis.effects.friction_hysteresis import SINGLE
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import EndPoints, History
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.effects.friction_hysteresis import SINGLE
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import EndPoints, History
 
 HARDENING = ({"law": 0, "parameter": 0.2}, {"law": 0, "parameter": 0.45}, {"law": 0, "parameter": 0.8},
              {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0}, {"law": 4, "parameter": 0.1},

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.result import NamedCause, Unexplained, Verdict
-from pipeline.diagnosis.specimens.race import Fit, Race
-from pipeline.diagnosis.specimens.terms import Term, log_compliance
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.result import NamedCause, Unexplained, Verdict
+from flexspline.pipeline.diagnosis.specimens.race import Fit, Race
+from flexspline.pipeline.diagnosis.specimens.terms import Term, log_compliance
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""

@@ -6,9 +6,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import design_from
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
 
 STEP = re.compile(r"([A-Za-z_]\w*)(?:\[(\d+)\])?")
 HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")

@@ -7,16 +7,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.design import Design
-from pipeline.diagnosis.record import Specimens
-from pipeline.diagnosis.result import Gain, NextMeasurement, Outcome
-from pipeline.diagnosis.specimens.decide import Decision, causes_title, decide
-from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from pipeline.diagnosis.specimens.next_measurement import next_specimen
-from pipeline.diagnosis.specimens.race import Data, Fit, Race, fit, race
-from pipeline.diagnosis.specimens.stiffness import PARTS, Bench, compliances, refined, row_designs
-from pipeline.diagnosis.specimens.terms import log_compliance, terms_of
-from pipeline.parts import Workshop
+from flexspline.geometry.design import Design
+from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.result import Gain, NextMeasurement, Outcome
+from flexspline.pipeline.diagnosis.specimens.decide import Decision, causes_title, decide
+from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
+from flexspline.pipeline.diagnosis.specimens.race import Data, Fit, Race, fit, race
+from flexspline.pipeline.diagnosis.specimens.stiffness import (
+    PARTS,
+    Bench,
+    compliances,
+    refined,
+    row_designs,
+)
+from flexspline.pipeline.diagnosis.specimens.terms import log_compliance, terms_of
+from flexspline.pipeline.parts import Workshop
 
 FEWEST = 3
 """One for the modulus, one for a cause, one to see noise."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.diagnosis.specimens.race import Fit, Race
+from flexspline.pipeline.diagnosis.specimens.race import Fit, Race
 
 
 @dataclass(frozen=True)

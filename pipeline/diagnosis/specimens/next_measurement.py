@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from geometry.design import Design
-from geometry.errors import ComputationError, DesignError
-from pipeline.diagnosis.result import NextMeasurement
-from pipeline.diagnosis.specimens.decide import Decision, causes_title
-from pipeline.diagnosis.specimens.designs import lengths, with_values
-from pipeline.diagnosis.specimens.race import Fit
-from pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
-from pipeline.diagnosis.specimens.terms import log_compliance
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.pipeline.diagnosis.result import NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.decide import Decision, causes_title
+from flexspline.pipeline.diagnosis.specimens.designs import lengths, with_values
+from flexspline.pipeline.diagnosis.specimens.race import Fit
+from flexspline.pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
+from flexspline.pipeline.diagnosis.specimens.terms import log_compliance
 
 FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""

@@ -10,8 +10,8 @@ from math import log, pi
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
-from pipeline.diagnosis.specimens.stiffness import Compliances
-from pipeline.diagnosis.specimens.terms import MOST_TOLERANCES, Term, log_compliance
+from flexspline.pipeline.diagnosis.specimens.stiffness import Compliances
+from flexspline.pipeline.diagnosis.specimens.terms import MOST_TOLERANCES, Term, log_compliance
 
 NOISES = (0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05)
 """Relative standard deviation of a stiffness, where the file states none."""

@@ -14,18 +14,18 @@ from math import log
 
 import numpy as np
 
-from fea.axisymmetric.lobes import lobe_stiffness
-from fea.axisymmetric.torsion import torsional_stiffness
-from fea.shortfall import settled
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.errors import ComputationError, DesignError
-from geometry.meridian import meridian
-from pipeline.diagnosis.errors import MeasurementError
-from pipeline.diagnosis.record import Specimens
-from pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
-from pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
-from pipeline.parts import DRIVEN, Workshop
+from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.shortfall import settled
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
+from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
+from flexspline.pipeline.parts import DRIVEN, Workshop
 
 FE_TOLERANCE = 1e-3
 """Of the hole-free model: a step below changes K by more than ten times as much."""

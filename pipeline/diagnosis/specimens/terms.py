@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.diagnosis.specimens.stiffness import Compliances, Sensitivity
+from flexspline.pipeline.diagnosis.specimens.stiffness import Compliances, Sensitivity
 
 MODULUS_SPREAD = 0.1
 """Standard deviation of ln E where the material is another one than stated."""

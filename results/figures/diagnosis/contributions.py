@@ -8,12 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.diagnosis.result import NamedCause
-from results.diagnosis.words import capital, channel_words, magnitude_words, odds_words, sure_words
-from results.figures.diagnosis.panels import DPI, FALLING, RISING
-from results.figures.diagnosis.seen import Channel, Seen, thinned
-from results.figures.words import thin_labels
-from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.results.diagnosis.words import (
+    capital,
+    channel_words,
+    magnitude_words,
+    odds_words,
+    sure_words,
+)
+from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
+from flexspline.results.figures.diagnosis.seen import Channel, Seen, thinned
+from flexspline.results.figures.words import thin_labels
+from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,25 +7,29 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from pipeline.diagnosis.record import Specimens, Sweep
-from pipeline.diagnosis.result import Gain
-from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from results.diagnosis.words import channel_words
-from results.figures.diagnosis.captions import caption
-from results.figures.diagnosis.contributions import parts, write_contributions
-from results.figures.diagnosis.end_points import write_envelope, write_positions, write_rivals
-from results.figures.diagnosis.held_out import write_held_out
-from results.figures.diagnosis.overview import write_overview
-from results.figures.diagnosis.panels import write_channels
-from results.figures.diagnosis.seen import Seen, seen
-from results.figures.diagnosis.specimens import (
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.record import Specimens, Sweep
+from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.results.diagnosis.words import channel_words
+from flexspline.results.figures.diagnosis.captions import caption
+from flexspline.results.figures.diagnosis.contributions import parts, write_contributions
+from flexspline.results.figures.diagnosis.end_points import (
+    write_envelope,
+    write_positions,
+    write_rivals,
+)
+from flexspline.results.figures.diagnosis.held_out import write_held_out
+from flexspline.results.figures.diagnosis.overview import write_overview
+from flexspline.results.figures.diagnosis.panels import write_channels
+from flexspline.results.figures.diagnosis.seen import Seen, seen
+from flexspline.results.figures.diagnosis.specimens import (
     write_dimensions,
     write_held_out_specimens,
     write_stiffness,
 )
-from results.figures.diagnosis.units import shared_causes, write_units
+from flexspline.results.figures.diagnosis.units import shared_causes, write_units
 
 SIGNIFICANT = 1e-4
 """p-value below which a panel says that structure is left."""

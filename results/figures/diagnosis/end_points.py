@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from pipeline.diagnosis.end_points.race import Hypothesis
-from results.diagnosis.words import channel_words, figures_text, title_of
-from results.figures.diagnosis.panels import DPI
-from results.figures.diagnosis.seen import plain_names
-from results.figures.words import fit
-from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
+from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
+from flexspline.results.diagnosis.words import channel_words, figures_text, title_of
+from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.figures.diagnosis.seen import plain_names
+from flexspline.results.figures.words import fit
+from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
 MOST_RIVALS = 8

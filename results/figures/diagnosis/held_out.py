@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.result import Gain
-from results.diagnosis.words import figures_text
-from results.figures.diagnosis.panels import DPI
-from results.figures.diagnosis.seen import MOST_POINTS
-from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.results.diagnosis.words import figures_text
+from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.figures.diagnosis.seen import MOST_POINTS
+from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 STEPS = (
     ("before", "simulation as it stands", PALETTE[2]),

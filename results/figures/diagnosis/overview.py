@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from results.figures.diagnosis.panels import DPI, FALLING, RISING
-from results.figures.diagnosis.seen import Seen, thinned
-from results.figures.words import keep_inside
-from results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
+from flexspline.results.figures.diagnosis.seen import Seen, thinned
+from flexspline.results.figures.words import keep_inside
+from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 
 def write_overview(path: Path, shown: Seen) -> None:

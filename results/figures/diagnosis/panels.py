@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from results.figures.diagnosis.seen import Channel, Seen, thinned
-from results.figures.words import thin_labels
-from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.results.figures.diagnosis.seen import Channel, Seen, thinned
+from flexspline.results.figures.words import thin_labels
+from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from pipeline.diagnosis.diagnose import Diagnosis
-from pipeline.diagnosis.effects.operators import rising
-from pipeline.diagnosis.record import History, Sweep
-from pipeline.diagnosis.solution import Solution, calibrated_residual, less_zero
-from pipeline.diagnosis.sweep import Explained
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.effects.operators import rising
+from flexspline.pipeline.diagnosis.record import History, Sweep
+from flexspline.pipeline.diagnosis.solution import Solution, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep import Explained
 
 MOST_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""

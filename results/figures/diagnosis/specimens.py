@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.diagnosis.result import Gain
-from pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from results.diagnosis.words import channel_words, figures_text
-from results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
-from results.figures.diagnosis.seen import plain_names
-from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.results.diagnosis.words import channel_words, figures_text
+from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
+from flexspline.results.figures.diagnosis.seen import plain_names
+from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

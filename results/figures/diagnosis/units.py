@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.diagnosis.fleet import UnitShare
-from results.diagnosis.words import capital
-from results.figures.diagnosis.panels import DPI
-from results.figures.diagnosis.seen import Seen, plain_names
-from results.figures.words import thin_labels
-from results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+from flexspline.pipeline.diagnosis.fleet import UnitShare
+from flexspline.results.diagnosis.words import capital
+from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.figures.diagnosis.seen import Seen, plain_names
+from flexspline.results.figures.words import thin_labels
+from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_CAUSES = 4
 PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55

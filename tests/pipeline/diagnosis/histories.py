@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.prediction import Prediction
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.record import History
 
 PREDICTION = Prediction(compliance=10.0, compliance_std=0.3, gap_arcsec=60.0, gap_std_arcsec=10.0)
 LARGEST = 2.0  # N·m

@@ -15,14 +15,14 @@ import json, sys
 from pathlib import Path
 import numpy as np
 from histories import PREDICTION, sweep
-import pipeline.diagnosis.effects as effects
+import flexspline.pipeline.diagnosis.effects as effects
 
 if sys.argv[1]:
     effects.__path__.append(sys.argv[1])
-from pipeline.diagnosis.diagnose import diagnose_sweep
-from pipeline.diagnosis.record import Sweep
-from pipeline.diagnosis.effects import causes
-from geometry.load import load_design
+from flexspline.pipeline.diagnosis.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.geometry.load import load_design
 
 rng = np.random.default_rng(11)
 h = sweep(cycles=6, rows=80)

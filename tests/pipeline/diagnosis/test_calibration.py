@@ -9,13 +9,13 @@ import pytest
 from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 
-from pipeline.diagnosis.columns import columns_of
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.noise import Noise
-from pipeline.diagnosis.result import NamedCause, left_out
-from pipeline.diagnosis.solution import ALLOWED, calibrated_residual, less_zero
-from pipeline.diagnosis.terms import Race, race
+from flexspline.pipeline.diagnosis.columns import columns_of
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.noise import Noise
+from flexspline.pipeline.diagnosis.result import NamedCause, left_out
+from flexspline.pipeline.diagnosis.solution import ALLOWED, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.terms import Race, race
 
 SIGMA = 0.5
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, shape_of, sweep
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Cause, Element, Rig
-from pipeline.diagnosis.shape_check import CHANNELS, channels_needed, fault_of
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig
+from flexspline.pipeline.diagnosis.shape_check import CHANNELS, channels_needed, fault_of
 
 UNITS = {
     "friction_hysteresis": "arcsec",

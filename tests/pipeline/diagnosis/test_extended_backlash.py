@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from histories import shape_of
 
-from pipeline.backlash import Backlash
-from pipeline.diagnosis.effects.cause import Element
-from pipeline.diagnosis.extended_backlash import extended_backlash
-from pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.extended_backlash import extended_backlash
+from flexspline.pipeline.diagnosis.model import ExtendedModel
 
 NOMINAL = Backlash(5.0, 6.0, 30.0, 40.0, 81.0, 12.0, {}, 0.0, None)
 SIMULATED = ExtendedModel(11.0, 70.0, {"": 0.0}, {}, {})

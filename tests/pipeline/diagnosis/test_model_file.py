@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from histories import PREDICTION, shape_of, sweep
 
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Element, Rig
-from pipeline.diagnosis.errors import MeasurementError, ModelFileError
-from pipeline.diagnosis.model import ExtendedModel
-from pipeline.diagnosis.model_file import ModelFile, Provenance, read_model_file
-from pipeline.diagnosis.model_text import model_text
-from pipeline.diagnosis.predict import predict_file
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
+from flexspline.pipeline.diagnosis.errors import MeasurementError, ModelFileError
+from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.model_file import ModelFile, Provenance, read_model_file
+from flexspline.pipeline.diagnosis.model_text import model_text
+from flexspline.pipeline.diagnosis.predict import predict_file
 
 FRICTION = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=2, loaded=0, held=1, start=0)
 ORIGIN = Provenance(

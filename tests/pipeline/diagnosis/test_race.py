@@ -10,19 +10,19 @@ from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 from scipy.stats import multivariate_normal
 
-from pipeline.diagnosis.columns import columns_of
-from pipeline.diagnosis.crossing import crossing
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.effects.cause import Rig
-from pipeline.diagnosis.leftover import channel_tests
-from pipeline.diagnosis.noise import Noise
-from pipeline.diagnosis.record import History, Sweep
-from pipeline.diagnosis.search import Search
-from pipeline.diagnosis.solution import solved
-from pipeline.diagnosis.sweep import Prepared
-from pipeline.diagnosis.terms import Race, race
-from pipeline.diagnosis.thinning import MOST_ROWS, thinned
-from pipeline.diagnosis.tune import tuned
+from flexspline.pipeline.diagnosis.columns import columns_of
+from flexspline.pipeline.diagnosis.crossing import crossing
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.leftover import channel_tests
+from flexspline.pipeline.diagnosis.noise import Noise
+from flexspline.pipeline.diagnosis.record import History, Sweep
+from flexspline.pipeline.diagnosis.search import Search
+from flexspline.pipeline.diagnosis.solution import solved
+from flexspline.pipeline.diagnosis.sweep import Prepared
+from flexspline.pipeline.diagnosis.terms import Race, race
+from flexspline.pipeline.diagnosis.thinning import MOST_ROWS, thinned
+from flexspline.pipeline.diagnosis.tune import tuned
 
 SIGMA = 0.5
 

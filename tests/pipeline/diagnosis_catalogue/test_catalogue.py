@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 from catalogue_page import DATA, PAGE, page
 
-from pipeline.diagnosis.catalogue.compare import compare, lost_motion
-from pipeline.diagnosis.catalogue.soft import (
+from flexspline.pipeline.diagnosis.catalogue.compare import compare, lost_motion
+from flexspline.pipeline.diagnosis.catalogue.soft import (
     hardening_elements,
     soft_shape,
     straight_stiffness,
     torques,
 )
-from pipeline.diagnosis.catalogue.table import (
+from flexspline.pipeline.diagnosis.catalogue.table import (
     ARCSEC_PER_RAD,
     CatalogueRow,
     read_catalogue,
     twist_rad,
 )
-from pipeline.diagnosis.effects import causes
-from pipeline.diagnosis.errors import MeasurementError
-from pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.record import History
 
 ROWS = read_catalogue(DATA / "hd_torsional_stiffness.csv")
 

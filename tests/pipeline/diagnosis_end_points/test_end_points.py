@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.load import load_design
-from pipeline.diagnosis.diagnose import diagnose_file
-from pipeline.diagnosis.end_points.diagnose import diagnose_end_points
-from pipeline.diagnosis.end_points.envelope import envelope
-from pipeline.diagnosis.end_points.finding import SIGNIFICANT
-from pipeline.diagnosis.prediction import prediction_of
-from pipeline.diagnosis.record import EndPoints
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
+from flexspline.pipeline.diagnosis.end_points.envelope import envelope
+from flexspline.pipeline.diagnosis.end_points.finding import SIGNIFICANT
+from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.diagnosis.record import EndPoints
 
 ROOT = Path(__file__).parents[3]
 DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")

@@ -8,18 +8,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.load import design_from, load_design, read_toml
-from pipeline.cache import Cache
-from pipeline.chain import CACHED_TYPES
-from pipeline.diagnosis.diagnose import diagnose_file
-from pipeline.diagnosis.errors import MeasurementError
-from pipeline.diagnosis.record import Specimens
-from pipeline.diagnosis.specimens.designs import lengths, value_at, with_values, without_holes
-from pipeline.diagnosis.specimens.diagnose import diagnose_specimens
-from pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
-from pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
-from pipeline.parts import Workshop
-from pipeline.progress import Progress
+from flexspline.geometry.load import design_from, load_design, read_toml
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.specimens.designs import (
+    lengths,
+    value_at,
+    with_values,
+    without_holes,
+)
+from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
+from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
+from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "xb1-40.toml"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.study.tolerance import Input
+from flexspline.pipeline.study.tolerance import Input
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from pipeline.study.cluster import Hands
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.load import Study, study_from
+from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.load import Study, study_from
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from study_bench import GRID, quick, study_of
 
-from pipeline.study.evaluate import Task
-from pipeline.study.run import ledger_of, source_of
-from pipeline.study.store import Ledger
+from flexspline.pipeline.study.evaluate import Task
+from flexspline.pipeline.study.run import ledger_of, source_of
+from flexspline.pipeline.study.store import Ledger
 
 OPTIMIZE = GRID.replace('"grid"', '"optimize"').replace(", steps = 3", "")
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from study_bench import GRID, WALL, quick, study_of
 
-from pipeline.study.cluster import hands_of
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.load import StudyError
-from pipeline.study.local_workers import RETRIES
-from pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.load import StudyError
+from flexspline.pipeline.study.local_workers import RETRIES
+from flexspline.pipeline.study.run import ledger_of, run_study
 
 MARKS = "FLEXSPLINE_TEST_MARKS"
 
@@ -46,7 +46,7 @@ def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_scheduler_that_does_not_answer_is_wrong_input(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("pipeline.study.cluster.CONNECT_S", 1.0)
+    monkeypatch.setattr("flexspline.pipeline.study.cluster.CONNECT_S", 1.0)
     with pytest.raises(StudyError) as caught, hands_of(1, "tcp://127.0.0.1:1"):
         pytest.fail("nobody is there")
     assert "run.scheduler" in str(caught.value)

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, study_of, threads
 
-from geometry.load import load_design
-from pipeline.diagnosis.specimens.designs import without_holes
-from pipeline.study.evaluate import Outcome, Task, figures_of, revolved_torsion
-from pipeline.study.holes import Factor, holes_of, of_holes
-from pipeline.study.run import ledger_of, nominal_holes, run_study
-from pipeline.study.store import Row
-from pipeline.study.verify import checked, solid_outcome
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.pipeline.study.evaluate import Outcome, Task, figures_of, revolved_torsion
+from flexspline.pipeline.study.holes import Factor, holes_of, of_holes
+from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.verify import checked, solid_outcome
 
 Figures = tuple[dict[str, float], dict[str, float], dict[str, float]]
 HOLES = {"K_e": Factor(0.97, 0.02)}
@@ -86,9 +86,11 @@ def test_the_solid_solve_is_done_once_for_all_who_share_the_study(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study = study_of(STUDY)
-    monkeypatch.setattr("pipeline.study.run.holes_of", lambda *told: HOLES)
+    monkeypatch.setattr("flexspline.pipeline.study.run.holes_of", lambda *told: HOLES)
     assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
-    monkeypatch.setattr("pipeline.study.run.holes_of", lambda *told: pytest.fail("solved again"))
+    monkeypatch.setattr(
+        "flexspline.pipeline.study.run.holes_of", lambda *told: pytest.fail("solved again")
+    )
     assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from known_indices import KNOWN, Known
 
-from pipeline.study.indices import WIDEST
-from pipeline.study.scatter import Attribution, attributed
-from pipeline.study.tolerance import LEAST_BASE, saltelli
+from flexspline.pipeline.study.indices import WIDEST
+from flexspline.pipeline.study.scatter import Attribution, attributed
+from flexspline.pipeline.study.tolerance import LEAST_BASE, saltelli
 
 REPETITIONS = 100
 EVERY = [LEAST_BASE * 2**i for i in range(14)]

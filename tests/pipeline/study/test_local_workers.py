@@ -12,9 +12,9 @@ from typing import Any
 import psutil
 import pytest
 
-from geometry.errors import ComputationError
-from pipeline.study.cluster import hands_of
-from pipeline.study.local_workers import LocalWorkers, WorkerStartError
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerStartError
 
 HERE = Path(__file__).parent
 
@@ -112,7 +112,7 @@ def test_what_is_printed_in_a_worker_is_no_answer() -> None:
 
 def test_workers_that_cannot_start_end_the_study(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not one design after the other."""
-    monkeypatch.setattr("pipeline.study.local_workers.START", "raise SystemExit(7)")
+    monkeypatch.setattr("flexspline.pipeline.study.local_workers.START", "raise SystemExit(7)")
     with LocalWorkers(1) as workers, pytest.raises(WorkerStartError, match="with status 7"):
         workers.submit(abs, -3).result(timeout=60)
 
@@ -131,7 +131,7 @@ def test_leaving_ends_them_at_once() -> None:
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_they_end_with_the_process_that_started_them(how: signal.Signals) -> None:
     code = (
-        "import os, time; from pipeline.study.local_workers import LocalWorkers\n"
+        "import os, time; from flexspline.pipeline.study.local_workers import LocalWorkers\n"
         "with LocalWorkers(1) as workers:\n"
         "    print(workers.submit(os.getpid).result(), flush=True)\n"
         "    workers.submit(time.sleep, 600).result()\n"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.study.evaluate import Task, evaluate
+from flexspline.pipeline.study.evaluate import Task, evaluate
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
 VALUES = {"flexspline.wall_thickness_mm": 0.4321, "flexspline.ring_thickness_mm": 0.5432}
@@ -17,7 +17,7 @@ VALUES = {"flexspline.wall_thickness_mm": 0.4321, "flexspline.ring_thickness_mm"
 @pytest.fixture
 def few_triangles(monkeypatch) -> None:
     for module in ("torsion", "stress"):
-        monkeypatch.setattr(f"fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
+        monkeypatch.setattr(f"flexspline.fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
 
 
 @pytest.mark.parametrize("solve", ["ellipse", "torque"])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from study_bench import LENGTH, WALL, study_of, threads
 
-from pipeline.study.evaluate import TORSION_TOLERANCE, Outcome, Task, evaluate
-from pipeline.study.result import StudyResult
-from pipeline.study.run import ledger_of, run_study
-from pipeline.study.store import Row
+from flexspline.pipeline.study.evaluate import TORSION_TOLERANCE, Outcome, Task, evaluate
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.store import Row
 
 TWO = f"""
 design = "xb1-40.toml"

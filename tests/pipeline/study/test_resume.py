@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.run import ledger_of, run_study
 
 SIZE = 40
 LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")

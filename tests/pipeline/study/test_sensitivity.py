@@ -5,20 +5,20 @@ from itertools import groupby
 import pytest
 from study_bench import EXAMPLES
 
-from fea.axisymmetric.shape_slope import (
+from flexspline.fea.axisymmetric.shape_slope import (
     HeldSurfaceError,
     Twist,
     layer_stiffness,
     moved_stiffness,
     twist,
 )
-from fea.types import Elastic
-from geometry.design import Design
-from geometry.errors import DesignError
-from geometry.load import load_design
-from geometry.meridian import meridian
-from pipeline.diagnosis.specimens.designs import with_values, without_holes
-from pipeline.study.sensitivity import _held, sensitivities
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import load_design
+from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
+from flexspline.pipeline.study.sensitivity import _held, sensitivities
 
 
 @pytest.mark.parametrize("name", ["xb1-40", "hat-25"])

@@ -5,10 +5,10 @@ from typing import get_args
 import pytest
 from study_bench import EXAMPLES, GRID, study_of
 
-from pipeline.study.database import StorageError
-from pipeline.study.figures import SIZES
-from pipeline.study.load import StudyError
-from pipeline.study.schema import WORDS, Method
+from flexspline.pipeline.study.database import StorageError
+from flexspline.pipeline.study.figures import SIZES
+from flexspline.pipeline.study.load import StudyError
+from flexspline.pipeline.study.schema import WORDS, Method
 
 
 @pytest.mark.parametrize(

@@ -7,15 +7,15 @@ import pytest
 from known_indices import additive, ishigami, uniform
 from study_bench import LENGTH, WALL, study_of, threads
 
-from pipeline.study.evaluate import Outcome, Task
-from pipeline.study.indices import sampled_indices
-from pipeline.study.load import StudyError
-from pipeline.study.run import ledger_of, run_study, source_of
-from pipeline.study.scatter import Scatter, scatter_of
-from pipeline.study.store import Row
-from pipeline.study.tolerance import TOTAL, Input, saltelli
-from results.study.record import summary, words
-from results.study.report import study_document
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.indices import sampled_indices
+from flexspline.pipeline.study.load import StudyError
+from flexspline.pipeline.study.run import ledger_of, run_study, source_of
+from flexspline.pipeline.study.scatter import Scatter, scatter_of
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.tolerance import TOTAL, Input, saltelli
+from flexspline.results.study.record import summary, words
+from flexspline.results.study.report import study_document
 
 DIAPHRAGM = "flexspline.diaphragm_thickness_mm"
 STUDY = f"""

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, WALL, study_of, threads
 
-from pipeline.diagnosis.specimens.designs import without_holes
-from pipeline.study.evaluate import Outcome, Task, evaluate
-from pipeline.study.run import ledger_of, run_study
-from pipeline.study.store import Row
-from pipeline.study.verify import checked
+from flexspline.pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.store import Row
+from flexspline.pipeline.study.verify import checked
 
 TEXT = f"""
 design = "xb1-40.toml"
@@ -55,7 +55,7 @@ def test_the_solid_model_of_a_part_without_holes_agrees(tmp_path: Path) -> None:
 
 
 def test_examples_are_studies() -> None:
-    from pipeline.study.load import load_study
+    from flexspline.pipeline.study.load import load_study
 
     methods = {load_study(p).file.run.method for p in sorted((EXAMPLES / "studies").glob("*.toml"))}
     assert methods == {"grid", "sobol", "optimize", "tolerance"}

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.study.cluster import Hands
-from pipeline.study.evaluate import Outcome, Task, evaluate
-from pipeline.study.load import load_study
-from pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.load import load_study
+from flexspline.pipeline.study.run import ledger_of, run_study
 
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs" / "trends.md"

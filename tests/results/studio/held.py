@@ -12,11 +12,11 @@ from typing import Any
 
 from aiohttp import web
 
-from geometry.design import Design
-from results.studio.guard import Guard
-from results.studio.questions import answer
-from results.studio.server import Studio, application
-from results.studio.tab import Workers
+from flexspline.geometry.design import Design
+from flexspline.results.studio.guard import Guard
+from flexspline.results.studio.questions import answer
+from flexspline.results.studio.server import Studio, application
+from flexspline.results.studio.tab import Workers
 
 Hold = Callable[[str, dict[str, Any]], bool]
 LOOK_S = 0.02

@@ -10,16 +10,16 @@ from typing import Any
 
 import pytest
 
-from geometry.load import design_from
-from geometry.template import template
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed: pip install '.[studio]'")
 from aiohttp import ClientWebSocketResponse, TCPConnector
 from aiohttp.test_utils import TestClient, TestServer
 
-from results.studio.guard import Guard
-from results.studio.server import Studio, application
-from results.studio.tab import Workers
+from flexspline.results.studio.guard import Guard
+from flexspline.results.studio.server import Studio, application
+from flexspline.results.studio.tab import Workers
 
 DESIGN = design_from(tomllib.loads(template("cup")))
 TABLES = DESIGN.model_dump(mode="json", exclude_none=True)

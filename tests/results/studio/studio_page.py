@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.load import design_from
-from geometry.template import design_text, template
-from pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import design_text, template
+from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator
@@ -50,7 +50,7 @@ def start(design: Path, *options: str, temporary: Path | None = None) -> Server:
     """Start it, and wait for the address that it prints; `temporary`: where its jobs work."""
     ours = {} if temporary is None else {"TMPDIR": str(temporary)}
     process = subprocess.Popen(
-        [sys.executable, "-m", "results.cli", "studio", str(design), "--no-browser", *options],
+        [sys.executable, "-m", "flexspline.results.cli", "studio", str(design), "--no-browser", *options],
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=os.environ | ours,
     )  # fmt: skip
     line = process.stdout.readline()

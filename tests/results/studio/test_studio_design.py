@@ -16,7 +16,7 @@ import pytest
 from PIL import Image
 from studio_page import Page
 
-from geometry.load import design_from, load_design
+from flexspline.geometry.load import design_from, load_design
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Route
@@ -92,7 +92,7 @@ def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> Non
     saved = tmp_path / "saved.toml"
     waiting.value.save_as(saved)
     assert load_design(saved).flexspline.wall_thickness_mm == 0.43
-    command = [sys.executable, "-m", "results.cli"]
+    command = [sys.executable, "-m", "flexspline.results.cli"]
     done = subprocess.run(
         [*command, "stiffness", str(saved), "--json", "--out", str(tmp_path / "out")],
         capture_output=True, text=True, check=True,

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from studio_client import TABLES, heard, want, with_client
 
-from geometry.design import Design
-from results.studio.jobs import Done, Job
-from results.studio.server import LARGEST_MESSAGE
+from flexspline.geometry.design import Design
+from flexspline.results.studio.jobs import Done, Job
+from flexspline.results.studio.server import LARGEST_MESSAGE
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 MUTATIONS = 200

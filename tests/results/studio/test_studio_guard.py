@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from studio_client import heard, with_client
 
-from results.studio.guard import HEADERS, Guard, is_loopback
+from flexspline.results.studio.guard import HEADERS, Guard, is_loopback
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 EVERYWHERE = ("127.0.0.1", "localhost", "::1", "0.0.0.0", "192.168.1.5", "workstation")

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from studio_client import TABLES, heard, want, with_client
 
-from results.studio.worker import Fault, Worker
+from flexspline.results.studio.worker import Fault, Worker
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 TABS = 200

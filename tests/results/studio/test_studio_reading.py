@@ -10,7 +10,7 @@ from held import HeldStudio
 from pypdf import PdfReader
 from studio_page import Page
 
-from results.studio.tab import Tab
+from flexspline.results.studio.tab import Tab
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -18,8 +18,8 @@ import pytest
 from studio_client import heard, with_client
 from studio_page import running, write_design
 
-from geometry.errors import DesignError
-from results.studio.serve import listen_at
+from flexspline.geometry.errors import DesignError
+from flexspline.results.studio.serve import listen_at
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 
@@ -85,7 +85,7 @@ def test_a_body_that_is_no_design_is_refused(body: bytes) -> None:
 )
 def test_wrong_options_are_one_line(options: list[str], said: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "results.cli", "studio", "--no-browser", *options],
+        [sys.executable, "-m", "flexspline.results.cli", "studio", "--no-browser", *options],
         capture_output=True, text=True, check=False, timeout=60,
     )  # fmt: skip
     assert done.returncode == 2
@@ -98,7 +98,7 @@ def test_a_port_that_another_program_has_is_one_line() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         options = ["--port", str(taken.getsockname()[1])]
         done = subprocess.run(
-            [sys.executable, "-m", "results.cli", "studio", "--no-browser", *options],
+            [sys.executable, "-m", "flexspline.results.cli", "studio", "--no-browser", *options],
             capture_output=True, text=True, check=False, timeout=60,
         )  # fmt: skip
     assert done.returncode == 2
@@ -135,7 +135,7 @@ def test_it_answers_at_the_address_that_it_prints(host: str, tmp_path: Path) -> 
 
 
 def test_the_drawing_library_stays_out_of_the_server() -> None:
-    look = "import sys, results.studio.serve; print(sorted(m for m in sys.modules if 'vtk' in m))"
+    look = "import sys, flexspline.results.studio.serve; print(sorted(m for m in sys.modules if 'vtk' in m))"
     done = subprocess.run([sys.executable, "-c", look], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
@@ -143,7 +143,7 @@ def test_the_drawing_library_stays_out_of_the_server() -> None:
 @pytest.mark.parametrize("after_s", [0.0, 0.2])
 def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
     with subprocess.Popen(
-        [sys.executable, "-m", "results.cli", "studio", "--no-browser"],
+        [sys.executable, "-m", "flexspline.results.cli", "studio", "--no-browser"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     ) as studio:  # fmt: skip
         assert studio.stdout is not None

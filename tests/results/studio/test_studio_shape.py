@@ -8,11 +8,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from geometry.load import design_from
-from geometry.template import template
-from pipeline.live import View, field, revolved
-from results.studio.shape import field_message
-from results.studio.thin import thinned
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
+from flexspline.pipeline.live import View, field, revolved
+from flexspline.results.studio.shape import field_message
+from flexspline.results.studio.thin import thinned
 
 
 def ring(count: int) -> np.ndarray:

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from geometry.load import design_from
-from geometry.template import template
-from pipeline.diagnosis.specimens.designs import with_values, without_holes
-from results.studio import worker as rules
-from results.studio.worker import Fault, Worker
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
+from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
+from flexspline.results.studio import worker as rules
+from flexspline.results.studio.worker import Fault, Worker
 
 CUP = without_holes(design_from(tomllib.loads(template("cup"))))
 
@@ -62,7 +62,7 @@ def test_a_worker_that_ended_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_impossible_designs_come_back_as_faults() -> None:
-    from results.studio.questions import answer
+    from flexspline.results.studio.questions import answer
 
     bad = tables(0.4)
     bad["flexspline"]["wall_thickness_mm"] = 50.0
