@@ -1,1 +1,70 @@
-"""Strain wave gears: stiffness with error bounds, stress, backlash, and what measurements say of them."""
+"""Strain wave gears: stiffness with error bounds, stress, backlash, and what measurements say of them.
+
+Lengths in mm, stresses in MPa, torques in N·m, stiffnesses in N·m/rad, angles as their names say. Every
+name is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+    from flexspline.geometry.errors import FlexsplineError
+    from flexspline.geometry.load import load_design
+    from flexspline.pipeline.face import (
+        backlash,
+        diagnose,
+        predict,
+        sensitivity,
+        stiffness,
+        stress,
+        study,
+    )
+
+    __version__: str
+
+_PLACE = {
+    "Design": "geometry.design",
+    "FlexsplineError": "geometry.errors",
+    "load_design": "geometry.load",
+    "backlash": "pipeline.face",
+    "diagnose": "pipeline.face",
+    "predict": "pipeline.face",
+    "sensitivity": "pipeline.face",
+    "stiffness": "pipeline.face",
+    "stress": "pipeline.face",
+    "study": "pipeline.face",
+}
+
+__all__ = [
+    "Design",
+    "FlexsplineError",
+    "__version__",
+    "backlash",
+    "diagnose",
+    "load_design",
+    "predict",
+    "sensitivity",
+    "stiffness",
+    "stress",
+    "study",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        found: Any = version("flexspline")
+    elif name in _PLACE:
+        found = getattr(import_module(f"flexspline.{_PLACE[name]}"), name)
+    else:
+        raise AttributeError(f"module 'flexspline' has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

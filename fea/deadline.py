@@ -25,10 +25,19 @@ class OutOfTimeError(ComputationError):
 
 
 class Deadline:
-    """So many seconds from now on; `clock` [s] may be a test's own."""
+    """So many seconds from now on.
 
-    def __init__(self, limit_s: float, clock: Callable[[], float] = time.monotonic) -> None:
+    `clock` [s] tells the time, `working` [s] how long this thread has been computing; tests give their own.
+    """
+
+    def __init__(
+        self,
+        limit_s: float,
+        clock: Callable[[], float] = time.monotonic,
+        working: Callable[[], float] = time.thread_time,
+    ) -> None:
         self.limit_s, self._clock, self._began = limit_s, clock, clock()
+        self.working = working
 
     def elapsed(self) -> float:
         """Seconds since it was made."""
@@ -39,7 +48,11 @@ NO_DEADLINE = Deadline(inf)
 
 
 class Pace:
-    """How long the steps towards a deadline take, each on a mesh of its own size."""
+    """How long the steps towards a deadline take, each on a mesh of its own size.
+
+    A step is measured by the processor time of this thread: what other programs take on a busy machine is
+    lost time, and no reason to expect the next step to take longer.
+    """
 
     def __init__(self, deadline: Deadline) -> None:
         self._deadline = deadline
@@ -52,10 +65,10 @@ class Pace:
         ------
         OutOfTimeError : it would not end in time if it took as long as the one before, and more by its size.
         """
-        now = self._deadline.elapsed()
+        worked = self._deadline.working()
         needed = 0.0
         if self._elements:
-            needed = (now - self._began) * (elements / self._elements) ** GROWTH
-        if now + needed >= self._deadline.limit_s:
+            needed = (worked - self._began) * (elements / self._elements) ** GROWTH
+        if self._deadline.elapsed() + needed >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
-        self._began, self._elements = now, elements
+        self._began, self._elements = worked, elements

@@ -6,6 +6,7 @@ together stand in `geometry.checks`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
 from typing import Annotated, Any, Literal
@@ -315,6 +316,24 @@ class Design(_Frozen):
     @property
     def shaft_material(self) -> Material:
         return self.material.shaft or self.material.flexspline
+
+    def changed(self, values: Mapping[str, object]) -> Design:
+        """A new, checked design with other values at some dotted keys; array elements count from 0.
+
+        Raises
+        ------
+        DesignError : no such key, a value out of range, or impossible geometry.
+
+        Examples
+        --------
+        >>> from flexspline import load_design
+        >>> longer = load_design("examples/xb1-40.toml").changed({"flexspline.length_mm": 35.0})
+        >>> longer.flexspline.length_mm
+        35.0
+        """
+        from flexspline.geometry.keys import with_values  # which makes designs
+
+        return with_values(self, values)
 
     def material_of(self, part: str) -> Material:
         """What ``"flexspline"`` or ``"shaft"`` is made of."""

@@ -9,7 +9,11 @@ MISSING = object()
 """The value of a key that is not there."""
 
 
-class DesignError(ValueError):
+class FlexsplineError(Exception):
+    """The base of every error that the program raises on purpose."""
+
+
+class DesignError(FlexsplineError, ValueError):
     """A design that cannot be accepted: which key, its value, and what would work.
 
     The message is one printable line, whatever the value holds.
@@ -38,7 +42,7 @@ class DesignFileError(DesignError):
         self.args = (f"{one_line(str(path))}: {one_line(reason)}",)
 
 
-class ComputationError(RuntimeError):
+class ComputationError(FlexsplineError, RuntimeError):
     """A computation failed for a stated reason; the base of every such error of every room."""
 
 

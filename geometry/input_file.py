@@ -6,6 +6,8 @@ import os
 import stat
 from pathlib import Path
 
+from flexspline.geometry.errors import FlexsplineError
+
 STDIN = "-"
 KINDS = (
     (stat.S_ISDIR, "is a directory"),
@@ -17,7 +19,7 @@ KINDS = (
 """What is not read: a pipe may wait for ever, a device such as /dev/zero never ends."""
 
 
-class InputFileError(ValueError):
+class InputFileError(FlexsplineError, ValueError):
     """A file that cannot be read; the message is one clause that says why."""
 
 

@@ -7,12 +7,14 @@ import re
 import tomllib
 from typing import Any
 
+from flexspline.geometry.errors import FlexsplineError
+
 DEEPEST_KEY = 50
 """Parts of a dotted key; the files of this program have four. `tomllib` takes time with the square of it."""
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
 
-class TomlError(ValueError):
+class TomlError(FlexsplineError, ValueError):
     """Bytes that are no TOML; the message says why."""
 
 

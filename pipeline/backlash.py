@@ -9,6 +9,7 @@ from math import cos, hypot, isfinite, pi, radians
 import numpy as np
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
@@ -20,7 +21,7 @@ ARCSEC_PER_RAD = 180 * 3600 / pi
 MM_PER_UM = 1e-3
 
 
-class StiffnessValueError(ValueError):
+class StiffnessValueError(FlexsplineError, ValueError):
     """A stiffness that is not a positive number; `name`, `value` [N·m/rad]."""
 
     def __init__(self, name: str, value: float) -> None:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from math import acos, cos, sin, tan
 
+from flexspline.geometry.errors import FlexsplineError
+
 ROUNDING = 1e-12
 """A play this fraction beyond c_max is c_max, written in another unit."""
 
 
-class BearingPlayDomainError(ValueError):
+class BearingPlayDomainError(FlexsplineError, ValueError):
     """The bearing's play is beyond the end of the involute model.
 
     Attributes

@@ -23,9 +23,9 @@ from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Cup, Design, Hat, Shaft
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.keys import without_holes
 from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 from flexspline.pipeline.parts import DRIVEN
 from flexspline.pipeline.rim import STRESS_TOLERANCE
 from flexspline.pipeline.study.evaluate import with_equivalent_ring

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.types import SolidField, Stiffness, StressPeak
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.meridian import meridian, with_narrow_seat
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.attempts import Attempts
@@ -18,6 +19,7 @@ from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.rim_stress import solid_ellipse
 from flexspline.pipeline.solid_lobes import solid_lobes
 
+RimCase = Literal["lobes", "lobes_unsupported", "lobes_contact"]
 T = TypeVar("T", Stiffness, StressPeak)
 NARROW_SEAT = 0.5
 """Share of the ring's width that the seat has where it is asked how its width matters."""
@@ -52,17 +54,35 @@ class RimAnswers:
 def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
     if flexspline.axisymmetric:
-        contact = tried.get("K_b_lobes_contact", lambda: _revolved_contact(flexspline))
-        lobes, peak = _revolved_lobes, _revolved_peak
+        contact = tried.get("K_b_lobes_contact", lambda: rim_stiffness(flexspline, "lobes_contact"))
+        peak = _revolved_peak
     else:
-        contact, lobes = None, solid_lobes
-        peak = _solid_peak
+        contact, peak = None, _solid_peak
     return RimAnswers(
-        tried.get("K_b_lobes", lambda: lobes(flexspline, True)),
-        tried.get("K_b_lobes_unsupported", lambda: lobes(flexspline, False)),
+        tried.get("K_b_lobes", lambda: rim_stiffness(flexspline, "lobes")),
+        tried.get("K_b_lobes_unsupported", lambda: rim_stiffness(flexspline, "lobes_unsupported")),
         contact,
         tried.get("wave_generator_peak", lambda: peak(flexspline)),
     )
+
+
+def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
+    """K_b of one lobe case, by the model that the part's stiffness uses.
+
+    Raises
+    ------
+    DesignError
+    ComputationError : the solve failed; or lift-off is asked of a part that only the solid model answers.
+    """
+    if case == "lobes_contact":
+        if not flexspline.axisymmetric:
+            raise ComputationError(
+                "lift-off (lobes_contact) is solved for bodies of revolution only: without bolt holes,"
+                ' and with solver.model = "auto" or "axisymmetric"'
+            )
+        return _revolved_contact(flexspline)
+    lobes = _revolved_lobes if flexspline.axisymmetric else solid_lobes
+    return lobes(flexspline, case == "lobes")
 
 
 def _solid_peak(flexspline: PartModel) -> StressPeak:

@@ -34,12 +34,29 @@ from flexspline.results.study.command import register as register_study
 
 app = typer.Typer(
     name="flexspline",
-    help="Strain wave gears: from a design file to stiffness, stress and backlash.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from flexspline.results.records import program_version
+
+        show(program_version())
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Strain wave gears: from a design file to stiffness, stress and backlash."""
 
 
 @app.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,11 +30,8 @@ Record = dict[str, Any]
 
 
 def program_version() -> str:
-    """The installed distribution's version; "unknown" when run from a bare source tree."""
-    try:
-        return version("flexspline")
-    except PackageNotFoundError:
-        return "unknown"
+    """The installed distribution's version."""
+    return version("flexspline")
 
 
 def heading(design: Design) -> Record:

@@ -18,7 +18,7 @@ from flexspline.geometry.sanity import warnings
 
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(
-    str(p.relative_to(ROOT).with_suffix("")).replace("/", ".")
+    "flexspline." + str(p.relative_to(ROOT).with_suffix("")).replace("/", ".")
     for room in ("geometry", "fea", "pipeline", "results")
     for p in (ROOT / room).rglob("*.py")
     if ">>>" in p.read_text(encoding="utf-8")
@@ -31,7 +31,8 @@ DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_docstring_examples(name: str) -> None:
+def test_docstring_examples(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
     outcome = doctest.testmod(importlib.import_module(name))
     assert outcome.attempted
     assert not outcome.failed

@@ -16,6 +16,7 @@ from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
 from flexspline.fea.shortfall import next_mesh_failed
+from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
@@ -53,8 +54,9 @@ def contact_stiffness(
     while len(levels) < 2:
         try:
             pace.begin(len(mesh.triangles))
-            seat = seat_compliance(HarmonicModel(mesh, material), ANGLES, MOST_PLACES)
-            resting, held = (seat.stiffness(f(seat)) for f in (lift_off_forces, held_forces))
+            with one_thread():
+                seat = seat_compliance(HarmonicModel(mesh, material), ANGLES, MOST_PLACES)
+                resting, held = (seat.stiffness(f(seat)) for f in (lift_off_forces, held_forces))
         except (ComputationError, MemoryError) as fault:
             if not levels:
                 raise

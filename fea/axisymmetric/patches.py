@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.outline import Meridian
 
 
-class PatchError(ValueError):
+class PatchError(FlexsplineError, ValueError):
     """The outline's patches do not make the problem asked for."""
 
 

@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.model import ExtendedModel
 from flexspline.pipeline.diagnosis.naming import model_of, named_causes
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep, read_measurement
-from flexspline.pipeline.diagnosis.result import NextMeasurement, Outcome
+from flexspline.pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Verdict
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep import Explained, TooFewRowsError, diagnosed
@@ -57,6 +57,16 @@ class Diagnosis:
     end_points: EndPointAnalysis | None = None
     specimens: SpecimenAnalysis | None = None
     left_over: tuple[ChannelTest, ...] = ()
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the diagnosis says, in one word."""
+        return self.outcome.verdict
+
+    @property
+    def causes(self) -> tuple[NamedCause, ...]:
+        """What the simulation leaves out, the largest first."""
+        return self.outcome.causes
 
 
 def diagnose_file(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexspline.geometry.errors import one_line
+from flexspline.geometry.errors import FlexsplineError, one_line
 
 
-class MeasurementError(ValueError):
+class MeasurementError(FlexsplineError, ValueError):
     """A measurement file that cannot be accepted; `path`, `line` (1-based, None: the whole file)."""
 
     def __init__(self, path: Path | str, line: int | None, reason: str) -> None:
@@ -16,9 +16,17 @@ class MeasurementError(ValueError):
         super().__init__(f"{one_line(where)}: {one_line(reason)}")
 
 
-class ModelFileError(ValueError):
+class ModelFileError(FlexsplineError, ValueError):
     """An extended model file that cannot be used; `path` and why."""
 
     def __init__(self, path: Path | str, reason: str) -> None:
         self.path, self.reason = str(path), reason
         super().__init__(f"{one_line(self.path)}: {one_line(reason)}")
+
+
+class ChannelError(FlexsplineError, ValueError):
+    """A channel of a torque history that a model cannot use; its `name` and why."""
+
+    def __init__(self, name: str, reason: str) -> None:
+        self.name, self.reason = name, reason
+        super().__init__(f"{name} {reason}")

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.effects import causes
 from flexspline.pipeline.diagnosis.effects.cause import Element
+from flexspline.pipeline.diagnosis.errors import ChannelError
 from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.shape_check import channels_needed
+
+Channel = Sequence[float] | np.ndarray
+"""One value for each row of a history."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,45 @@ class ExtendedModel:
     elements: Mapping[str, tuple[Element, ...]]
     own: Mapping[str, tuple[float, float]]
 
-    def angle_arcsec(self, history: History, units: tuple[str, ...] = ("",)) -> np.ndarray:
+    def angle_arcsec(
+        self,
+        torque_Nm: Channel,
+        time_s: Channel | None = None,
+        temperature_C: Channel | None = None,
+        input_angle_deg: Channel | None = None,
+        cycle: Channel | None = None,
+        unit: str = "",
+    ) -> np.ndarray:
+        """(n,) angle [arcsec] for a history of torque, row by row; `unit` names the unit under test.
+
+        Raises
+        ------
+        ChannelError : a channel that a cause of the model needs is missing, is not finite, or
+            is not as long as the torque.
+        """
+        torque = _channel("torque_Nm", torque_Nm, torque_Nm)
+        history = History(
+            torque,
+            np.zeros(len(torque), int),
+            np.zeros(len(torque), int)
+            if cycle is None
+            else _channel("cycle", cycle, torque).astype(int),
+            *(
+                None if values is None else _channel(name, values, torque)
+                for name, values in (
+                    ("time_s", time_s),
+                    ("temperature_C", temperature_C),
+                    ("input_angle_deg", input_angle_deg),
+                )
+            ),
+        )
+        for cause_id, elements in self.elements.items():
+            for channel in channels_needed(causes()[cause_id], elements):
+                if getattr(history, channel) is None:
+                    raise ChannelError(channel, f"is missing; {cause_id} needs it")
+        return self.angle_of(history, (unit,))
+
+    def angle_of(self, history: History, units: tuple[str, ...] = ("",)) -> np.ndarray:
         """(n,) angle; `units` names the history's units. A unit not fitted has zero 0.
 
         Raises
@@ -53,3 +96,17 @@ class ExtendedModel:
         for cause_id, elements in self.elements.items():
             history = causes()[cause_id].felt(elements, history)
         return history
+
+
+def _channel(
+    name: str, values: Sequence[float] | np.ndarray, torque: Sequence[float] | np.ndarray
+) -> np.ndarray:
+    """The values as numbers (n,), as many as torques."""
+    found = np.asarray(values, float)
+    if found.ndim != 1 or len(found) != len(torque):
+        raise ChannelError(
+            name, f"has the shape {found.shape}, the torque has {len(torque)} values"
+        )
+    if not np.isfinite(found).all():
+        raise ChannelError(name, "holds a value that is not finite")
+    return found

@@ -111,10 +111,10 @@ def best_plan(prepared: Prepared, models: Sequence[ExtendedModel]) -> tuple[Plan
     for plan in plans(prepared):
         h = plan.history
         free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
-        first = models[0].angle_arcsec(h)
+        first = models[0].angle_of(h)
         separations = []
         for other in models[1:]:
-            off = other.angle_arcsec(h) - first
+            off = other.angle_of(h) - first
             off = off - free @ np.linalg.lstsq(free, off, rcond=None)[0]
             separations.append(float(np.sqrt(off @ off)) / prepared.noise.std_arcsec)
         found.append((min(separations), plan))

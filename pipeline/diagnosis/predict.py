@@ -49,7 +49,7 @@ def predict_file(file: ModelFile, csv: Path) -> Predicted:
                 raise table.refuse(
                     None, f"column {channel} is missing; {cause_id} in {file.path.name} needs it"
                 )
-    angle = file.model.angle_arcsec(history, found.units) + _drifted_before(found, file, history)
+    angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
     told = f"unit {', '.join(strange)}: " if any(strange) else ""
     warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.columns import Columns, columns_of
 from flexspline.pipeline.diagnosis.crossing import Crossing, crossing, first_offset
 from flexspline.pipeline.diagnosis.effects import causes
@@ -44,7 +45,7 @@ FEWEST_KEPT, PER_UNIT = 12, 4
 """Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
 
 
-class TooFewRowsError(ValueError):
+class TooFewRowsError(FlexsplineError, ValueError):
     """Too few rows lie outside the gap's crossing and the torque's turns: `count` of `wanted`."""
 
     def __init__(self, count: int, wanted: int) -> None:

@@ -24,6 +24,7 @@ from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Cup, Design, Hat, Shaft
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
@@ -31,7 +32,6 @@ from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.backlash import StiffnessValueError, backlash
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
 from flexspline.pipeline.parts import DRIVEN, Workshop
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder

@@ -12,9 +12,9 @@ from pydantic import ValidationError
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.keys import STEP, value_at
 from flexspline.geometry.load import load_design, read_toml
 from flexspline.geometry.schema import Location, allowed, node_at
-from flexspline.pipeline.diagnosis.specimens.designs import STEP, value_at
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import KEYS, WORDS, Span, Spread, StudyFile, pattern
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
+from flexspline.geometry.keys import with_values
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import linked
 from flexspline.pipeline.study.scatter import Scatter

@@ -16,9 +16,9 @@ from flexspline.fea.shortfall import settled
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import lengths, with_values, without_holes
 from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.specimens.designs import lengths, with_values, without_holes
 from flexspline.pipeline.parts import DRIVEN
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import value_at, with_values
 from flexspline.geometry.schema import node_at
-from flexspline.pipeline.diagnosis.specimens.designs import value_at, with_values
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.holes import Holes
 from flexspline.pipeline.study.load import Study, StudyError, location_of

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import as_completed
 from dataclasses import asdict
 
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
 from flexspline.pipeline.parts import Workshop
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder

@@ -9,13 +9,13 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.model_file import Provenance
 from flexspline.pipeline.diagnosis.model_text import model_text
 from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
 from flexspline.results.figures.diagnosis.draw import draw_figures
 from flexspline.results.records import as_json, program_version
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
-from flexspline.results.report.compared import Stiffnesses
 from flexspline.results.report.diagnosis import diagnosis_document
 
 DIAGNOSIS = "diagnosis.json"
@@ -25,7 +25,7 @@ def write_diagnosis(
     folder: Path,
     diagnosis: Diagnosis,
     record: Record,
-    used: Stiffnesses,
+    used: StiffnessPair,
     attached: tuple[Attachment, ...] = (),
 ) -> list[Path]:
     """Write diagnosis.json, the extended model, the figures and the reports into `folder`.
@@ -45,7 +45,7 @@ def write_diagnosis(
     return [folder / name for name in made]
 
 
-def _model(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     assert diagnosis.model is not None
     measurement = diagnosis.measurement
     cycle: dict[str, float] = {}

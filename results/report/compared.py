@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.words import channel_words, figures_text
 from flexspline.results.quantities import grouped
-
-
-@dataclass(frozen=True)
-class Stiffnesses:
-    """K_b and K_e of the simulation that was compared; `given` says they came from the command."""
-
-    K_b_Nm_per_rad: float
-    K_e_Nm_per_rad: float
-    given: bool
-    error: float = 0.0
-    """The solver's relative error of both in series."""
 
 
 def measured(diagnosis: Diagnosis) -> list[list[str]]:
@@ -68,7 +57,7 @@ def _range(values: Any) -> str:
     return f"{figures_text(float(values.min()))} to {figures_text(float(values.max()))}"
 
 
-def compared(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     """With what the measurement was compared, in one sentence."""
     p = diagnosis.prediction
     if isinstance(diagnosis.measurement, Specimens):
@@ -103,7 +92,7 @@ def _what_counts(p: Prediction) -> str:
     return f"No uncertainty of {' or '.join(missing)} is stated, so any difference beyond the noise counts."
 
 
-def _compared_specimens(diagnosis: Diagnosis, used: Stiffnesses) -> str:
+def _compared_specimens(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     doubt = diagnosis.design.uncertainty.youngs_modulus_pct
     modulus = (
         f"Young's modulus may be off by {doubt:g} % (1σ)"

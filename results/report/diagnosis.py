@@ -7,6 +7,7 @@ from typing import Literal
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.result import Gain, NamedCause, Outcome, Unexplained
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
@@ -22,7 +23,7 @@ from flexspline.results.diagnosis.words import (
 from flexspline.results.figures.diagnosis.draw import Drawn
 from flexspline.results.quantities import grouped
 from flexspline.results.report.attached import Attachment
-from flexspline.results.report.compared import Stiffnesses, compared, measured
+from flexspline.results.report.compared import compared, measured
 from flexspline.results.report.document import (
     Block,
     Break,
@@ -47,7 +48,7 @@ OPEN = ("ambiguous", "unknown", "insufficient")
 def diagnosis_document(
     diagnosis: Diagnosis,
     figures: Sequence[Drawn],
-    used: Stiffnesses,
+    used: StiffnessPair,
     attached: tuple[Attachment, ...] = (),
 ) -> Document:
     """The report; its figures go by the stems of their files."""
@@ -71,7 +72,7 @@ def diagnosis_document(
     )
 
 
-def _verdict(diagnosis: Diagnosis, used: Stiffnesses) -> Iterable[Block]:
+def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     outcome = diagnosis.outcome
     tone: Literal["amber", "blue"] = "amber" if outcome.verdict in OPEN else "blue"
     yield Callout(tone, VERDICTS[outcome.verdict], sentence(outcome))

@@ -35,6 +35,10 @@ class Clock:
     def __call__(self) -> float:
         return self.seconds
 
+    def deadline(self, limit_s: float) -> Deadline:
+        """By this clock, on an idle machine."""
+        return Deadline(limit_s, self, self)
+
     def ticking(self, step: Callable[..., Any]) -> Callable[..., Any]:
         """The step itself, after which the clock shows SECONDS_A_MESH more."""
 
@@ -73,7 +77,7 @@ def exact() -> dict[str, Stiffness]:
 
 def test_a_step_that_would_end_too_late_is_not_begun() -> None:
     clock = Clock()
-    pace = Pace(Deadline(100.0, clock))
+    pace = Pace(clock.deadline(100.0))
     pace.begin(1000)
     clock.seconds = 20.0
     pace.begin(2000)  # 20 s times 2^1.5 = 57 s of 80 s left
@@ -81,8 +85,19 @@ def test_a_step_that_would_end_too_late_is_not_begun() -> None:
     with pytest.raises(OutOfTimeError, match="100 s"):
         pace.begin(2100)  # 40 s times 1.05^1.5 = 43 s of 40 s left
     with pytest.raises(OutOfTimeError):
-        Pace(Deadline(0.0, clock)).begin(1)
-    Pace(Deadline(inf, clock)).begin(10**9)
+        Pace(clock.deadline(0.0)).begin(1)
+    Pace(clock.deadline(inf)).begin(10**9)
+
+
+def test_time_that_other_programs_take_does_not_count_as_the_step_s() -> None:
+    clock, working = Clock(), Clock()
+    pace = Pace(Deadline(60.0, clock, working))
+    pace.begin(1000)
+    clock.seconds, working.seconds = 30.0, 1.0
+    pace.begin(4000)  # 1 s times 4^1.5 = 8 s of 30 s left; by the clock it would be 240 s
+    clock.seconds, working.seconds = 55.0, 11.0
+    with pytest.raises(OutOfTimeError):
+        pace.begin(4000)  # 10 s of 5 s left
 
 
 @pytest.mark.parametrize("meshes", [1, 2, 3])
@@ -91,7 +106,7 @@ def test_stiffness_of_the_meshes_until_then(
     case: str, meshes: int, clock: Clock, exact: dict[str, Stiffness]
 ) -> None:
     # the next mesh is at least as large: it would take the 10 s that are left, and more
-    deadline = Deadline(SECONDS_A_MESH * (meshes + 1), clock)
+    deadline = clock.deadline(SECONDS_A_MESH * (meshes + 1))
     found = (
         torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, deadline)
         if case == "torsion"
@@ -107,7 +122,7 @@ def test_stiffness_of_the_meshes_until_then(
 
 
 def test_contact_on_one_mesh_lies_between_free_and_held(clock, exact) -> None:
-    found = contact_stiffness(OUTLINE, STEEL, exact["held"], Deadline(1.5 * SECONDS_A_MESH, clock))
+    found = contact_stiffness(OUTLINE, STEEL, exact["held"], clock.deadline(1.5 * SECONDS_A_MESH))
     assert len(found.levels) == 1
     assert of_the_machine(found.shortfall)
     assert found.K_Nm_per_rad == pytest.approx(exact["contact"].K_Nm_per_rad, rel=0.01)
@@ -117,7 +132,7 @@ def test_contact_on_one_mesh_lies_between_free_and_held(clock, exact) -> None:
 
 
 def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
-    held = lobe_stiffness(OUTLINE, STEEL, True, FINE, Deadline(SECONDS_A_MESH, clock))
+    held = lobe_stiffness(OUTLINE, STEEL, True, FINE, clock.deadline(SECONDS_A_MESH))
     found = contact_stiffness(OUTLINE, STEEL, held)
     assert found.shortfall == held.shortfall != ""
     lower, upper = found.bounds_Nm_per_rad
@@ -126,12 +141,10 @@ def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
 
 def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
     wall = CUP.wall_thickness_mm
-    on_ellipse = ellipse_stress(
-        OUTLINE, STEEL, 0.2, wall, 1e-6, Deadline(3 * SECONDS_A_MESH, clock)
-    )
+    on_ellipse = ellipse_stress(OUTLINE, STEEL, 0.2, wall, 1e-6, clock.deadline(3 * SECONDS_A_MESH))
     clock.seconds = 0.0
     twisted = torsion_stress(
-        OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, Deadline(3 * SECONDS_A_MESH, clock)
+        OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, clock.deadline(3 * SECONDS_A_MESH)
     )
     for found in (on_ellipse, twisted):
         assert len(found.levels) == 2
@@ -141,4 +154,4 @@ def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
 
 def test_no_figure_before_the_first_mesh(clock: Clock) -> None:
     with pytest.raises(OutOfTimeError):
-        torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, Deadline(0.0, clock))
+        torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, clock.deadline(0.0))

@@ -9,8 +9,8 @@ import pytest
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
 from flexspline.pipeline.linear_limit import linear_limit
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

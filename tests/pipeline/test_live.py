@@ -9,10 +9,10 @@ import pytest
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.pipeline import live
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
 from flexspline.pipeline.rim import STRESS_TOLERANCE
 
 CUP = live.revolved(design_from(tomllib.loads(template("cup"))))

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.geometry.template import design_text
-from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
 
 LIMIT, TOLERANCE = "material.flexspline.fatigue_limit_MPa", "solver.tolerance_pct"
 ROOT = Path(__file__).parents[2]

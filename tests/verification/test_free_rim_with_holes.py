@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 from flexspline.pipeline.parts import Workshop
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes

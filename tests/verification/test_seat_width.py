@@ -13,9 +13,9 @@ from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_stress
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.exclusion import exclusion_mm
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import meridian, with_narrow_seat
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
 from flexspline.pipeline.rim import NARROW_SEAT, SEAT_TOLERANCE
 
 PAGE = Path(__file__).parents[2] / "docs" / "theory.md"

@@ -13,9 +13,9 @@ from hole_free import EXAMPLES
 from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.stress_rule import judged
 from flexspline.fea.types import Elastic, StressPeak
+from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import cup_meridian
-from flexspline.pipeline.diagnosis.specimens.designs import with_values
 from flexspline.pipeline.study.evaluate import figures_of
 
 STEEL = Elastic(206e3, 0.3)

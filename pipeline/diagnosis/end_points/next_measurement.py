@@ -72,7 +72,7 @@ def separations(
     found = []
     for plan in plans(torque_Nm):
         h = plan.history
-        angles = [m.angle_arcsec(h) for m in models]
+        angles = [m.angle_of(h) for m in models]
         free = np.column_stack([
             np.full(len(h), 10 * np.abs(angles).max()),
             h.torque_Nm * prediction.compliance_std,

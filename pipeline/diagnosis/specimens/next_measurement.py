@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.keys import lengths, with_values
 from flexspline.pipeline.diagnosis.result import NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.decide import Decision, causes_title
-from flexspline.pipeline.diagnosis.specimens.designs import lengths, with_values
 from flexspline.pipeline.diagnosis.specimens.race import Fit
 from flexspline.pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.terms import log_compliance

@@ -55,7 +55,7 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
     back = read_model_file(written(tmp_path))
     assert back == ModelFile(tmp_path / "model.toml", MODEL, ORIGIN)
     history = sweep(units=2)
-    angles = [m.angle_arcsec(history, ("a", "b")) for m in (MODEL, back.model)]
+    angles = [m.angle_of(history, ("a", "b")) for m in (MODEL, back.model)]
     assert np.abs(angles[0] - angles[1]).max() <= 1e-9  # arcsec, as asked; the doubles are the same
 
 

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flexspline.geometry.keys import (
+    lengths,
+    value_at,
+    with_values,
+    without_holes,
+)
 from flexspline.geometry.load import design_from, load_design, read_toml
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.errors import MeasurementError
 from flexspline.pipeline.diagnosis.record import Specimens
-from flexspline.pipeline.diagnosis.specimens.designs import (
-    lengths,
-    value_at,
-    with_values,
-    without_holes,
-)
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, study_of, threads
 
+from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 from flexspline.pipeline.study.evaluate import Outcome, Task, figures_of, revolved_torsion
 from flexspline.pipeline.study.holes import Factor, holes_of, of_holes
 from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study

@@ -15,9 +15,9 @@ from flexspline.fea.axisymmetric.shape_slope import (
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import meridian
-from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
 from flexspline.pipeline.study.sensitivity import _held, sensitivities
 
 

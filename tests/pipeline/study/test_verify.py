@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, WALL, study_of, threads
 
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
+from flexspline.geometry.keys import without_holes
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.run import ledger_of, run_study
 from flexspline.pipeline.study.store import Row

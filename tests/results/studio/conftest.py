@@ -11,9 +11,9 @@ from browser import chromium
 from held import HeldStudio, held_studio
 from studio_page import Page, Server, running, write_design
 
+from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import design_text, template
-from flexspline.pipeline.diagnosis.specimens.designs import without_holes
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator

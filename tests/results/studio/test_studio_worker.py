@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline.diagnosis.specimens.designs import with_values, without_holes
 from flexspline.results.studio import worker as rules
 from flexspline.results.studio.worker import Fault, Worker
 

@@ -25,8 +25,8 @@ def value_at(design: Design, key: str) -> float | None:
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
-def with_values(design: Design, values: Mapping[str, float]) -> Design:
-    """A checked design with other numbers at some keys; array elements are counted from 0.
+def with_values(design: Design, values: Mapping[str, object]) -> Design:
+    """A checked design with other values at some keys; array elements are counted from 0.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def with_values(design: Design, values: Mapping[str, float]) -> Design:
     tables = _tables(design)
     for key, value in values.items():
         table, last = _reach(tables, key)
-        if isinstance(table.get(last), int) and value == int(value):
+        if isinstance(table.get(last), int) and isinstance(value, float) and value.is_integer():
             value = int(value)
         table[last] = value
     return design_from(tables)

@@ -1,0 +1,251 @@
+"""What `import flexspline` offers: the commands as functions.
+
+Results are kept in the same cache as the commands'. Nothing is printed.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+from flexspline.fea.types import SolidField, Stiffness
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.backlash import backlash as sum_of_terms
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.chain import CACHED_TYPES, torque_field
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.model_file import read_model_file
+from flexspline.pipeline.diagnosis.predict import Predicted, predict_file
+from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.rim import RimCase, rim_stiffness, wave_generator_field
+from flexspline.pipeline.stiffness_pair import stiffness_pair
+from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.load import load_study
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study
+from flexspline.pipeline.study.sensitivity import Slope, sensitivities
+
+PartName = Literal["flexspline", "shaft"]
+StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
+RIM_CASES: tuple[RimCase, ...] = ("lobes", "lobes_unsupported", "lobes_contact")
+
+
+def stiffness(
+    design: Design,
+    part: PartName = "flexspline",
+    case: Literal["uniform"] | RimCase = "uniform",
+) -> Stiffness:
+    """Torsional stiffness of a part with its error bounds.
+
+    Parameters
+    ----------
+    case : how the torque enters the flexspline: "uniform" (round the toothed ring), "lobes" (at the two
+        tooth engagements, the seat held round by the wave generator), "lobes_unsupported" (the same, the
+        seat free), "lobes_contact" (the seat rests on the wave generator and may lift off). The shaft has
+        "uniform" only.
+
+    Returns
+    -------
+    Stiffness : `K_Nm_per_rad`, `bounds_Nm_per_rad`, and `guaranteed`: whether the bounds are theorems.
+
+    Raises
+    ------
+    DesignError : no such part or case, or the design asks for a model that the part does not allow.
+    ComputationError : no mesh or no solution; lift-off asked of a part with bolt holes.
+
+    Examples
+    --------
+    The XB1-40 without its bolt holes lies between 31 330 and 31 337 N·m/rad (docs/validation.md):
+
+    >>> from flexspline import load_design, stiffness
+    >>> design = load_design("examples/xb1-40.toml").changed({"flexspline.bolt_count": 0})
+    >>> K_b = stiffness(design, "flexspline")
+    >>> lower, upper = K_b.bounds_Nm_per_rad
+    >>> K_b.guaranteed and lower < 31337 and upper > 31330
+    True
+    """
+    if part not in ("flexspline", "shaft"):
+        raise DesignError("part", part, 'must be "flexspline" or "shaft"')
+    if case not in ("uniform", *RIM_CASES):
+        raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
+    model = _workshop(design).part(part)
+    if case == "uniform":
+        return model.stiffness()
+    if part == "shaft":
+        raise DesignError("case", case, 'is of the flexspline; the shaft has "uniform" only')
+    return rim_stiffness(model, case)
+
+
+def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
+    """Displacement and von Mises stress of a load case on tetrahedra; `peak` is the largest stress.
+
+    Parameters
+    ----------
+    case : "wave_generator" (the ellipse, no torque), "flexspline_torque" or "shaft_torque" (at T_L).
+
+    Raises
+    ------
+    DesignError : no such case.
+    ComputationError : no mesh or no solution.
+
+    Examples
+    --------
+    Twice the torque doubles the stress:
+
+    >>> from flexspline import load_design, stress
+    >>> design = load_design("examples/xb1-40.toml")
+    >>> twice = design.changed({"load.torque_Nm": 2 * design.load.torque_Nm})
+    >>> once, double = (stress(d, "shaft_torque").peak.mises_MPa for d in (design, twice))
+    >>> round(double / once, 9)
+    2.0
+    """
+    shop = _workshop(design)
+    if case == "wave_generator":
+        return wave_generator_field(shop.part("flexspline"))
+    if case not in ("flexspline_torque", "shaft_torque"):
+        raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
+    return torque_field(shop.part(case.removesuffix("_torque")))
+
+
+def backlash(design: Design, K_b: float | None = None, K_e: float | None = None) -> Backlash:
+    """The four-term sum in arcsec; K_b, K_e [N·m/rad] of the flexspline and the shaft, by FE where not given.
+
+    Raises
+    ------
+    DesignError
+    StiffnessValueError : a stiffness that is not positive and finite.
+    BearingPlayDomainError : bearing play beyond the largest that the involute model allows.
+    ComputationError : a stiffness that is needed was not found.
+
+    Examples
+    --------
+    The shaft's wind-up is 2T/K_e, as in table 2 of the article (0.5 N·m on 1.8e4 N·m/rad, 11.5″):
+
+    >>> from flexspline import backlash, load_design
+    >>> found = backlash(load_design("examples/xb1-40.toml"), K_b=3.1e4, K_e=1.8e4)
+    >>> round(found.shaft_arcsec, 1)
+    11.5
+    >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
+    True
+    """
+    used = stiffness_pair(_workshop(design), K_b, K_e)
+    return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
+
+
+def sensitivity(design: Design) -> tuple[Slope, ...]:
+    """dK/dp of every length of both parts, the strongest first within a part; holes are left out.
+
+    Raises
+    ------
+    DesignError, ComputationError
+
+    Examples
+    --------
+    A thicker wall makes a flexspline stiffer:
+
+    >>> from flexspline import load_design, sensitivity
+    >>> slopes = {s.key: s for s in sensitivity(load_design("examples/xb1-40.toml"))}
+    >>> slopes["flexspline.wall_thickness_mm"].elasticity > 0
+    True
+    """
+    return sensitivities(design, lambda line: None)
+
+
+def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
+    """Evaluate a study file; `out` (default NAME.out beside it) keeps its designs, and a second call resumes.
+
+    Raises
+    ------
+    DesignError : the study file or its design is wrong.
+    ComputationError : its storage or its cluster went away. Designs that fail are rows.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from flexspline import study
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     found = study("examples/studies/grid.toml", out=folder)
+    >>> len(found.rows)
+    9
+    """
+    path = Path(path)
+    asked = load_study(path)
+    folder = Path(out) if out is not None else path.parent / f"{path.stem}.out"
+    ledger = ledger_of(asked, folder)
+    run = asked.file.run
+    return run_study(
+        asked,
+        ledger,
+        partial(hands_of, run.workers, run.scheduler),
+        lambda progress: None,
+        holes=nominal_holes(asked, ledger, lambda line: None),
+    )
+
+
+def diagnose(
+    design: Design, path: Path | str, K_b: float | None = None, K_e: float | None = None
+) -> Diagnosis:
+    """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
+
+    Returns
+    -------
+    Diagnosis : `verdict`, `causes`, and `model`, which predicts other histories.
+
+    Raises
+    ------
+    DesignError
+    MeasurementError : the file cannot be accepted.
+    ComputationError : a stiffness that is needed was not found.
+
+    Examples
+    --------
+    The example's record was made with friction and a gap that shrinks as the gear warms up
+    (examples/measured/make_sweep.py):
+
+    >>> from flexspline import diagnose, load_design
+    >>> design = load_design("examples/xb1-40.toml")
+    >>> found = diagnose(design, "examples/measured/xb1-40-sweep.csv", K_b=31377, K_e=43275)
+    >>> found.verdict, sorted(cause.id for cause in found.causes)
+    ('named', ['friction_hysteresis', 'thermal_clearance'])
+    >>> cold, warm = (found.model.angle_arcsec([1.0, -1.0], temperature_C=[T, T]) for T in (20, 40))
+    >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
+    True
+    """
+    read_measurement(Path(path))  # a bad file is refused before the long work
+    shop = _workshop(design)
+    used = stiffness_pair(shop, K_b, K_e)
+    solved = shop if K_b is None and K_e is None else None
+    return diagnose_file(
+        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved
+    )
+
+
+def predict(model: Path | str, path: Path | str) -> Predicted:
+    """The angle for each row of a measured file, by an `extended_model.toml` that `diagnose` wrote.
+
+    Raises
+    ------
+    ModelFileError, MeasurementError
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from flexspline import FlexsplineError, predict
+    >>> try:
+    ...     predict("no-such-model.toml", "examples/measured/xb1-40-sweep.csv")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    no-such-model.toml: no such file
+    """
+    return predict_file(read_model_file(Path(model)), Path(path))
+
+
+def _workshop(design: Design) -> Workshop:
+    return Workshop(design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress())

@@ -1,0 +1,47 @@
+"""K_b and K_e of the simulation that a measurement is compared with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexspline.fea.types import Stiffness
+from flexspline.pipeline.chain import stiffnesses
+from flexspline.pipeline.parts import Workshop
+
+
+@dataclass(frozen=True)
+class StiffnessPair:
+    """K_b and K_e [N·m/rad]; `given`: both came from the user, not from FE.
+
+    `error`: the solver's relative error of both in series.
+    """
+
+    K_b_Nm_per_rad: float
+    K_e_Nm_per_rad: float
+    given: bool
+    error: float = 0.0
+
+
+def stiffness_pair(
+    shop: Workshop, K_b: float | None = None, K_e: float | None = None
+) -> StiffnessPair:
+    """The K given [N·m/rad], and by FE those that are not; a K given has no error of the solver.
+
+    Raises
+    ------
+    DesignError
+    NotFoundError : a stiffness that is needed failed.
+    """
+    if K_b is not None and K_e is not None:
+        return StiffnessPair(K_b, K_e, True)
+    rim = shop.design.solver.load_case == "lobes"
+    found = stiffnesses(shop, flexspline=K_b is None, shaft=K_e is None, rim=rim)
+    solved: list[Stiffness] = []
+    if K_b is None:
+        solved.append(found.in_sum(shop.design))
+        K_b = solved[-1].K_Nm_per_rad
+    if K_e is None:
+        solved.append(found.shaft)
+        K_e = solved[-1].K_Nm_per_rad
+    doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
+    return StiffnessPair(K_b, K_e, False, doubt / (1 / K_b + 1 / K_e))

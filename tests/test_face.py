@@ -1,0 +1,117 @@
+"""`import flexspline`: its names, when they load, its errors, and the page about it."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import flexspline
+
+ROOT = Path(__file__).parents[1]
+NAMES = {
+    "load_design", "Design", "stiffness", "stress", "backlash", "sensitivity", "study", "diagnose",
+    "predict", "FlexsplineError", "__version__",
+}  # fmt: skip
+ROOMS = ("geometry", "fea", "pipeline", "results")
+ERRORS = [
+    (path, name)
+    for room in ROOMS
+    for path in sorted((ROOT / room).rglob("*.py"))
+    for name in re.findall(r"^class (\w+Error)\b", path.read_text(encoding="utf-8"), re.M)
+]
+
+
+def test_it_offers_these_names_and_no_others() -> None:
+    assert set(flexspline.__all__) == NAMES
+    assert set(dir(flexspline)) >= NAMES
+    for name in NAMES:
+        assert getattr(flexspline, name) is not None
+    with pytest.raises(AttributeError, match="no_such"):
+        _ = flexspline.no_such
+
+
+def test_nothing_heavy_loads_before_it_is_used() -> None:
+    code = "import sys, flexspline; print(len({'numpy', 'pydantic', 'skfem'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "0\n"
+
+
+@pytest.mark.parametrize(
+    "name", sorted(NAMES - {"Design", "FlexsplineError", "__version__", "load_design"})
+)
+def test_every_function_has_an_example_and_says_what_it_raises(name: str) -> None:
+    said = inspect.getdoc(getattr(flexspline, name))
+    assert ">>>" in said
+    assert "Raises" in said
+
+
+@pytest.mark.parametrize(("path", "name"), ERRORS, ids=[name for _, name in ERRORS])
+def test_every_error_of_ours_has_one_root(path: Path, name: str) -> None:
+    module = ".".join(("flexspline", *path.relative_to(ROOT).with_suffix("").parts))
+    found = getattr(importlib.import_module(module), name)
+    assert issubclass(found, flexspline.FlexsplineError) or not issubclass(found, BaseException)
+
+
+def test_wrong_words_are_refused_in_one_line() -> None:
+    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    for call in (
+        lambda: flexspline.stiffness(design, "wave generator"),
+        lambda: flexspline.stiffness(design, "flexspline", "no such case"),
+        lambda: flexspline.stiffness(design, "shaft", "lobes"),
+        lambda: flexspline.stiffness(design, "flexspline", "lobes_contact"),  # it has bolt holes
+        lambda: flexspline.stress(design, "torque"),
+        lambda: flexspline.backlash(design, K_b=-1.0, K_e=4e4),
+        lambda: flexspline.diagnose(design, "no such file.csv"),
+        lambda: flexspline.study("no such study.toml"),
+        lambda: design.changed({"flexspline.wall": 0.4}),
+        lambda: design.changed({"flexspline.bolt_count": "six"}),
+    ):
+        with pytest.raises(flexspline.FlexsplineError) as caught:
+            call()
+        assert str(caught.value)
+        assert "\n" not in str(caught.value)
+
+
+def test_changed_is_a_new_design() -> None:
+    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    longer = design.changed({"flexspline.length_mm": 35.0, "shaft.segment[1].length_mm": 12.0})
+    assert (longer.flexspline.length_mm, longer.shaft.segment[1].length_mm) == (35.0, 12.0)
+    assert design.flexspline.length_mm != 35.0
+
+
+def test_lift_off_lies_between_the_seat_held_and_the_rim_free() -> None:
+    """Contact that only pushes does less than a seat that also pulls, and more than none."""
+    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    plain = design.changed({"flexspline.bolt_count": 0})
+    free, contact, held = (
+        flexspline.stiffness(plain, "flexspline", case)
+        for case in ("lobes_unsupported", "lobes_contact", "lobes")
+    )
+    assert free.bounds_Nm_per_rad[0] < contact.K_Nm_per_rad < held.bounds_Nm_per_rad[1]
+    assert not contact.guaranteed
+
+
+def test_the_command_prints_the_version() -> None:
+    line = [sys.executable, "-m", "flexspline.results.cli", "--version"]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    assert done.stdout == f"{flexspline.__version__}\n" == f"{version('flexspline')}\n"
+
+
+def test_the_page_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Every block of docs/python.md, one after the other, as in a notebook."""
+    text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+    assert len(blocks) >= 5
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    names: dict[str, object] = {"__name__": "__main__"}
+    for block in blocks:
+        exec(compile(block, "docs/python.md", "exec"), names)
