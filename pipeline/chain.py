@@ -17,7 +17,7 @@ from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.parts import DRIVEN, MeshedPart, PartModel, TwistedPart, Workshop
+from flexspline.pipeline.parts import DRIVEN, AnalysisContext, MeshedPart, PartModel, TwistedPart
 from flexspline.pipeline.rim import (
     STRESS_TOLERANCE,
     half_seat_peak,
@@ -132,7 +132,7 @@ class RunResult:
 
 
 def stiffnesses(
-    shop: Workshop, flexspline: bool = True, shaft: bool = True, rim: bool = True
+    context: AnalysisContext, flexspline: bool = True, shaft: bool = True, rim: bool = True
 ) -> Stiffnesses:
     """All that `flexspline stiffness` answers, for the parts that are asked for.
 
@@ -146,7 +146,7 @@ def stiffnesses(
     DesignError
     ComputationError : the plain ring of drawn teeth failed.
     """
-    rim_part, shaft_part = shop.part("flexspline"), shop.part("shaft")
+    rim_part, shaft_part = context.part("flexspline"), context.part("shaft")
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         _ = wanted and part.axisymmetric  # refuse before the long work
     tried = Attempts()
@@ -155,7 +155,7 @@ def stiffnesses(
     if not flexspline:
         return Stiffnesses(K_b, K_e, missing=tried.missing)
     if not rim:
-        return Stiffnesses(K_b, K_e, ring=shop.ring, missing=tried.missing)
+        return Stiffnesses(K_b, K_e, ring=context.ring, missing=tried.missing)
     answers = rim_answers(rim_part, tried)
     return Stiffnesses(
         K_b,
@@ -164,13 +164,13 @@ def stiffnesses(
         answers.K_b_lobes_unsupported,
         answers.K_b_lobes_contact,
         answers.wave_generator_peak,
-        shop.ring,
+        context.ring,
         tried.missing,
         tried.get("half_seat_peak", lambda: half_seat_peak(rim_part)),
     )
 
 
-def run(shop: Workshop) -> RunResult:
+def run(context: AnalysisContext) -> RunResult:
     """The main job: all stiffnesses, the three stress fields, and the backlash sum.
 
     A field that fails is absent, with its reason in `stiffnesses.missing`.
@@ -180,9 +180,9 @@ def run(shop: Workshop) -> RunResult:
     DesignError
     NotFoundError : what the backlash sum needs failed; it carries what was found.
     """
-    design = shop.design
-    flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
-    found = stiffnesses(shop)
+    design = context.design
+    flexspline, shaft = context.part("flexspline"), context.part("shaft")
+    found = stiffnesses(context)
     found.require(design)
     total = backlash_of(design, found)
     tried = Attempts()
@@ -196,7 +196,7 @@ def run(shop: Workshop) -> RunResult:
     found = replace(found, missing={**found.missing, **tried.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
     limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)
-    seconds = dict(shop.progress.seconds)
+    seconds = dict(context.progress.seconds)
     return RunResult(design, warnings(design), found, fields, total, limit, seconds)
 
 
@@ -207,10 +207,10 @@ def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
 
 def torque_field(part: PartModel) -> SolidField:
     """Displacement and stress under the design's torque T_L; the peak from the model that answers."""
-    design = part.shop.design
+    design = part.context.design
     torque = design.load.torque_Nm
     twisted = part.twisted()
-    with part.shop.progress.stage(f"stress of the {part.name} under torque"):
+    with part.context.progress.stage(f"stress of the {part.name} under torque"):
         solved = stress_field(
             twisted.meshed.mesh,
             twisted.displacement * (torque / twisted.stiffness.upper_Nm_per_rad),

@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.model_file import read_model_file
 from flexspline.pipeline.diagnosis.predict import Predicted, predict_file
 from flexspline.pipeline.diagnosis.record import read_measurement
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim import RimCase, rim_stiffness, wave_generator_field
 from flexspline.pipeline.stiffness_pair import stiffness_pair
@@ -74,7 +74,7 @@ def stiffness(
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
     if case not in ("uniform", *RIM_CASES):
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
-    model = _workshop(design).part(part)
+    model = _context(design).part(part)
     if case == "uniform":
         return model.stiffness()
     if part == "shaft":
@@ -105,12 +105,12 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     >>> round(double / once, 9)
     2.0
     """
-    shop = _workshop(design)
+    context = _context(design)
     if case == "wave_generator":
-        return wave_generator_field(shop.part("flexspline"))
+        return wave_generator_field(context.part("flexspline"))
     if case not in ("flexspline_torque", "shaft_torque"):
         raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
-    return torque_field(shop.part(case.removesuffix("_torque")))
+    return torque_field(context.part(case.removesuffix("_torque")))
 
 
 def backlash(design: Design, K_b: float | None = None, K_e: float | None = None) -> Backlash:
@@ -134,7 +134,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
     True
     """
-    used = stiffness_pair(_workshop(design), K_b, K_e)
+    used = stiffness_pair(_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
 
 
@@ -218,9 +218,9 @@ def diagnose(
     True
     """
     read_measurement(Path(path))  # a bad file is refused before the long work
-    shop = _workshop(design)
-    used = stiffness_pair(shop, K_b, K_e)
-    solved = shop if K_b is None and K_e is None else None
+    context = _context(design)
+    used = stiffness_pair(context, K_b, K_e)
+    solved = context if K_b is None and K_e is None else None
     return diagnose_file(
         design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved
     )
@@ -247,5 +247,7 @@ def predict(model: Path | str, path: Path | str) -> Predicted:
     return predict_file(read_model_file(Path(model)), Path(path))
 
 
-def _workshop(design: Design) -> Workshop:
-    return Workshop(design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress())
+def _context(design: Design) -> AnalysisContext:
+    return AnalysisContext(
+        design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress()
+    )

@@ -58,7 +58,7 @@ class TwistedPart:
 
 
 @dataclass(frozen=True)
-class Workshop:
+class AnalysisContext:
     """What every stage needs: the design, the cache, and somebody to tell."""
 
     design: Design
@@ -87,27 +87,27 @@ def is_lasting(found: Stiffness | StressPeak) -> bool:
 class PartModel:
     """The flexspline or the shaft of a design.
 
-    `toothed`: teeth are drawn, and the plain ring of the workshop's design stands for them.
+    `toothed`: teeth are drawn, and the plain ring of the context's design stands for them.
     """
 
-    shop: Workshop
+    context: AnalysisContext
     name: str
     toothed: bool = False
 
     @property
     def material(self) -> Elastic:
-        design = self.shop.design
+        design = self.context.design
         own = design.shaft_material if self.name == "shaft" else design.material.flexspline
         return Elastic.of(own)
 
     @property
     def sector(self) -> Sector:
-        return sector_of(self.shop.design, self.name, "torsion")
+        return sector_of(self.context.design, self.name, "torsion")
 
     @property
     def is_revolved(self) -> bool:
         """Whether the part is a body of revolution."""
-        design = self.shop.design
+        design = self.context.design
         if self.name == "shaft":
             return not design.shaft.bolt_count and design.shaft.keyway is None
         return not design.flexspline.bolt_count
@@ -115,7 +115,7 @@ class PartModel:
     @property
     def geometry_key(self) -> Mapping[str, Any]:
         """What the part's shape depends on, and nothing else; its teeth are in the ring by now."""
-        design = self.shop.design
+        design = self.context.design
         own = design.shaft if self.name == "shaft" else design.flexspline
         shape = own.model_dump(mode="json", exclude={"teeth", "tooth_flank"})
         return {"part": self.name, "shape": shape}
@@ -126,18 +126,18 @@ class PartModel:
         return {
             **self.geometry_key,
             "material": asdict(self.material),
-            "tolerance_pct": self.shop.design.solver.tolerance_pct,
+            "tolerance_pct": self.context.design.solver.tolerance_pct,
         }
 
     @property
     def torsion_key(self) -> Mapping[str, Any]:
         """What the solid solution depends on."""
-        return {**self.revolved_key, "spec": asdict(first_spec(self.shop.design, self.name))}
+        return {**self.revolved_key, "spec": asdict(first_spec(self.context.design, self.name))}
 
     @property
     def exclusion_mm(self) -> float:
         """The stress rule's distance from sharp edges and patch edges."""
-        design = self.shop.design
+        design = self.context.design
         return exclusion_mm(design.shaft if self.name == "shaft" else design.flexspline)
 
     @property
@@ -146,14 +146,14 @@ class PartModel:
 
     @cached_property
     def _surface(self) -> TaggedSurface:
-        with self.shop.progress.stage(f"CAD of the {self.name}"):
+        with self.context.progress.stage(f"CAD of the {self.name}"):
             return surface_to_mesh(
-                self.shop.design, self.name, self.sector.degrees, self._edge_spacing
+                self.context.design, self.name, self.sector.degrees, self._edge_spacing
             )
 
     def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
         """The sector's mesh swept from the meridian; None for a part that only a mesher can mesh."""
-        design, degrees = self.shop.design, self.sector.degrees
+        design, degrees = self.context.design, self.sector.degrees
         mesh = swept_mesh(design, self.name, degrees, spec, finer)
         if mesh is None:
             return None
@@ -163,18 +163,18 @@ class PartModel:
         """The sector's mesh to a specification: swept where that works, else by fTetWild."""
 
         def make() -> MeshedPart:
-            if can_be_swept(self.shop.design, self.name):
-                with self.shop.progress.stage(f"mesh of the {self.name}"):
+            if can_be_swept(self.context.design, self.name):
+                with self.context.progress.stage(f"mesh of the {self.name}"):
                     swept = self.swept(spec)
                 if swept is not None:
                     return swept
-                self.shop.progress.note("  the swept mesh fails a check: fTetWild instead")
+                self.context.progress.note("  the swept mesh fails a check: fTetWild instead")
             surface = self._surface
-            with self.shop.progress.stage(f"mesh of the {self.name}"):
+            with self.context.progress.stage(f"mesh of the {self.name}"):
                 return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
 
         inputs = {**self.geometry_key, "spec": asdict(spec)}
-        return self.shop.cache.get("mesh", inputs, make)[0]
+        return self.context.cache.get("mesh", inputs, make)[0]
 
     def stiffness(self) -> Stiffness:
         """K by the design's `solver.model`: axisymmetric where the part allows it, else solid."""
@@ -191,7 +191,7 @@ class PartModel:
         ------
         DesignError : that model is asked for and the part has holes or a keyway.
         """
-        wanted = self.shop.design.solver.model
+        wanted = self.context.design.solver.model
         if wanted == "axisymmetric" and not self.is_revolved:
             raise DesignError(
                 "solver.model",
@@ -202,24 +202,24 @@ class PartModel:
         return self.is_revolved and wanted != "solid"
 
     def _axisymmetric_stiffness(self) -> Stiffness:
-        design = self.shop.design
+        design = self.context.design
         tolerance = design.solver.tolerance_pct / 100
 
         def make() -> Stiffness:
-            with self.shop.progress.stage(f"axisymmetric bounds of the {self.name}"):
+            with self.context.progress.stage(f"axisymmetric bounds of the {self.name}"):
                 outline = meridian(design, self.name)
                 return torsional_stiffness(
                     outline, self.material, DRIVEN[self.name], tolerance, Deadline(STAGE_SECONDS)
                 )
 
-        return self.shop.cache.get("axisymmetric", self.revolved_key, make, is_lasting)[0]
+        return self.context.cache.get("axisymmetric", self.revolved_key, make, is_lasting)[0]
 
     def twisted(self) -> TwistedPart:
         """The solid model turned by 1 rad, refined until the tolerance is met."""
-        design = self.shop.design
+        design = self.context.design
 
         def make() -> TwistedPart:
-            with self.shop.progress.stage(f"torsion of the {self.name}"):
+            with self.context.progress.stage(f"torsion of the {self.name}"):
                 edges: dict[MeshSpec, np.ndarray] = {}
 
                 def mesher(spec: MeshSpec) -> TetMesh:
@@ -234,7 +234,7 @@ class PartModel:
                     DRIVEN[self.name],
                     design.solver.tolerance_pct / 100,
                     self.sector.label,
-                    lambda text: self.shop.progress.note(f"  {self.name}: {text}"),
+                    lambda text: self.context.progress.note(f"  {self.name}: {text}"),
                 )
             sharp = next(iter(edges.values()))
             meshed = [MeshedPart(mesh, sharp) for mesh in found.meshes]
@@ -243,6 +243,6 @@ class PartModel:
             rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
             return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])
 
-        return self.shop.cache.get(
+        return self.context.cache.get(
             "torsion", self.torsion_key, make, lambda made: is_lasting(made.stiffness)
         )[0]

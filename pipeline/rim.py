@@ -94,7 +94,7 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
-    w0, apart = flexspline.shop.design.gear.centre_distance_mm, flexspline.exclusion_mm
+    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
         narrow = with_narrow_seat(outline, NARROW_SEAT)
@@ -116,18 +116,18 @@ def _by_harmonics(
     flexspline: PartModel, figure: str, make: Callable[[Meridian, Deadline], T], **more: float
 ) -> T:
     """A figure of the meridian, from the cache or made; `more` is what it depends on beside the part."""
-    shop = flexspline.shop
+    context = flexspline.context
 
     def timed() -> T:
-        with shop.progress.stage(f"{HARMONICS[figure]} by Fourier harmonics"):
-            return make(meridian(shop.design, "flexspline"), Deadline(STAGE_SECONDS))
+        with context.progress.stage(f"{HARMONICS[figure]} by Fourier harmonics"):
+            return make(meridian(context.design, "flexspline"), Deadline(STAGE_SECONDS))
 
     inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
-    return shop.cache.get("harmonics", inputs, timed, is_lasting)[0]
+    return context.cache.get("harmonics", inputs, timed, is_lasting)[0]
 
 
 def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
-    tolerance = flexspline.shop.design.solver.tolerance_pct / 100
+    tolerance = flexspline.context.design.solver.tolerance_pct / 100
     figure = "K_b_lobes" if supported else "K_b_lobes_unsupported"
     return _by_harmonics(
         flexspline,
@@ -148,7 +148,7 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
 
 
 def _revolved_peak(flexspline: PartModel) -> StressPeak:
-    design = flexspline.shop.design
+    design = flexspline.context.design
     w0, apart = design.gear.centre_distance_mm, flexspline.exclusion_mm
     return _by_harmonics(
         flexspline,

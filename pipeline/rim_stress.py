@@ -43,7 +43,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
     A swept part is meshed anew, fine where the peak of the part without its holes is; should the peak
     turn up elsewhere, there too. Any other part is solved on the mesh that gave K.
     """
-    w0 = flexspline.shop.design.gear.centre_distance_mm
+    w0 = flexspline.context.design.gear.centre_distance_mm
 
     def make() -> SolidField:
         expected = _hole_free_peak(flexspline)
@@ -59,12 +59,12 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
         return _solved(flexspline, finer, w0) if finer else field
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0}
-    return flexspline.shop.cache.get("ellipse", inputs, make)[0]
+    return flexspline.context.cache.get("ellipse", inputs, make)[0]
 
 
 def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     """Where (r, z) the stress is largest without the holes; None where no mesh can use or find it."""
-    design = flexspline.shop.design
+    design = flexspline.context.design
     if not can_be_swept(design, flexspline.name):
         return None
     outline, w0 = meridian(design, flexspline.name), design.gear.centre_distance_mm
@@ -76,7 +76,7 @@ def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
 
 
 def _reach_mm(flexspline: PartModel) -> float:
-    return REACH_WALLS * flexspline.shop.design.flexspline.wall_thickness_mm
+    return REACH_WALLS * flexspline.context.design.flexspline.wall_thickness_mm
 
 
 def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPart | None:
@@ -84,7 +84,7 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
 
     None where a check fails or the mesh would be larger than MOST_ELEMENTS at its coarsest.
     """
-    design = flexspline.shop.design
+    design = flexspline.context.design
     spec = first_spec(design, flexspline.name)
     far = spec.grading.far
     if design.solver.edge_length_mm is None:
@@ -92,7 +92,7 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
     even = replace(spec, grading=replace(spec.grading, near=far, far=far))
     edge = EDGE_WALLS * design.flexspline.wall_thickness_mm
     times = sector_of(design, flexspline.name, "ellipse").degrees / flexspline.sector.degrees
-    with flexspline.shop.progress.stage("mesh for the wave generator"):
+    with flexspline.context.progress.stage("mesh for the wave generator"):
         for coarser in COARSER:
             finer = Finer(coarser * LARGEST_STEP, places, _reach_mm(flexspline), coarser * edge)
             try:
@@ -106,7 +106,7 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
 
 def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
     """The ellipse on a sector's mesh reflected to a quarter or half, and its peak that counts."""
-    design, progress = flexspline.shop.design, flexspline.shop.progress
+    design, progress = flexspline.context.design, flexspline.context.progress
     sector = sector_of(design, flexspline.name, "ellipse")
     with progress.stage("wave generator"):
         whole = unfolded(meshed.mesh, sector.degrees)

@@ -34,23 +34,23 @@ def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
     ------
     ComputationError, MemoryError
     """
-    shop = flexspline.shop
-    tolerance = shop.design.solver.tolerance_pct / 100
-    sector = sector_of(shop.design, "flexspline", "lobes")
+    context = flexspline.context
+    tolerance = context.design.solver.tolerance_pct / 100
+    sector = sector_of(context.design, "flexspline", "lobes")
 
     def make() -> Stiffness:
-        with shop.progress.stage("lobes" if supported else "lobes, rim unsupported"):
+        with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
             return lobe_stiffness(
                 _meshes(flexspline, sector, supported),
                 flexspline.material,
                 supported,
                 tolerance,
                 sector.label,
-                lambda text: shop.progress.note(f"  {text}"),
+                lambda text: context.progress.note(f"  {text}"),
             )
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
-    return shop.cache.get("lobes", inputs, make, is_lasting)[0]
+    return context.cache.get("lobes", inputs, make, is_lasting)[0]
 
 
 def _meshes(
@@ -62,7 +62,7 @@ def _meshes(
     ------
     SolidError : the next one would be too large, or fails a check.
     """
-    own = range(MESHES if can_be_swept(flexspline.shop.design, "flexspline") else 0)
+    own = range(MESHES if can_be_swept(flexspline.context.design, "flexspline") else 0)
     if supported or not own:
         yield _of_torsion(flexspline, sector, supported)
     for number in own:
@@ -82,7 +82,7 @@ def _of_torsion(flexspline: PartModel, sector: Sector, supported: bool) -> tuple
 
 
 def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
-    design = flexspline.shop.design
+    design = flexspline.context.design
     f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
     swept = flexspline.swept(first_spec(design, "flexspline"), finer)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.chain import stiffnesses
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class StiffnessPair:
 
 
 def stiffness_pair(
-    shop: Workshop, K_b: float | None = None, K_e: float | None = None
+    context: AnalysisContext, K_b: float | None = None, K_e: float | None = None
 ) -> StiffnessPair:
     """The K given [N·m/rad], and by FE those that are not; a K given has no error of the solver.
 
@@ -34,11 +34,11 @@ def stiffness_pair(
     """
     if K_b is not None and K_e is not None:
         return StiffnessPair(K_b, K_e, True)
-    rim = shop.design.solver.load_case == "lobes"
-    found = stiffnesses(shop, flexspline=K_b is None, shaft=K_e is None, rim=rim)
+    rim = context.design.solver.load_case == "lobes"
+    found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []
     if K_b is None:
-        solved.append(found.in_sum(shop.design))
+        solved.append(found.in_sum(context.design))
         K_b = solved[-1].K_Nm_per_rad
     if K_e is None:
         solved.append(found.shaft)

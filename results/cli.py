@@ -82,7 +82,7 @@ def run(
         from flexspline.results.report.build import write_run_page, write_run_report
 
         with kept(job, json):
-            result = run_chain(job.shop)
+            result = run_chain(job.context)
         warn(job.design, result.stiffnesses, result.fields)
         tell_all(result.linear_limit.passed(job.design))
         extended = None
@@ -96,13 +96,13 @@ def run(
             return run_record(result, job.wall_s) | added
 
         write_record(job.folder, record())  # the answer first: drawing may fail
-        pictures = write_pictures(job.shop, result, job.folder, extended)
+        pictures = write_pictures(job.context, result, job.folder, extended)
         for line in pictures.warnings:
             tell(f"warning: {line}")
-        with job.shop.progress.stage("report"):
+        with job.context.progress.stage("report"):
             files = (job.file,)
             write_run_report(job.folder / "report.pdf", result, pictures, name, files)
-        write_run_page(job.folder / "report.html", job.shop, result, pictures, name, files)
+        write_run_page(job.folder / "report.html", job.context, result, pictures, name, files)
         missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
         deliver(job.folder, record() | missing, json)
 
@@ -114,7 +114,7 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
         job = begin(design, out)
         from flexspline.pipeline.chain import stiffnesses
 
-        found = stiffnesses(job.shop)
+        found = stiffnesses(job.context)
         keep(job, found, json)
         found.require(job.design)
 
@@ -153,7 +153,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
         from flexspline.pipeline.chain import stiffnesses
 
         rim = job.design.solver.load_case == "lobes"
-        found = stiffnesses(job.shop, flexspline=kb is None, shaft=ke is None, rim=rim)
+        found = stiffnesses(job.context, flexspline=kb is None, shaft=ke is None, rim=rim)
         record |= stiffness_record(job.design, found, job.wall_s)
         kb = kb or found.in_sum(job.design).K_Nm_per_rad
         ke = ke or found.shaft.K_Nm_per_rad
@@ -179,8 +179,8 @@ def export(
         from flexspline.results.export import write_decks, write_exports
         from flexspline.results.records import as_json, heading
 
-        files = write_exports(job.shop, job.folder)
-        files += write_decks(job.shop, job.folder) if deck else []
+        files = write_exports(job.context, job.folder)
+        files += write_decks(job.context, job.folder) if deck else []
         record = {**heading(job.design), "files": [str(f) for f in files]}
         show(as_json(record) if json else "\n".join(record["files"]), json)
 
@@ -200,7 +200,7 @@ def diagnose(
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        show(diagnose_and_write(job.shop, measured, given, job.folder, json, (job.file,)), json)
+        show(diagnose_and_write(job.context, measured, given, job.folder, json, (job.file,)), json)
 
 
 @app.command()

@@ -13,7 +13,7 @@ from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.chain import torque_field
-from flexspline.pipeline.parts import DRIVEN, Workshop
+from flexspline.pipeline.parts import DRIVEN, AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim import wave_generator_field
 from flexspline.results.atomic import write_bytes
@@ -22,26 +22,26 @@ from flexspline.results.renders.whole import Parity, whole_part
 STL_CHORD_ERROR_MM = 0.01
 
 
-def write_exports(shop: Workshop, folder: Path) -> list[Path]:
+def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
     """Whole parts as STEP and STL [mm]; solved fields as VTU: displacement [mm], von Mises [MPa].
 
     Every file appears whole or not at all.
     """
     done: list[Path] = []
     for name in ("flexspline", "shaft"):
-        with shop.progress.stage(f"CAD of the whole {name}"):
-            solid = build_solid(shop.design, name)
+        with context.progress.stage(f"CAD of the whole {name}"):
+            solid = build_solid(context.design, name)
             done.append(_whole(folder / f"{name}.step", partial(write_step, solid)))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
             done.append(_whole(folder / f"{name}.stl", stl))
-    flexspline, shaft = shop.part("flexspline"), shop.part("shaft")
+    flexspline, shaft = context.part("flexspline"), context.part("shaft")
     fields: tuple[tuple[str, SolidField, Parity], ...] = (
         ("flexspline_torque", torque_field(flexspline), "antisymmetric"),
         ("shaft_torque", torque_field(shaft), "antisymmetric"),
         ("wave_generator", wave_generator_field(flexspline), "symmetric"),
     )
     for name, field, parity in fields:
-        with shop.progress.stage(f"VTU {name}"):
+        with context.progress.stage(f"VTU {name}"):
             done.append(_whole(folder / f"{name}.vtu", partial(_write_vtu, field, parity)))
     return done
 
@@ -56,15 +56,15 @@ def write_step_files(design: Design, folder: Path, progress: Progress) -> list[P
     return done
 
 
-def write_decks(shop: Workshop, folder: Path) -> list[Path]:
+def write_decks(context: AnalysisContext, folder: Path) -> list[Path]:
     """The torsion case of both parts as CalculiX/Abaqus decks, on the meshes that gave K."""
     done = []
     for name, driven in DRIVEN.items():
-        part = shop.part(name)
+        part = context.part(name)
         twisted = part.twisted()
-        with shop.progress.stage(f"deck of the {name}"):
+        with context.progress.stage(f"deck of the {name}"):
             on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad
-            title = f"{shop.design.name}: {name} under torsion"
+            title = f"{context.design.name}: {name} under torsion"
             text = torsion_deck(twisted.meshed.mesh, part.material, driven, on_this_mesh, title)
             done.append(folder / f"{name}_torsion.inp")
             write_bytes(done[-1], text.encode())

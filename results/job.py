@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
     from flexspline.pipeline.chain import Stiffnesses
-    from flexspline.pipeline.parts import Workshop
+    from flexspline.pipeline.parts import AnalysisContext
     from flexspline.results.report.attached import Attachment
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
@@ -86,10 +86,10 @@ def answered(path: Path | None = None) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Job:
-    """A design that loaded, the folder for its files, and a workshop with the cache."""
+    """A design that loaded, the folder for its files, and an analysis context with the cache."""
 
     design: Design
-    shop: Workshop
+    context: AnalysisContext
     folder: Path
     file: Attachment
     began: float
@@ -112,13 +112,13 @@ def begin(path: Path, out: Path | None) -> Job:
         tell(f"warning: {line}")
     from flexspline.pipeline.cache import Cache
     from flexspline.pipeline.chain import CACHED_TYPES
-    from flexspline.pipeline.parts import Workshop
+    from flexspline.pipeline.parts import AnalysisContext
     from flexspline.pipeline.progress import Progress
     from flexspline.pipeline.storage import cache_folder
     from flexspline.results.report.attached import Attachment
 
-    shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, tell), Progress(tell))
-    return Job(design, shop, folder, Attachment(path.name, raw, "Design file"), began)
+    context = AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, tell), Progress(tell))
+    return Job(design, context, folder, Attachment(path.name, raw, "Design file"), began)
 
 
 def folder_of(path: Path, out: Path | None) -> Path:

@@ -20,7 +20,7 @@ from flexspline.pipeline.backlash import angle_rad
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import RunResult
 from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
@@ -76,7 +76,10 @@ class _Drawing:
 
 
 def write_pictures(
-    shop: Workshop, result: RunResult, folder: Path, extended: ExtendedBacklash | None = None
+    context: AnalysisContext,
+    result: RunResult,
+    folder: Path,
+    extended: ExtendedBacklash | None = None,
 ) -> RunPictures:
     """Draw (or take from the cache) every picture of a run into `folder`, and the 3-D views.
 
@@ -86,27 +89,27 @@ def write_pictures(
     """
     paths, views, missing = {}, {}, {}
     with DrawingProcess() as process:
-        renders, charts = _renders(shop, result, process), _charts(result, extended)
+        renders, charts = _renders(context, result, process), _charts(result, extended)
         for drawing in (*renders, *charts):
             path = folder / f"{drawing.name}.png"
             try:
-                with shop.progress.stage(f"picture {drawing.name}"):
-                    write_bytes(path, _drawn(shop.cache, drawing))
+                with context.progress.stage(f"picture {drawing.name}"):
+                    write_bytes(path, _drawn(context.cache, drawing))
                 paths[drawing.name] = path
             except NotDrawnError as error:
                 missing[drawing.name] = str(error)
                 path.unlink(missing_ok=True)
         # only of pictures that there are: they stand where scripts do not run
-        for drawing in _views(shop, result, process, tuple(paths)):
+        for drawing in _views(context, result, process, tuple(paths)):
             try:
-                with shop.progress.stage(f"3-D view {drawing.name}"):
-                    views[drawing.name] = _drawn(shop.cache, drawing)
+                with context.progress.stage(f"3-D view {drawing.name}"):
+                    views[drawing.name] = _drawn(context.cache, drawing)
             except NotDrawnError as error:
                 missing[f"3-D view {drawing.name}"] = str(error)
     return RunPictures(paths, views, missing)
 
 
-def small(shop: Workshop, png: Path) -> bytes:
+def small(context: AnalysisContext, png: Path) -> bytes:
     """A rendered picture as WebP, a fifth of its PNG: for pages, which carry their pictures."""
 
     def write(path: Path) -> None:
@@ -116,7 +119,7 @@ def small(shop: Workshop, png: Path) -> bytes:
             image.convert("RGB").save(path, "WEBP", quality=82, method=4)
 
     digest = hashlib.sha256(png.read_bytes()).hexdigest()
-    return _drawn(shop.cache, _Drawing("webp", {"sha256": digest}, partial(_here, write)))
+    return _drawn(context.cache, _Drawing("webp", {"sha256": digest}, partial(_here, write)))
 
 
 def _drawn(cache: Cache, drawing: _Drawing) -> bytes:
@@ -132,34 +135,36 @@ def _here(write: Callable[..., None], *arguments: Any) -> bytes:
         return path.read_bytes()
 
 
-def _stress_inputs(shop: Workshop, part: str) -> Mapping[str, Any]:
-    return {**shop.part(part).torsion_key, "torque_Nm": shop.design.load.torque_Nm}
+def _stress_inputs(context: AnalysisContext, part: str) -> Mapping[str, Any]:
+    return {**context.part(part).torsion_key, "torque_Nm": context.design.load.torque_Nm}
 
 
-def _ellipse_inputs(shop: Workshop) -> Mapping[str, Any]:
-    w0 = shop.design.gear.centre_distance_mm
-    return {**shop.part("flexspline").torsion_key, "w0_mm": w0}
+def _ellipse_inputs(context: AnalysisContext) -> Mapping[str, Any]:
+    w0 = context.design.gear.centre_distance_mm
+    return {**context.part("flexspline").torsion_key, "w0_mm": w0}
 
 
-def _renders(shop: Workshop, result: RunResult, process: DrawingProcess) -> Iterable[_Drawing]:
+def _renders(
+    context: AnalysisContext, result: RunResult, process: DrawingProcess
+) -> Iterable[_Drawing]:
     """The parts whose fields there are: meshes, stress under torque, the ellipse."""
     fields, load = result.fields, result.design.load
     solved = {part: f"{part}_torque" for part in TITLES if f"{part}_torque" in fields}
     for part, name in solved.items():
         make = partial(process.draw, write_mesh_picture, fields[name].mesh, TITLES[part])
-        yield _Drawing(f"{part}_mesh", shop.part(part).torsion_key, make)
+        yield _Drawing(f"{part}_mesh", context.part(part).torsion_key, make)
     for part, name in solved.items():
         shown = fields[name], TITLES[part], load.torque_Nm
         make = partial(process.draw, write_torque_stress, *shown)
-        yield _Drawing(name, _stress_inputs(shop, part), make)
+        yield _Drawing(name, _stress_inputs(context, part), make)
     if ELLIPSE in fields:
         ellipse = fields[ELLIPSE], result.design.gear.centre_distance_mm
         make = partial(process.draw, write_ellipse_picture, *ellipse)
-        yield _Drawing(ELLIPSE, _ellipse_inputs(shop), make)
+        yield _Drawing(ELLIPSE, _ellipse_inputs(context), make)
 
 
 def _views(
-    shop: Workshop, result: RunResult, process: DrawingProcess, names: Iterable[str]
+    context: AnalysisContext, result: RunResult, process: DrawingProcess, names: Iterable[str]
 ) -> Iterable[_Drawing]:
     """Those of the stress pictures again, as views that turn."""
     fields, load = result.fields, result.design.load
@@ -169,11 +174,11 @@ def _views(
         if name == ELLIPSE:
             ellipse = name, fields[name], result.design.gear.centre_distance_mm
             make = partial(process.draw, write_turning_ellipse, *ellipse)
-            yield _Drawing(name, {**key, **_ellipse_inputs(shop)}, make)
+            yield _Drawing(name, {**key, **_ellipse_inputs(context)}, make)
         elif part in TITLES:
             shown = name, fields[name], TITLES[part], load.torque_Nm
             make = partial(process.draw, write_turning_torque_stress, *shown)
-            yield _Drawing(name, {**key, **_stress_inputs(shop, part)}, make)
+            yield _Drawing(name, {**key, **_stress_inputs(context, part)}, make)
 
 
 def _charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterable[_Drawing]:

@@ -16,7 +16,7 @@ import numpy as np
 from flexspline.geometry.load import design_from, load_design
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
 HERE = Path(__file__).parent
@@ -43,8 +43,10 @@ def lines() -> list[str]:
             rim = tables["flexspline"]
             rim["length_mm"], rim["diaphragm_thickness_mm"] = float(length), diaphragm
             rim["wall_thickness_mm"] = round(wall - THINNER_MM, 3)
-            shop = Workshop(design_from(tables), Cache(Path(folder), CACHED_TYPES), Progress())
-            K = shop.part("flexspline").stiffness().K_Nm_per_rad * (
+            context = AnalysisContext(
+                design_from(tables), Cache(Path(folder), CACHED_TYPES), Progress()
+            )
+            K = context.part("flexspline").stiffness().K_Nm_per_rad * (
                 1 + NOISE * rng.standard_normal()
             )
             found.append(

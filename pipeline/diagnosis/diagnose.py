@@ -29,7 +29,7 @@ from flexspline.pipeline.diagnosis.verdict import (
     unexplained_of,
     verdict_of,
 )
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 
@@ -75,11 +75,11 @@ def diagnose_file(
     K_b: float,
     K_e: float,
     K_error: float = 0.0,
-    shop: Workshop | None = None,
+    context: AnalysisContext | None = None,
 ) -> Diagnosis:
     """Read a measurement and diagnose it.
 
-    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `shop`, where
+    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
     they came from FE: specimens are then solved like the design; without it, given stiffnesses are
     scaled from specimen to specimen by the hole-free model.
 
@@ -95,14 +95,16 @@ def diagnose_file(
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model=model, end_points=analysis)
-    bench = shop or _quiet_shop(design)
-    outcome, found = diagnose_specimens(design, measurement, K_b, K_e, bench, full=shop is not None)
+    bench = context or _quiet_context(design)
+    outcome, found = diagnose_specimens(
+        design, measurement, K_b, K_e, bench, full=context is not None
+    )
     return Diagnosis(design, measurement, prediction, outcome, specimens=found)
 
 
-def _quiet_shop(design: Design) -> Workshop:
+def _quiet_context(design: Design) -> AnalysisContext:
     """For the hole-free model's ratios, where stiffnesses were given."""
-    return Workshop(design, Cache(cache_folder(), CACHED_TYPES), Progress())
+    return AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES), Progress())
 
 
 def diagnose_sweep(design: Design, sweep: Sweep, prediction: Prediction) -> Diagnosis:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexspline.fea.types import SolidField
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim import wave_generator_field
 from flexspline.pipeline.storage import cache_folder
@@ -32,13 +32,13 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     row = result.pareto[0]
     design = result.design_of(row)
     solver = design.solver.model_copy(update={"model": "auto"})
-    shop = Workshop(
+    context = AnalysisContext(
         design.model_copy(update={"solver": solver}),
         Cache(cache_folder(), CACHED_TYPES, lambda line: None),
         Progress(),
     )
     try:
-        field = wave_generator_field(shop.part("flexspline"))
+        field = wave_generator_field(context.part("flexspline"))
     except OUR_ERRORS as fault:
         say(f"no picture of design {row.slot} on the wave generator: {fault}")
         return None

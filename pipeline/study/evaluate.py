@@ -32,7 +32,7 @@ from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.backlash import StiffnessValueError, backlash
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.parts import DRIVEN, Workshop
+from flexspline.pipeline.parts import DRIVEN, AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.figures import SIZES, Solve
@@ -145,8 +145,8 @@ def with_equivalent_ring(design: Design) -> Design:
     """With the plain ring that stands for drawn teeth, as the chain has it."""
     if design.flexspline.teeth == "none":
         return design
-    shop = Workshop(design, Cache(cache_folder(), _ring_types(), _silent), Progress())
-    return shop.part("flexspline").shop.design
+    context = AnalysisContext(design, Cache(cache_folder(), _ring_types(), _silent), Progress())
+    return context.part("flexspline").context.design
 
 
 def _ring_types() -> tuple[type, ...]:

@@ -15,7 +15,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 
@@ -72,11 +72,13 @@ def holes_of(
 
     Where the solid solve fails there is none, and `say` is told.
     """
-    shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress())
+    context = AnalysisContext(
+        design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress()
+    )
     found = {}
     for figure in pierced(design):
         name = PART_OF[figure]
-        part = shop.part(name)
+        part = context.part(name)
         say(
             f"the {name} of the nominal design with the solid model, for what its holes do to {figure}"
         )

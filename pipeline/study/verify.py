@@ -10,7 +10,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.cluster import Hands
@@ -31,9 +31,9 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
-        shop = Workshop(design, Cache(cache_folder(), CACHED_TYPES, _silent), Progress())
+        context = AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, _silent), Progress())
         lobed = design.solver.load_case == "lobes"
-        found = stiffnesses(shop, rim=rim or lobed)
+        found = stiffnesses(context, rim=rim or lobed)
         total = backlash_of(design, found)
     except OUR_ERRORS as fault:
         return Outcome(reason=str(fault))

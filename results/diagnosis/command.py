@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.record import read_measurement
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.files import write_diagnosis
@@ -16,7 +16,7 @@ from flexspline.results.report.attached import Attachment
 
 
 def diagnose_and_write(
-    shop: Workshop,
+    context: AnalysisContext,
     measured: Path,
     given: tuple[float | None, float | None],
     folder: Path,
@@ -30,13 +30,13 @@ def diagnose_and_write(
     DesignError, ComputationError, MeasurementError
     """
     read_measurement(measured)  # refuse a bad file before the long work
-    used = stiffness_pair(shop, *given)
-    with shop.progress.stage("diagnosis"):
+    used = stiffness_pair(context, *given)
+    with context.progress.stage("diagnosis"):
         found = diagnose_file(
-            shop.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            shop if given == (None, None) else None,
+            context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
+            context if given == (None, None) else None,
         )  # fmt: skip
     record = diagnosis_record(found)
-    with shop.progress.stage("figures and report"):
+    with context.progress.stage("figures and report"):
         write_diagnosis(folder, found, record, used, attached)
     return as_json(record) if json else diagnosis_table(found, folder)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from flexspline.pipeline.chain import RunResult
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.pictures import RunPictures, small
 from flexspline.results.records import program_version
@@ -44,7 +44,7 @@ def write_run_report(
 
 def write_run_page(
     path: Path,
-    shop: Workshop,
+    context: AnalysisContext,
     result: RunResult,
     pictures: RunPictures,
     extended_model: str = "",
@@ -52,14 +52,14 @@ def write_run_page(
 ) -> None:
     """`report.html` of `flexspline run`: the same content, with 3-D views, in one file.
 
-    Shrunk pictures are kept in the workshop's cache.
+    Shrunk pictures are kept in the context's cache.
     """
     content = _content(result, pictures, extended_model, attached)
     images = {}
     for name, source in pictures_of(content).items():
         image = png(source)
-        images[name] = replace(image, data=small(shop, source)) if name in RENDERED else image
-    with shop.progress.stage("report.html"):
+        images[name] = replace(image, data=small(context, source)) if name in RENDERED else image
+    with context.progress.stage("report.html"):
         write_bytes(path, page_of(run_document(content), images, pictures.views))
 
 

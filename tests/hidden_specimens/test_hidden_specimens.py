@@ -22,7 +22,7 @@ from flexspline.pipeline.diagnosis.result import NamedCause
 from flexspline.pipeline.diagnosis.specimens.diagnose import weighed
 from flexspline.pipeline.diagnosis.specimens.race import Data
 from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
 KINDS: tuple[Kind, ...] = ("clean", "softer", "joint", "lobes", "wall", "diaphragm")
@@ -49,10 +49,10 @@ def answers(
 ) -> Iterator[Answer]:
     for name, seed in sets:
         made = batch(name, seed)
-        shop = Workshop(made.design, Cache(folder, CACHED_TYPES), Progress())
-        plain = Bench(shop, 1.0, 1.0, False)
+        context = AnalysisContext(made.design, Cache(folder, CACHED_TYPES), Progress())
+        plain = Bench(context, 1.0, 1.0, False)
         K_b, K_e = (1 / plain.plain(made.design, p) for p in ("flexspline", "shaft"))
-        bench = Bench(shop, K_b, K_e, False)
+        bench = Bench(context, K_b, K_e, False)
         first = hidden(name, seed, "clean", rng).specimens
         fe = compliances(bench, row_designs(made.design, first), first.part)
         for kind in KINDS:

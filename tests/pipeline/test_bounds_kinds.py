@@ -14,7 +14,7 @@ from flexspline.geometry.load import design_from
 from flexspline.pipeline import parts
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.records import stiffness_record
 
@@ -36,8 +36,8 @@ def design(file: str, model: str = "auto", **changes: object) -> Design:
 
 
 def kinds(asked: Design, folder: Path, *, rim: bool, shaft: bool = True) -> dict[str, str]:
-    shop = Workshop(asked, Cache(folder, CACHED_TYPES), Progress())
-    found: Stiffnesses = stiffnesses(shop, shaft=shaft, rim=rim)
+    context = AnalysisContext(asked, Cache(folder, CACHED_TYPES), Progress())
+    found: Stiffnesses = stiffnesses(context, shaft=shaft, rim=rim)
     assert not found.missing
     record = stiffness_record(asked, found, 0.0)
     named = {k.removesuffix("_bounds_kind"): v for k, v in record.items() if k.endswith("kind")}

@@ -14,7 +14,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import rim
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.warned import shortfalls
 
@@ -23,7 +23,9 @@ DESIGN = DESIGN.model_copy(update={"flexspline": CUP})
 
 
 def answers(folder: Path) -> Stiffnesses:
-    return stiffnesses(Workshop(DESIGN, Cache(folder, CACHED_TYPES), Progress()), shaft=False)
+    return stiffnesses(
+        AnalysisContext(DESIGN, Cache(folder, CACHED_TYPES), Progress()), shaft=False
+    )
 
 
 @pytest.fixture

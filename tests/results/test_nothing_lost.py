@@ -14,7 +14,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import chain
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.cli import app
 from flexspline.results.pictures import RunPictures
@@ -135,7 +135,7 @@ def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
         monkeypatch.setattr(chain, broken, fail)
     monkeypatch.setattr("flexspline.pipeline.rim.contact_stiffness", fail)
     cache = Cache(tmp_path / "cache", chain.CACHED_TYPES)
-    result = chain.run(Workshop(load_design(revolved), cache, Progress()))
+    result = chain.run(AnalysisContext(load_design(revolved), cache, Progress()))
     assert not result.fields
     lines = [line for line in all_warnings(result) if line.endswith(f"not found, {WHY}")]
     assert len(lines) == 4  # two peaks under torque, the ellipse, the contact

@@ -16,7 +16,7 @@ from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes
 
@@ -32,8 +32,8 @@ HOLES = 0.003
 )
 def test_the_free_rim_meets_its_tolerance_and_is_right(file: str, tmp_path: Path, record) -> None:
     design = load_design(EXAMPLES / file)
-    shop = Workshop(design, Cache(tmp_path, CACHED_TYPES), Progress())
-    part = shop.part("flexspline")
+    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    part = context.part("flexspline")
     found = solid_lobes(part, supported=False)
     outline = meridian(without_holes(design), "flexspline")
     whole = lobe_stiffness(outline, part.material, False, 0.002)

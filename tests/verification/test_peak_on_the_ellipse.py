@@ -16,7 +16,7 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.chain import CACHED_TYPES
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim_stress import REACH_WALLS, solid_ellipse
 
@@ -35,7 +35,7 @@ CASES = {
 def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
     file, changes = CASES[case]
     design = hole_free(file, "flexspline", changes)
-    part = Workshop(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
+    part = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
     w0, wall = design.gear.centre_distance_mm, design.flexspline.wall_thickness_mm
     exact = ellipse_stress(meridian(design, "flexspline"), part.material, w0, wall, 0.005)
     peak = solid_ellipse(part).peak

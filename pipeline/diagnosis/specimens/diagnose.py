@@ -22,7 +22,7 @@ from flexspline.pipeline.diagnosis.specimens.stiffness import (
     row_designs,
 )
 from flexspline.pipeline.diagnosis.specimens.terms import log_compliance, terms_of
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 
 FEWEST = 3
 """One for the modulus, one for a cause, one to see noise."""
@@ -33,7 +33,12 @@ the series less than half as far."""
 
 
 def diagnose_specimens(
-    design: Design, specimens: Specimens, K_b: float, K_e: float, shop: Workshop, full: bool
+    design: Design,
+    specimens: Specimens,
+    K_b: float,
+    K_e: float,
+    context: AnalysisContext,
+    full: bool,
 ) -> tuple[Outcome, SpecimenAnalysis | None]:
     """The verdict and what stands behind it; None where there is too little to fit.
 
@@ -48,7 +53,7 @@ def diagnose_specimens(
     n = len(designs)
     if n < FEWEST:
         return _insufficient(n), None
-    bench = Bench(shop, K_b, K_e, full)
+    bench = Bench(context, K_b, K_e, full)
     parts, notes = _parts(bench, designs, specimens)
     fe = compliances(bench, designs, parts)
     std = specimens.stiffness_std_Nm_per_rad

@@ -55,7 +55,7 @@ def _separating(
 ) -> NextMeasurement:
     """The dimension whose change drives the two nearest rivals furthest apart."""
     fits = (decision.chosen, *decision.rivals)
-    bench.shop.progress.note("the specimen that would tell the rivals apart")
+    bench.context.progress.note("the specimen that would tell the rivals apart")
     found: list[tuple[float, str, float]] = []
     for name in PARTS[part]:
         for key, nominal in lengths(design, name).items():

@@ -25,7 +25,7 @@ from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.diagnosis.errors import MeasurementError
 from flexspline.pipeline.diagnosis.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
-from flexspline.pipeline.parts import DRIVEN, Workshop
+from flexspline.pipeline.parts import DRIVEN, AnalysisContext
 
 FE_TOLERANCE = 1e-3
 """Of the hole-free model: a step below changes K by more than ten times as much."""
@@ -107,7 +107,7 @@ class Bench:
     `full`: rows are solved with their holes; else K_b and K_e are scaled by the hole-free model.
     """
 
-    shop: Workshop
+    context: AnalysisContext
     K_b: float
     K_e: float
     full: bool
@@ -115,18 +115,18 @@ class Bench:
     def compliance(self, design: Design, part: str) -> float:
         """Of one part of a design [rad per N·m], load case as in the sum."""
         nominal = self.K_b if part == "flexspline" else self.K_e
-        mine, other = self._model(design, part), self._model(self.shop.design, part)
+        mine, other = self._model(design, part), self._model(self.context.design, part)
         return mine / other / nominal
 
     def _model(self, design: Design, part: str) -> float:
         lobed = part == "flexspline" and design.solver.load_case == "lobes"
         if self.full and not lobed:
-            return 1 / replace(self.shop, design=design).part(part).stiffness().K_Nm_per_rad
+            return 1 / replace(self.context, design=design).part(part).stiffness().K_Nm_per_rad
         return self.plain(design, part, lobed)
 
     def plain(self, design: Design, part: str, lobed: bool = False) -> float:
         """Compliance [rad per N·m] of the part without holes."""
-        solid = replace(self.shop, design=design).part(part).shop.design
+        solid = replace(self.context, design=design).part(part).context.design
         bare = without_holes(solid)
         own = bare.shaft_material if part == "shaft" else bare.material.flexspline
         material = Elastic.of(own)
@@ -143,7 +143,7 @@ class Bench:
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
                   "tolerance": tolerance}  # fmt: skip
-        return float(self.shop.cache.get("specimen", inputs, make)[0])
+        return float(self.context.cache.get("specimen", inputs, make)[0])
 
 
 def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:
@@ -190,10 +190,10 @@ def compliances(
     n = len(designs)
     own = {p: np.zeros(n) for p in ("flexspline", "shaft")}
     zone = np.zeros(n)
-    base = 1.0 if bench.shop.design.solver.load_case == "lobes" else 0.0
+    base = 1.0 if bench.context.design.solver.load_case == "lobes" else 0.0
     for i, (design, part) in enumerate(zip(designs, parts, strict=True)):
         if n > 1:
-            bench.shop.progress.note(f"stiffness of specimen {i + 1} of {n}")
+            bench.context.progress.note(f"stiffness of specimen {i + 1} of {n}")
         for p in PARTS[part]:
             own[p][i] = once("own", design, p)
         if zones and own["flexspline"][i]:
@@ -230,7 +230,7 @@ def _sensitivities(
         tolerance = general_tolerance_mm(float(nominal[has].max()), key.endswith("fillet_mm"))
         slope, curvature = np.zeros(len(designs)), np.zeros(len(designs))
         if keys is None:
-            bench.shop.progress.note(f"sensitivity to {key}")
+            bench.context.progress.note(f"sensitivity to {key}")
         known: dict[str, tuple[float, float]] = {}
         first = _log_slope(bench, mine[0], part, key, each[0][key], tolerance)
         if keys is None and abs(first[0]) * 5 * tolerance / each[0][key] < FEELS / 2:

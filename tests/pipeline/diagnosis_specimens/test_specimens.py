@@ -23,7 +23,7 @@ from flexspline.pipeline.diagnosis.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
-from flexspline.pipeline.parts import Workshop
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
 ROOT = Path(__file__).parents[3]
@@ -40,8 +40,10 @@ DRAWN = {
 
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory):
-    shop = Workshop(DESIGN, Cache(tmp_path_factory.mktemp("cache"), CACHED_TYPES), Progress())
-    given = Bench(shop, 1.0, 1.0, False)
+    context = AnalysisContext(
+        DESIGN, Cache(tmp_path_factory.mktemp("cache"), CACHED_TYPES), Progress()
+    )
+    given = Bench(context, 1.0, 1.0, False)
     return replace(
         given, K_b=1 / given.plain(DESIGN, "flexspline"), K_e=1 / given.plain(DESIGN, "shaft")
     )
@@ -63,7 +65,9 @@ def measured(K: np.ndarray, part: str | None = "flexspline", std: float | None =
 
 
 def diagnosed(bench, K, **how):
-    return diagnose_specimens(DESIGN, measured(K, **how), bench.K_b, bench.K_e, bench.shop, False)
+    return diagnose_specimens(
+        DESIGN, measured(K, **how), bench.K_b, bench.K_e, bench.context, False
+    )
 
 
 def noisy(C: np.ndarray, seed: int) -> np.ndarray:
@@ -226,9 +230,9 @@ def test_unstated_noise_is_found_from_scatter(bench, fe) -> None:
 def test_relative_sensitivity_holds_with_bolt_holes(tmp_path) -> None:
     """Solved once with six holes: K's ratio between two drawings differs from the hole-free model's by
     less than 1 %, so a sensitivity's error is a small part of one specimen's 1 % of noise."""
-    shop = Workshop(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress())
     other = with_values(DESIGN, {WALL: 0.5, LENGTH: 34.0})
-    full, plain = Bench(shop, 1.0, 1.0, True), Bench(shop, 1.0, 1.0, False)
+    full, plain = Bench(context, 1.0, 1.0, True), Bench(context, 1.0, 1.0, False)
     assert full.compliance(other, "flexspline") == pytest.approx(
         plain.compliance(other, "flexspline"), rel=0.01
     )
@@ -242,8 +246,8 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
         "poissons_ratio": 0.3,
     }
     design = design_from(tables)
-    shop = Workshop(design, Cache(tmp_path, CACHED_TYPES), Progress())
-    bench = Bench(shop, 3e4, 4.3e4, False)
+    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    bench = Bench(context, 3e4, 4.3e4, False)
     key = "shaft.segment[1].outer_diameter_mm"
     values = np.array([15.0, 16, 17, 18, 19, 20])
     drawn = [
@@ -255,7 +259,7 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
         Path("made.csv"), tuple("abcdef"), ("shaft",) * 6, 0.82 * noisy(C, 9), np.full(6, 400.0),
         {key: values, "shaft.segment[0].outer_diameter_mm": np.full(6, 22.0)}, np.arange(6) + 2,
     )  # fmt: skip
-    outcome, analysis = diagnose_specimens(design, specimens, 3e4, 4.3e4, shop, False)
+    outcome, analysis = diagnose_specimens(design, specimens, 3e4, 4.3e4, context, False)
     mine = {c.id for c in outcome.causes} | {a for c in outcome.causes for a in c.alternatives}
     assert "youngs_modulus" in mine
     assert "load_zone" not in mine
