@@ -1,1 +1,1 @@
-"""The chain of stages, its cache, and the backlash sum."""
+"""The analysis and its cache, and the backlash sum."""

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.leftovers import discard, unfinished
 from flexspline.pipeline.packing import packed, unpacked
+from flexspline.pipeline.temporary_files import discard, unfinished
 
 T = TypeVar("T")
 FORMAT = 12

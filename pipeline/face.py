@@ -12,17 +12,17 @@ from typing import Literal
 from flexspline.fea.types import SolidField, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.pipeline.analysis import CACHED_TYPES, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES, torque_field
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.model_file import read_model_file
 from flexspline.pipeline.diagnosis.predict import Predicted, predict_file
 from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.load_cases import RimCase, rim_stiffness, wave_generator_field
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim import RimCase, rim_stiffness, wave_generator_field
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.cluster import hands_of

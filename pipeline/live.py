@@ -26,8 +26,8 @@ from flexspline.geometry.exclusion import exclusion_mm
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian
+from flexspline.pipeline.load_cases import STRESS_TOLERANCE
 from flexspline.pipeline.parts import DRIVEN
-from flexspline.pipeline.rim import STRESS_TOLERANCE
 from flexspline.pipeline.study.evaluate import with_equivalent_ring
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline.chain import stiffnesses
+from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.parts import AnalysisContext
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from flexspline.pipeline.leftovers import unfinished
+from flexspline.pipeline.temporary_files import unfinished
 
 UMASK = os.umask(0o077)
 """What the user keeps from others; it can be read only by setting it."""

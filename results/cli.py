@@ -75,7 +75,7 @@ def run(
 
         measured = read_model_file(model) if model is not None else None
         job = begin(design, out)
-        from flexspline.pipeline.chain import run as run_chain
+        from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.extended_backlash import extended_backlash
         from flexspline.results.pictures import write_pictures
         from flexspline.results.records import Record, extended_record, run_record, write_record
@@ -112,7 +112,7 @@ def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """K_b and K_e with error bounds only."""
     with answered(design):
         job = begin(design, out)
-        from flexspline.pipeline.chain import stiffnesses
+        from flexspline.pipeline.analysis import stiffnesses
 
         found = stiffnesses(job.context)
         keep(job, found, json)
@@ -150,7 +150,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
 
     record = {**heading(job.design), "warnings": list(warnings(job.design))}
     if kb is None or ke is None:
-        from flexspline.pipeline.chain import stiffnesses
+        from flexspline.pipeline.analysis import stiffnesses
 
         rim = job.design.solver.load_case == "lobes"
         found = stiffnesses(job.context, flexspline=kb is None, shaft=ke is None, rim=rim)

@@ -12,10 +12,10 @@ from flexspline.fea.types import SolidField
 from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.chain import torque_field
+from flexspline.pipeline.analysis import torque_field
+from flexspline.pipeline.load_cases import wave_generator_field
 from flexspline.pipeline.parts import DRIVEN, AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim import wave_generator_field
 from flexspline.results.atomic import write_bytes
 from flexspline.results.renders.whole import Parity, whole_part
 

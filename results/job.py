@@ -15,7 +15,7 @@ import typer
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
-    from flexspline.pipeline.chain import Stiffnesses
+    from flexspline.pipeline.analysis import Stiffnesses
     from flexspline.pipeline.parts import AnalysisContext
     from flexspline.results.report.attached import Attachment
 
@@ -110,8 +110,8 @@ def begin(path: Path, out: Path | None) -> Job:
     folder = folder_of(path, out)
     for line in warnings(design):
         tell(f"warning: {line}")
+    from flexspline.pipeline.analysis import CACHED_TYPES
     from flexspline.pipeline.cache import Cache
-    from flexspline.pipeline.chain import CACHED_TYPES
     from flexspline.pipeline.parts import AnalysisContext
     from flexspline.pipeline.progress import Progress
     from flexspline.pipeline.storage import cache_folder
@@ -124,7 +124,7 @@ def begin(path: Path, out: Path | None) -> Job:
 def folder_of(path: Path, out: Path | None) -> Path:
     """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes."""
     from flexspline.geometry.errors import DesignError
-    from flexspline.pipeline.leftovers import discard
+    from flexspline.pipeline.temporary_files import discard
 
     folder = out if out is not None else path.parent / f"{path.stem}.out"
     if folder.exists() and not folder.is_dir():
@@ -173,7 +173,7 @@ def tell_all(warnings: Iterable[str]) -> list[str]:
 @contextmanager
 def kept(job: Job, as_json: bool) -> Iterator[None]:
     """Where a figure that the answer needs failed, keep the others before the error goes on."""
-    from flexspline.pipeline.chain import NotFoundError
+    from flexspline.pipeline.analysis import NotFoundError
 
     try:
         yield

@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.backlash import angle_rad
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import RunResult
 from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from flexspline.fea.toothed_ring.equivalent import EquivalentRing
     from flexspline.fea.types import SolidField, Stiffness, StressPeak
     from flexspline.geometry.design import Design
+    from flexspline.pipeline.analysis import RunResult, Stiffnesses
     from flexspline.pipeline.backlash import Backlash
-    from flexspline.pipeline.chain import RunResult, Stiffnesses
     from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
     from flexspline.pipeline.linear_limit import LinearLimit
     from flexspline.pipeline.live import Bounded

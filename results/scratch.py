@@ -16,7 +16,7 @@ def own_scratch() -> Iterator[None]:
     The libraries' too. Where no temporary folder can be written to, nothing is changed: who needs one
     will say so.
     """
-    from flexspline.pipeline.leftovers import discard, mark
+    from flexspline.pipeline.temporary_files import discard, mark
     from flexspline.results.job import tell
 
     before = tempfile.tempdir

@@ -11,7 +11,7 @@ from flexspline.results.quantities import quantity
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField, StressPeak
     from flexspline.geometry.design import Design
-    from flexspline.pipeline.chain import RunResult, Stiffnesses
+    from flexspline.pipeline.analysis import RunResult, Stiffnesses
 
 
 def shortfalls(

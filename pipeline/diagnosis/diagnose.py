@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.geometry.design import Design
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.holdout import gain_of

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexspline.fea.types import SolidField
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
+from flexspline.pipeline.load_cases import wave_generator_field
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim import wave_generator_field
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.evaluate import OUR_ERRORS
 from flexspline.pipeline.study.result import StudyResult

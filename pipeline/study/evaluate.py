@@ -142,7 +142,7 @@ def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, fl
 
 
 def with_equivalent_ring(design: Design) -> Design:
-    """With the plain ring that stands for drawn teeth, as the chain has it."""
+    """With the plain ring that stands for drawn teeth, as in an analysis."""
     if design.flexspline.teeth == "none":
         return design
     context = AnalysisContext(design, Cache(cache_folder(), _ring_types(), _silent), Progress())
@@ -150,7 +150,7 @@ def with_equivalent_ring(design: Design) -> Design:
 
 
 def _ring_types() -> tuple[type, ...]:
-    from flexspline.pipeline.chain import CACHED_TYPES
+    from flexspline.pipeline.analysis import CACHED_TYPES
 
     return CACHED_TYPES
 

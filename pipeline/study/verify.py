@@ -8,8 +8,8 @@ from dataclasses import asdict
 
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
+from flexspline.pipeline.analysis import CACHED_TYPES, backlash_of, stiffnesses
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES, backlash_of, stiffnesses
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from flexspline.pipeline.chain import RunResult
+from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.pictures import RunPictures, small

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from specimen_truth import MODULUS_STD, OFF_MM, Kind, batch, hidden
 
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.diagnosis.record import Specimens
 from flexspline.pipeline.diagnosis.result import NamedCause
 from flexspline.pipeline.diagnosis.specimens.diagnose import weighed

@@ -12,8 +12,8 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.pipeline import parts
+from flexspline.pipeline.analysis import CACHED_TYPES, Stiffnesses, stiffnesses
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.records import stiffness_record

@@ -12,8 +12,8 @@ from flexspline.fea.deadline import Deadline
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import rim
+from flexspline.pipeline.analysis import CACHED_TYPES, Stiffnesses, stiffnesses
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES, Stiffnesses, stiffnesses
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.warned import shortfalls

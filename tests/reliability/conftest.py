@@ -16,7 +16,7 @@ PASSED = pytest.StashKey[dict[str, list[float]]]()
 SAID = pytest.StashKey[dict[str, str]]()
 """What each module is about, its first line."""
 OPTION = "--write-reliability"
-PLAIN = ("test_full_disk", "test_broken_mesher", "test_leftovers")
+PLAIN = ("test_full_disk", "test_broken_mesher", "test_temporary_files")
 """Modules whose tests are of one kind: a row says how many passed."""
 
 

@@ -15,7 +15,7 @@ TOPICS = {
     "Designs": ("test_designs",),
     "Files": ("test_files",),
     "Crashes": (
-        "test_kills", "test_full_disk", "test_damaged_cache", "test_broken_mesher", "test_leftovers",
+        "test_kills", "test_full_disk", "test_damaged_cache", "test_broken_mesher", "test_temporary_files",
     ),
     "Size": ("test_size",),
     "Numbers": ("test_numbers",),

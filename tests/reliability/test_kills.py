@@ -15,7 +15,7 @@ import psutil
 import pytest
 from shell import command, environment, run
 
-from flexspline.pipeline.leftovers import MARK
+from flexspline.pipeline.temporary_files import MARK
 
 GONE_WITHIN_S = 20.0
 """Children notice at once that their parent is gone, but may be in the middle of a library's call."""

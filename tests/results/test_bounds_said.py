@@ -13,7 +13,7 @@ from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline.chain import Stiffnesses
+from flexspline.pipeline.analysis import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.records import stiffness_record

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import chain
+from flexspline.pipeline import analysis
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -80,7 +80,7 @@ def asked(command: str, design: Path) -> Answer:
     ],
 )  # fmt: skip
 def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolved, monkeypatch):
-    monkeypatch.setattr(f"flexspline.pipeline.rim.{broken}", fail)
+    monkeypatch.setattr(f"flexspline.pipeline.load_cases.{broken}", fail)
     answer = asked("stiffness", revolved)
     assert answer.status == 0
     assert {k for k in (*BOTH, *LOBES, PEAK) if k not in answer.record} == {lost}
@@ -132,10 +132,10 @@ def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):
 def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     """Neither fields nor contact: the report says so, and has the rest."""
     for broken in ("torque_field", "wave_generator_field"):
-        monkeypatch.setattr(chain, broken, fail)
-    monkeypatch.setattr("flexspline.pipeline.rim.contact_stiffness", fail)
-    cache = Cache(tmp_path / "cache", chain.CACHED_TYPES)
-    result = chain.run(AnalysisContext(load_design(revolved), cache, Progress()))
+        monkeypatch.setattr(analysis, broken, fail)
+    monkeypatch.setattr("flexspline.pipeline.load_cases.contact_stiffness", fail)
+    cache = Cache(tmp_path / "cache", analysis.CACHED_TYPES)
+    result = analysis.run(AnalysisContext(load_design(revolved), cache, Progress()))
     assert not result.fields
     lines = [line for line in all_warnings(result) if line.endswith(f"not found, {WHY}")]
     assert len(lines) == 4  # two peaks under torque, the ellipse, the contact

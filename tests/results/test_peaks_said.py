@@ -11,7 +11,7 @@ from page_text import letters, pdf_letters, read_page
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
-from flexspline.pipeline.chain import Stiffnesses
+from flexspline.pipeline.analysis import Stiffnesses
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passed, share_of_limit
 from flexspline.results.console import table

@@ -14,8 +14,8 @@ from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes

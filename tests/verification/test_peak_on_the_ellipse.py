@@ -14,11 +14,11 @@ from hole_free import hole_free
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.geometry.meridian import meridian
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.rim_stress import REACH_WALLS, solid_ellipse
+from flexspline.pipeline.wave_generator import REACH_WALLS, solid_ellipse
 
 CASES = {
     "cup": ("xb1-40.toml", {}),

@@ -15,8 +15,8 @@ from flexspline.geometry.keys import (
     without_holes,
 )
 from flexspline.geometry.load import design_from, load_design, read_toml
+from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.chain import CACHED_TYPES
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.errors import MeasurementError
 from flexspline.pipeline.diagnosis.record import Specimens

@@ -17,15 +17,15 @@ from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.parts import DRIVEN, AnalysisContext, MeshedPart, PartModel, TwistedPart
-from flexspline.pipeline.rim import (
+from flexspline.pipeline.load_cases import (
     STRESS_TOLERANCE,
     half_seat_peak,
     rim_answers,
     wave_generator_field,
 )
-from flexspline.pipeline.rim_stress import sharp_edges
+from flexspline.pipeline.parts import DRIVEN, AnalysisContext, MeshedPart, PartModel, TwistedPart
 from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.wave_generator import sharp_edges
 
 CACHED_TYPES: tuple[type, ...] = (
     EquivalentRing, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,

@@ -13,13 +13,13 @@ from pathlib import Path
 import pytest
 
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.leftovers import FORGOTTEN_S, MARK, clear, mark, unfinished
 from flexspline.pipeline.process_id import ProcessId, _born, parsed, this_process
+from flexspline.pipeline.temporary_files import FORGOTTEN_S, MARK, clear, mark, unfinished
 from flexspline.results.atomic import write_bytes
 from flexspline.results.job import folder_of
 from flexspline.results.scratch import own_scratch
 
-GONE = "from flexspline.pipeline.leftovers import mark; print(mark())"
+GONE = "from flexspline.pipeline.temporary_files import mark; print(mark())"
 
 
 def _of(pid: int) -> ProcessId:
@@ -106,7 +106,7 @@ def test_no_temporary_folder_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatc
 CLEAR = """
 import sys
 from pathlib import Path
-from flexspline.pipeline.leftovers import clear
+from flexspline.pipeline.temporary_files import clear
 print(clear(Path(sys.argv[1])))
 """
 UNSHARED = ("unshare", "--pid", "--fork")

@@ -16,8 +16,8 @@ from flexspline.geometry.meridian import meridian, with_narrow_seat
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.parts import PartModel, is_lasting
-from flexspline.pipeline.rim_stress import solid_ellipse
 from flexspline.pipeline.solid_lobes import solid_lobes
+from flexspline.pipeline.wave_generator import solid_ellipse
 
 RimCase = Literal["lobes", "lobes_unsupported", "lobes_contact"]
 T = TypeVar("T", Stiffness, StressPeak)
