@@ -14,11 +14,11 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from flexspline.pipeline.study.cluster import hands_of
-from flexspline.pipeline.study.drive import carry_out
+from flexspline.pipeline.study.cluster import worker_pool
+from flexspline.pipeline.study.drive import evaluate_all
 from flexspline.pipeline.study.evaluate import evaluate
 from flexspline.pipeline.study.load import study_from
-from flexspline.pipeline.study.run import ledger_of, source_of
+from flexspline.pipeline.study.run import source_of, trial_store_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 STUDY = """
@@ -42,13 +42,13 @@ def seconds_per_design(workers: int, designs: int) -> tuple[float, float, float]
     source = source_of(study)
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
-        with hands_of(workers, "") as hands:
-            ledger = ledger_of(study, Path(folder))
+        with worker_pool(workers, "") as pool:
+            store = trial_store_of(study, Path(folder))
             first = source.task({"flexspline.wall_thickness_mm": 0.4})
-            for future in [hands.submit(evaluate, first) for _ in range(2 * workers)]:
+            for future in [pool.submit(evaluate, first) for _ in range(2 * workers)]:
                 future.result()
             ready = time.perf_counter()
-            rows = carry_out(source, ledger, hands, evaluate, lambda progress: None)
+            rows = evaluate_all(source, store, pool, evaluate, lambda progress: None)
             done = time.perf_counter()
     failed = sum(bool(r.outcome.reason) for r in rows)
     print(f"{workers} workers: {failed} of {len(rows)} designs without figures")

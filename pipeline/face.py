@@ -25,10 +25,10 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.storage import cache_folder
-from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study
+from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
 from flexspline.pipeline.study.sensitivity import Slope, sensitivities
 
 PartName = Literal["flexspline", "shaft"]
@@ -177,14 +177,14 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     path = Path(path)
     asked = load_study(path)
     folder = Path(out) if out is not None else path.parent / f"{path.stem}.out"
-    ledger = ledger_of(asked, folder)
+    store = trial_store_of(asked, folder)
     run = asked.file.run
     return run_study(
         asked,
-        ledger,
-        partial(hands_of, run.workers, run.scheduler),
+        store,
+        partial(worker_pool, run.workers, run.scheduler),
         lambda progress: None,
-        holes=nominal_holes(asked, ledger, lambda line: None),
+        holes=nominal_holes(asked, store, lambda line: None),
     )
 
 

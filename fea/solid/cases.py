@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.errors import SolveError
-from flexspline.fea.solid.memory import Way, check_before_assembly
+from flexspline.fea.solid.memory import SolverKind, check_before_assembly
 from flexspline.fea.solid.solver import Solution, solve
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
@@ -40,7 +40,7 @@ class Solved:
     K_reaction: float
     residual: float
     dofs: int
-    way: Way
+    solver: SolverKind
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Model:
     material: Elastic
     frames: NodeFrames
     matrix: csr_matrix
-    solve_by: Way | None = None
+    solve_by: SolverKind | None = None
     """How to solve; by unknowns and memory when absent."""
 
     @classmethod
@@ -189,5 +189,5 @@ def _solved(model: Model, solution: Solution, K_energy: float, K_reaction: float
     u = model.frames.to_cartesian(solution.unknowns.reshape(-1, 3))
     return Solved(
         model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count,
-        solution.way,
+        solution.solver,
     )  # fmt: skip

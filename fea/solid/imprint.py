@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.solid.snap import undo_inverted
-from flexspline.fea.solid.unroll import Space
+from flexspline.fea.solid.unroll import MeshingMap
 from flexspline.geometry.outline import SAME, Segment, distance
 from flexspline.geometry.surfaces import Surface, Swept
 
@@ -71,14 +71,14 @@ class Meshed:
     facet_surface: np.ndarray
 
 
-def with_patch_edges(mesh: Meshed, surfaces: Sequence[Surface], space: Space) -> Meshed:
+def with_patch_edges(mesh: Meshed, surfaces: Sequence[Surface], space: MeshingMap) -> Meshed:
     """The mesh in which no face crosses a patch edge, and each is on its side's surface."""
     for edge in smooth_patch_edges(surfaces):
         mesh = _with(mesh, edge, surfaces, space)
     return mesh
 
 
-def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Space) -> Meshed:
+def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: MeshingMap) -> Meshed:
     """One patch edge: near nodes onto it, other crossing edges halved, faces given to their side."""
     whole = space.back(mesh.points)
     sides = _sides(mesh.faces[np.isin(mesh.facet_surface, (edge.first, edge.second))])

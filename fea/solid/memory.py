@@ -14,7 +14,7 @@ from typing import Literal
 from flexspline.fea.solid.direct import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
-Way = Literal["direct", "iterative"]
+SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 300_000, False: 50_000}
 """Unknowns up to which factors are the faster way or as fast, with and without MKL."""
 ENTRY_BYTES = 38.0
@@ -56,7 +56,7 @@ def check_before_assembly(unknowns: int) -> None:
         raise MemoryShortError(unknowns, need, there)
 
 
-def way(unknowns: int, entries: int, corners: bool) -> Way:
+def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
     """How to solve; `corners`: the mesh's interpolation is known, so iteration is possible.
 
     Raises

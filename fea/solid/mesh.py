@@ -12,7 +12,7 @@ from flexspline.fea.solid.imprint import Meshed, with_patch_edges
 from flexspline.fea.solid.sizing import Grading, graded_background
 from flexspline.fea.solid.snap import snap_to_surfaces, undo_inverted
 from flexspline.fea.solid.tetwild import TetwildSettings, signed_volumes, tetrahedralize
-from flexspline.fea.solid.unroll import Cartesian, Space, Unrolled
+from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.nearest import nearest_triangles
 from flexspline.geometry.surfaces import sector_planes
@@ -73,7 +73,7 @@ def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
 
 
 def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
-    space: Space = (
+    space: MeshingMap = (
         Unrolled(spec.unrolled_radius, surface.sector_deg) if spec.unrolled_radius else Cartesian()
     )
     boundary = space.to(surface.vertices)
@@ -136,7 +136,7 @@ def _tag(
     return surface.surface_of[triangle]
 
 
-def _quadratic(mesh: Meshed, surface: TaggedSurface, space: Space, spec: MeshSpec) -> TetMesh:
+def _quadratic(mesh: Meshed, surface: TaggedSurface, space: MeshingMap, spec: MeshSpec) -> TetMesh:
     """Put corners on the exact surfaces, add middle nodes, put those on the surfaces too."""
     n, tets, faces, facet_surface = len(mesh.points), mesh.tets, mesh.faces, mesh.facet_surface
     raw = _in_planes(space.back(mesh.points), faces, facet_surface, surface)

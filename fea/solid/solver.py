@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 
 from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import SolveError
-from flexspline.fea.solid.memory import Way, way
+from flexspline.fea.solid.memory import SolverKind, choose_solver
 from flexspline.fea.solid.twolevel import iterate
 
 LOST_ENERGY_LIMIT = 1e-6
@@ -29,7 +29,7 @@ class Solution:
     reactions: np.ndarray
     residual: float
     free_count: int
-    way: Way
+    solver: SolverKind
 
 
 def solve(
@@ -38,7 +38,7 @@ def solve(
     fixed: np.ndarray,
     values: np.ndarray,
     corners: Callable[[], csr_matrix] | None = None,
-    by: Way | None = None,
+    by: SolverKind | None = None,
 ) -> Solution:
     """Solve K u = f with u[fixed] = values.
 
@@ -57,7 +57,7 @@ def solve(
     u = np.zeros(matrix.shape[0])
     u[fixed] = values
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed, assume_unique=True)
-    how = by or way(len(free), matrix.nnz, corners is not None)
+    how = by or choose_solver(len(free), matrix.nnz, corners is not None)
     rows = matrix[free]
     right = load[free] - rows @ u
     inner = rows[:, free].tocsr()

@@ -44,7 +44,7 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class EnergyError:
+class EnergyErrorEstimate:
     """Twice the strain energy ∫σ:ε and the estimated squared error of it, per element (m,) N·mm."""
 
     energy: np.ndarray
@@ -56,14 +56,14 @@ class EnergyError:
         return float(self.error.sum() / self.energy.sum())
 
 
-def energy_error(mesh: TetMesh, u: np.ndarray, material: Elastic) -> EnergyError:
+def energy_error(mesh: TetMesh, u: np.ndarray, material: Elastic) -> EnergyErrorEstimate:
     """Recovery estimate of ∫(σ − σh):C⁻¹:(σ − σh) per element."""
     points, weights = tet_rule(4)
     g = gradients(mesh.nodes, mesh.cells, points, weights)
     raw = _stress(g, u[mesh.cells], material)
     nodal = nodal_stress(mesh, u, material).reshape(-1, 9)
     smooth = np.matmul(reference_values(points)[None], nodal[mesh.cells]).reshape(raw.shape)
-    return EnergyError(
+    return EnergyErrorEstimate(
         np.einsum("mq,mq->m", _twice_energy(raw, material), g.weights),
         np.einsum("mq,mq->m", _twice_energy(smooth - raw, material), g.weights),
     )

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 
-class Space(Protocol):
+class MeshingMap(Protocol):
     """A one-to-one map between part space and the space in which the part is meshed."""
 
     def to(self, points: np.ndarray) -> np.ndarray: ...

@@ -15,7 +15,7 @@ CONNECT_S = 30.0
 
 
 @dataclass(frozen=True)
-class Hands:
+class WorkerPool:
     """Who evaluates.
 
     Attributes
@@ -55,7 +55,7 @@ def _client_of(address: str) -> Any:
 
 
 @contextmanager
-def hands_of(workers: int, scheduler: str) -> Iterator[Hands]:
+def worker_pool(workers: int, scheduler: str) -> Iterator[WorkerPool]:
     """Local worker processes, one thread each, or a running cluster's workers.
 
     Raises
@@ -64,7 +64,7 @@ def hands_of(workers: int, scheduler: str) -> Iterator[Hands]:
     """
     if not scheduler:
         with LocalWorkers(workers) as executor:
-            yield Hands(executor, lambda: workers, (WorkerDiedError,))
+            yield WorkerPool(executor, lambda: workers, (WorkerDiedError,))
         return
     import dask
     from distributed.scheduler import KilledWorker
@@ -74,7 +74,7 @@ def hands_of(workers: int, scheduler: str) -> Iterator[Hands]:
         "distributed.logging.distributed": "critical",
     }
     with dask.config.set(settings), _client_of(scheduler) as client:
-        yield Hands(
+        yield WorkerPool(
             client.get_executor(pure=False, retries=0),
             lambda: max(1, sum(client.nthreads().values())),
             (KilledWorker,),

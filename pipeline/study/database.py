@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.process_id import this_process
-from flexspline.pipeline.study.store import Ledger, said
+from flexspline.pipeline.study.store import TrialStore, said
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler
@@ -31,7 +31,9 @@ class StorageError(DesignError):
         super().__init__("run.storage", shown, f"cannot be opened: {reason}")
 
 
-def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSampler) -> Ledger:
+def open_trial_store(
+    url: str, name: str, directions: Sequence[str], sampler: BaseSampler
+) -> TrialStore:
     """The study of that name in a database, made if it is not there.
 
     Raises
@@ -57,7 +59,7 @@ def open_ledger(url: str, name: str, directions: Sequence[str], sampler: BaseSam
                 sampler=sampler,
                 load_if_exists=True,
             )
-            return Ledger(trials, storage, str(this_process()))
+            return TrialStore(trials, storage, str(this_process()))
         except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
             # two processes that make the tables at once: the second finds them on its next try
             again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)

@@ -8,10 +8,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.local_workers import WORKER_DIED
-from flexspline.pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Ledger, Row
+from flexspline.pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Row, TrialStore
 
 if TYPE_CHECKING:
     from optuna.trial import FrozenTrial
@@ -33,10 +33,10 @@ class Source(Protocol):
     def ahead(self) -> int:
         """How many designs wait for a free worker, so that none is idle between two designs."""
 
-    def claim(self, ledger: Ledger, slot: int) -> Job | None:
+    def claim(self, store: TrialStore, slot: int) -> Job | None:
         """A design for a slot that nobody had before; None where another process was faster."""
 
-    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
         """The same design once more."""
 
     def task(self, values: Mapping[str, float]) -> Task:
@@ -59,10 +59,10 @@ class Progress:
     size: int
 
 
-def carry_out(
+def evaluate_all(
     source: Source,
-    ledger: Ledger,
-    hands: Hands,
+    store: TrialStore,
+    pool: WorkerPool,
     evaluate: Callable[[Task], Outcome],
     watch: Callable[[Progress], None],
 ) -> list[Row]:
@@ -73,45 +73,45 @@ def carry_out(
     """
     began = beaten = watched = time.monotonic()
     pending: dict[Future, Job] = {}
-    _adopt(source, ledger)
-    before = len(ledger.rows())
+    _adopt(source, store)
+    before = len(store.rows())
 
     def tell() -> list[Row]:
-        rows = ledger.rows()
+        rows = store.rows()
         watch(Progress(rows, len(rows) - before, time.monotonic() - began, source.size))
         return rows
 
-    ledger.beat()
+    store.beat()
     while True:
-        while len(pending) < hands.width() + source.ahead:
-            job = _next(source, ledger)
+        while len(pending) < pool.width() + source.ahead:
+            job = _next(source, store)
             if job is None:
                 break
-            pending[hands.submit(evaluate, source.task(job.values))] = job
+            pending[pool.submit(evaluate, source.task(job.values))] = job
         if not pending:
             rows = tell()
             if len(rows) >= source.size:
                 return rows
             time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
-            _adopt(source, ledger)
+            _adopt(source, store)
         else:
-            stored = _store_finished(pending, hands, source, ledger)
+            stored = _store_finished(pending, pool, source, store)
             if stored and time.monotonic() - watched > WATCH_S:
                 watched = time.monotonic()
                 tell()
         if time.monotonic() - beaten > BEAT_S:
             beaten = time.monotonic()
-            ledger.beat()
+            store.beat()
 
 
-def is_complete(source: Source, ledger: Ledger) -> bool:
+def is_complete(source: Source, store: TrialStore) -> bool:
     """Whether every design has its row already."""
-    _adopt(source, ledger)
-    return len(ledger.rows()) >= source.size
+    _adopt(source, store)
+    return len(store.rows()) >= source.size
 
 
 def _store_finished(
-    pending: dict[Future, Job], hands: Hands, source: Source, ledger: Ledger
+    pending: dict[Future, Job], pool: WorkerPool, source: Source, store: TrialStore
 ) -> bool:
     """Store what is finished, after a wait of at most POLL_S; whether anything was.
 
@@ -119,48 +119,48 @@ def _store_finished(
     """
     done, _ = wait(pending, timeout=POLL_S, return_when=FIRST_COMPLETED)
     for future in done:
-        outcome = _outcome(future, hands)
-        ledger.finish(pending.pop(future), outcome, source.objectives(outcome))
+        outcome = _outcome(future, pool)
+        store.finish(pending.pop(future), outcome, source.objectives(outcome))
     return bool(done)
 
 
-def _outcome(future: Future, hands: Hands) -> Outcome:
+def _outcome(future: Future, pool: WorkerPool) -> Outcome:
     try:
         return future.result()
-    except hands.lost:
+    except pool.lost:
         return Outcome(reason=WORKER_DIED)
 
 
-def _next(source: Source, ledger: Ledger) -> Job | None:
+def _next(source: Source, store: TrialStore) -> Job | None:
     """The first design that nobody has: a dead process's, else a new one."""
     while True:
-        taken = ledger.by_slot()
-        slot = next((s for s in range(source.size) if _is_free(ledger, taken.get(s, []))), None)
+        taken = store.by_slot()
+        slot = next((s for s in range(source.size) if _is_free(store, taken.get(s, []))), None)
         if slot is None:
             return None
         before = taken.get(slot)
         if not before:
-            job = source.claim(ledger, slot)
+            job = source.claim(store, slot)
         else:
             attempt = max(t.user_attrs[CLAIM]["attempt"] for t in before) + 1
-            job = source.again(ledger, slot, attempt, before[0])
+            job = source.again(store, slot, attempt, before[0])
         if job is not None:
             return job
 
 
-def _is_free(ledger: Ledger, trials: list[FrozenTrial]) -> bool:
+def _is_free(store: TrialStore, trials: list[FrozenTrial]) -> bool:
     """No row, and nobody alive at it."""
     if any(ROW in t.user_attrs for t in trials):
         return False
-    return all(t.state.is_finished() or ledger.gone(t) for t in trials)
+    return all(t.state.is_finished() or store.gone(t) for t in trials)
 
 
-def _adopt(source: Source, ledger: Ledger) -> None:
+def _adopt(source: Source, store: TrialStore) -> None:
     """Close what dead processes left open: with its row where that was stored, else as failed."""
-    for trials in ledger.by_slot().values():
+    for trials in store.by_slot().values():
         for trial in trials:
-            if trial.state.is_finished() or not ledger.gone(trial):
+            if trial.state.is_finished() or not store.gone(trial):
                 continue
             row = trial.user_attrs.get(ROW)
             values = source.objectives(Outcome(**row)) if row else None
-            ledger.tell(trial.number, values)
+            store.tell(trial.number, values)

@@ -9,9 +9,9 @@ from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-from flexspline.pipeline.study.cluster import Hands
-from flexspline.pipeline.study.database import StorageError, open_ledger
-from flexspline.pipeline.study.drive import Progress, Source, carry_out, is_complete
+from flexspline.pipeline.study.cluster import WorkerPool
+from flexspline.pipeline.study.database import StorageError, open_trial_store
+from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
 from flexspline.pipeline.study.figures import USUAL
 from flexspline.pipeline.study.holes import Factor, Holes, holes_of
@@ -21,7 +21,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
-from flexspline.pipeline.study.store import Ledger, LedgerError
+from flexspline.pipeline.study.store import TrialStore, TrialStoreError
 from flexspline.pipeline.study.tolerance import Scattered, outputs_of, scattered
 from flexspline.pipeline.study.verify import verify
 
@@ -39,28 +39,28 @@ def source_of(study: Study, holes: Holes = MappingProxyType({})) -> Source:
     return Planned(study, solves, plan, holes=holes)
 
 
-def nominal_holes(study: Study, ledger: Ledger, say: Callable[[str], None]) -> Holes:
+def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -> Holes:
     """What bolt holes and keyway do to the K of the design that the study begins with.
 
     Kept with the study's trials: every row has the same factors, whoever makes it and when.
     """
-    stored = ledger.notes().get(HOLES_NOTE)
+    stored = store.notes().get(HOLES_NOTE)
     if stored is None:
         found = holes_of(study.design, revolved_torsion, say)
-        stored = ledger.notes().get(HOLES_NOTE)  # another process may have been faster
+        stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
         if stored is None:
             stored = {name: asdict(factor) for name, factor in found.items()}
-            ledger.note(HOLES_NOTE, stored)
+            store.note(HOLES_NOTE, stored)
     return {name: Factor(**factor) for name, factor in stored.items()}
 
 
-def ledger_of(study: Study, folder: Path) -> Ledger:
+def trial_store_of(study: Study, folder: Path) -> TrialStore:
     """The study's trials in its storage, `study.db` in `folder` where none is named.
 
     Raises
     ------
     StorageError : the storage that the study names cannot be opened.
-    LedgerError : `study.db` cannot.
+    TrialStoreError : `study.db` cannot.
     """
     url = study.file.run.storage
     own = folder / "study.db"
@@ -69,23 +69,23 @@ def ledger_of(study: Study, folder: Path) -> Ledger:
     directions = list(study.file.objective.values()) or ["minimize"]
     try:
         given = url or f"sqlite:///{own.resolve()}"
-        return open_ledger(given, study_name(study), directions, sampler_of(study))
+        return open_trial_store(given, study_name(study), directions, sampler_of(study))
     except StorageError as fault:
         if url:
             raise
-        raise LedgerError(f"{own}: {fault.cause}") from fault
+        raise TrialStoreError(f"{own}: {fault.cause}") from fault
 
 
 def run_study(
     study: Study,
-    ledger: Ledger,
-    hands: Callable[[], AbstractContextManager[Hands]],
+    store: TrialStore,
+    pool: Callable[[], AbstractContextManager[WorkerPool]],
     watch: Callable[[Progress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
     say: Callable[[str], None] = lambda line: None,
     holes: Holes = MappingProxyType({}),
 ) -> StudyResult:
-    """Evaluate what is not yet evaluated, verify the best; `hands` opens only where there is work.
+    """Evaluate what is not yet evaluated, verify the best; `pool` opens only where there is work.
 
     Raises
     ------
@@ -95,14 +95,14 @@ def run_study(
     with ExitStack() as stack:
 
         @cache
-        def opened() -> Hands:
-            return stack.enter_context(hands())
+        def opened() -> WorkerPool:
+            return stack.enter_context(pool())
 
-        if not is_complete(source, ledger):
-            carry_out(source, ledger, opened(), evaluation, watch)
-        rows = tuple(ledger.rows()[: source.size])
+        if not is_complete(source, store):
+            evaluate_all(source, store, opened(), evaluation, watch)
+        rows = tuple(store.rows()[: source.size])
         result = _scattered(StudyResult(study, rows), source)
-        return replace(result, verified=verify(result, ledger, opened, source.task, say))
+        return replace(result, verified=verify(result, store, opened, source.task, say))
 
 
 def _scattered(result: StudyResult, source: Source) -> StudyResult:

@@ -16,7 +16,7 @@ from flexspline.pipeline.study.figures import Solve, needed
 from flexspline.pipeline.study.holes import Holes
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Plan, from_unit, linked
-from flexspline.pipeline.study.store import CLAIM, Job, Ledger
+from flexspline.pipeline.study.store import CLAIM, Job, TrialStore
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
@@ -53,8 +53,8 @@ class _Asked:
             return None
         return [outcome.figures[k] for k in self.study.file.objective] or [0.0]
 
-    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
-        return ledger.create(slot, attempt, before.params, before.distributions)
+    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+        return store.create(slot, attempt, before.params, before.distributions)
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ class Planned(_Asked):
     def ahead(self) -> int:
         return 1
 
-    def claim(self, ledger: Ledger, slot: int) -> Job | None:
-        return ledger.create(slot, 0, self.plan.point(slot), self.over)
+    def claim(self, store: TrialStore, slot: int) -> Job | None:
+        return store.create(slot, 0, self.plan.point(slot), self.over)
 
 
 @dataclass(frozen=True)
@@ -87,27 +87,27 @@ class Sampled(_Asked):
     def ahead(self) -> int:
         return 0  # a design chosen later knows more
 
-    def claim(self, ledger: Ledger, slot: int) -> Job | None:
-        return self._suggested(ledger, slot, 0)
+    def claim(self, store: TrialStore, slot: int) -> Job | None:
+        return self._suggested(store, slot, 0)
 
-    def again(self, ledger: Ledger, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
+    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
         if set(before.params) == set(self.over):
-            return super().again(ledger, slot, attempt, before)
-        return self._suggested(ledger, slot, attempt)  # its process died before it had values
+            return super().again(store, slot, attempt, before)
+        return self._suggested(store, slot, attempt)  # its process died before it had values
 
-    def _suggested(self, ledger: Ledger, slot: int, attempt: int) -> Job | None:
+    def _suggested(self, store: TrialStore, slot: int, attempt: int) -> Job | None:
         """The slot is taken first, in one transaction, and then given values: two processes cannot
         both have it."""
-        had = [t.params for t in ledger.all() if CLAIM in t.user_attrs]
+        had = [t.params for t in store.all() if CLAIM in t.user_attrs]
         for further in range(ASKED_AGAIN):
-            taken = ledger.create(slot, attempt + further, {}, {})
+            taken = store.create(slot, attempt + further, {}, {})
             if taken is None:
                 return None
-            job = ledger.suggested(taken, self.over)
+            job = store.suggested(taken, self.over)
             if job.values not in had:
                 return job
-            ledger.tell(job.number, None)
-        return ledger.create(slot, attempt + ASKED_AGAIN, self._unseen(slot, had), self.over)
+            store.tell(job.number, None)
+        return store.create(slot, attempt + ASKED_AGAIN, self._unseen(slot, had), self.over)
 
     def _unseen(self, slot: int, had: list[dict[str, Any]]) -> dict[str, float]:
         """A random design that the study has not had; any, where its lists leave none."""

@@ -32,7 +32,7 @@ SILENT_S = 60.0
 """A process that cannot be seen from here, and that said nothing for so long, is gone."""
 
 
-class LedgerError(ComputationError):
+class TrialStoreError(ComputationError):
     """The storage of a study does not work: a full disk, a damaged file, a database gone."""
 
     def __init__(self, reason: str) -> None:
@@ -44,14 +44,14 @@ class LedgerError(ComputationError):
 
 @contextmanager
 def storage_faults() -> Iterator[None]:
-    """What the database and its libraries raise, as a LedgerError."""
+    """What the database and its libraries raise, as a TrialStoreError."""
     from optuna.exceptions import StorageInternalError
     from sqlalchemy.exc import SQLAlchemyError
 
     try:
         yield
     except (SQLAlchemyError, StorageInternalError) as fault:
-        raise LedgerError(said(fault)) from fault
+        raise TrialStoreError(said(fault)) from fault
 
 
 def said(fault: BaseException) -> str:
@@ -90,7 +90,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Ledger:
+class TrialStore:
     """The trials of one study, as this process uses them."""
 
     trials: Trials

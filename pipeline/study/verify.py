@@ -13,12 +13,12 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
-from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.pipeline.study.local_workers import WORKER_DIED
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.store import Ledger, Row
+from flexspline.pipeline.study.store import Row, TrialStore
 from flexspline.pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
@@ -55,8 +55,8 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
 
 def verify(
     result: StudyResult,
-    ledger: Ledger,
-    hands: Callable[[], Hands],
+    store: TrialStore,
+    pool: Callable[[], WorkerPool],
     task: Callable[[Mapping[str, float]], Task],
     say: Callable[[str], None],
 ) -> tuple[Verified, ...]:
@@ -64,19 +64,19 @@ def verify(
     file = result.study.file
     chosen = result.best(file.run.verify)
     rim = bool(RIM & {*file.objective, *file.constraint})
-    stored = ledger.notes()
+    stored = store.notes()
     pending = {}
     for row in chosen:
         if f"{VERIFIED} {row.slot}" not in stored:
             say(f"design {row.slot} with the solid model")
-            pending[hands().submit(solid_outcome, task(row.values), rim)] = row
+            pending[pool().submit(solid_outcome, task(row.values), rim)] = row
     for future in as_completed(pending):
         name = f"{VERIFIED} {pending[future].slot}"
         try:
             stored[name] = asdict(future.result())
-        except hands().lost:
+        except pool().lost:
             stored[name] = asdict(Outcome(reason=WORKER_DIED))
-        ledger.note(name, stored[name])
+        store.note(name, stored[name])
     case = result.study.design.solver.load_case
     return tuple(checked(r, Outcome(**stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
 

@@ -25,9 +25,14 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     with answered(file):
         from flexspline.geometry.load import read_raw, tables_from
         from flexspline.pipeline.study.best import best_field
-        from flexspline.pipeline.study.cluster import check_scheduler, hands_of
+        from flexspline.pipeline.study.cluster import check_scheduler, worker_pool
         from flexspline.pipeline.study.load import study_from
-        from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study, source_of
+        from flexspline.pipeline.study.run import (
+            nominal_holes,
+            run_study,
+            source_of,
+            trial_store_of,
+        )
         from flexspline.results.records import as_json
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_stress import draw_best_stress
@@ -52,14 +57,14 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             check_scheduler(run.scheduler)
         if run.method == "grid" and size != run.evaluations:
             tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")
-        ledger = ledger_of(asked, folder)
+        store = trial_store_of(asked, folder)
         if keys := unfollowed(asked):
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
-        if kept := len(ledger.rows()):
+        if kept := len(store.rows()):
             tell(f"{kept} designs are finished already")
-        hands = partial(hands_of, run.workers, run.scheduler)
-        holes = nominal_holes(asked, ledger, tell)
-        result = run_study(asked, ledger, hands, Watch(asked), say=tell, holes=holes)
+        pool = partial(worker_pool, run.workers, run.scheduler)
+        holes = nominal_holes(asked, store, tell)
+        result = run_study(asked, store, pool, Watch(asked), say=tell, holes=holes)
         table = table_of(result)
         write_csv(folder / "study.csv", table)
         write_parquet(folder / "study.parquet", table)

@@ -12,7 +12,7 @@ from structured import from_cylindrical
 from flexspline.fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
 from flexspline.fea.solid.mesh import boundary_faces
 from flexspline.fea.solid.tetwild import signed_volumes
-from flexspline.fea.solid.unroll import Cartesian, Space, Unrolled
+from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.geometry.outline import Segment
 from flexspline.geometry.surfaces import Surface, Swept, sector_planes
 
@@ -35,7 +35,7 @@ def cylindrical(points: np.ndarray) -> np.ndarray:
     return np.column_stack([r, phi, points[:, 2]])
 
 
-def loose_mesh(seed: int, space: Space) -> tuple[np.ndarray, np.ndarray]:
+def loose_mesh(seed: int, space: MeshingMap) -> tuple[np.ndarray, np.ndarray]:
     """The ring's sector in tetrahedra (in meshing space) that know nothing of its circle."""
     lines = np.linspace(INNER, OUTER, 8), np.linspace(0, SECTOR, 7), np.linspace(0, HEIGHT, 4)
     box = MeshTet.init_tensor(*lines)
@@ -56,7 +56,7 @@ def lower_side(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("space", [Cartesian(), Unrolled(3.0, 60.0)], ids=["part", "unrolled"])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_circle_is_in_the_mesh(seed: int, space: Space) -> None:
+def test_the_circle_is_in_the_mesh(seed: int, space: MeshingMap) -> None:
     points, tets = loose_mesh(seed, space)
     faces = boundary_faces(tets)
     down = lower_side(points, faces)

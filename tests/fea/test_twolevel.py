@@ -54,7 +54,7 @@ CASES = {
 def test_iteration_gives_what_factors_give(case: str, quarter: Model) -> None:
     direct: Solved = CASES[case](replace(quarter, solve_by="direct"))
     iterated: Solved = CASES[case](replace(quarter, solve_by="iterative"))
-    assert (direct.way, iterated.way) == ("direct", "iterative")
+    assert (direct.solver, iterated.solver) == ("direct", "iterative")
     # issue 3 asks for 1e-8 of K; the free rim's residual is 2e-9 of its load by rounding, either way
     assert iterated.K_energy == pytest.approx(direct.K_energy, rel=1e-8)
     assert iterated.K_reaction == pytest.approx(direct.K_reaction, rel=1e-8)
@@ -152,7 +152,7 @@ def test_way_by_unknowns_and_memory(
 ) -> None:
     monkeypatch.setattr(memory, "available_bytes", lambda: there_GB * 2**30)
     monkeypatch.setattr(memory, "pardiso", lambda: object)
-    assert memory.way(unknowns, 80 * unknowns, corners) == way
+    assert memory.choose_solver(unknowns, 80 * unknowns, corners) == way
 
 
 def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) -> None:

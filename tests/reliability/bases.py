@@ -11,7 +11,7 @@ from pathlib import Path
 from in_process import flexspline
 
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.cluster import WorkerPool
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CUP = EXAMPLES / "xb1-40.toml"
@@ -42,8 +42,8 @@ class EnoughError(ComputationError):
 
 
 @contextmanager
-def hands(workers: int, scheduler: str) -> Iterator[Hands]:
-    """In place of `hands_of`: one thread of this process, for `ENOUGH` designs."""
+def pool(workers: int, scheduler: str) -> Iterator[WorkerPool]:
+    """In place of `worker_pool`: one thread of this process, for `ENOUGH` designs."""
     with ThreadPoolExecutor(1) as executor:
         left = iter(range(ENOUGH))
 
@@ -52,7 +52,7 @@ def hands(workers: int, scheduler: str) -> Iterator[Hands]:
                 raise EnoughError("enough")
             return executor.submit(function, *arguments)
 
-        here = Hands(executor, lambda: 1)
+        here = WorkerPool(executor, lambda: 1)
         object.__setattr__(here, "submit", submit)
         yield here
 

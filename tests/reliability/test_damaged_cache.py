@@ -164,7 +164,7 @@ def test_a_clock_set_back(
     file = tmp_path / "study.toml"
     file.write_text(bases.study(tmp_path), encoding="utf-8")
     study = ("study", file, "--out", tmp_path / "studied", "--json")
-    monkeypatch.setattr("flexspline.pipeline.study.cluster.hands_of", bases.hands)
+    monkeypatch.setattr("flexspline.pipeline.study.cluster.worker_pool", bases.pool)
     expected = figures(flexspline(*stiffness, folder=tmp_path))
     found = flexspline(*study, folder=tmp_path)
     real = time.time

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from bases import KINDS, SUFFIX, base, hands, words
+from bases import KINDS, SUFFIX, base, pool, words
 from in_process import flexspline
 from mutations import MUTATIONS, mutated
 from reliability_page import counted
@@ -35,7 +35,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The working folder, where an injected path or command would leave its trace."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path.parent / f"{tmp_path.name}-cache"))
-    monkeypatch.setattr("flexspline.pipeline.study.cluster.hands_of", hands)
+    monkeypatch.setattr("flexspline.pipeline.study.cluster.worker_pool", pool)
     return tmp_path
 
 

@@ -39,7 +39,7 @@ peak = lambda: 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 before = peak()
 try:
     solved = torsion(Model.of(mesh, Elastic(206e3, 0.3)), "mesh")
-    found = {"unknowns": solved.dofs, "K": solved.K_energy, "way": solved.way}
+    found = {"unknowns": solved.dofs, "K": solved.K_energy, "way": solved.solver}
 except MemoryShortError as refusal:
     found = {"refused": str(refusal), "needed": refusal.needed_bytes}
 print(json.dumps(found | {"before": before, "peak": peak()}))

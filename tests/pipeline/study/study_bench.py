@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.load import Study, study_from
 
@@ -32,9 +32,9 @@ def study_of(text: str, name: str = "test") -> Study:
 
 
 @contextmanager
-def threads(count: int = 1) -> Iterator[Hands]:
+def threads(count: int = 1) -> Iterator[WorkerPool]:
     with ThreadPoolExecutor(count) as executor:
-        yield Hands(executor, lambda: count)
+        yield WorkerPool(executor, lambda: count)
 
 
 def quick(task: Task) -> Outcome:

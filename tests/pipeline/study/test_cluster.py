@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from study_bench import GRID, WALL, quick, study_of
 
-from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.local_workers import RETRIES
-from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.run import run_study, trial_store_of
 
 MARKS = "FLEXSPLINE_TEST_MARKS"
 
@@ -33,7 +33,7 @@ def test_a_dying_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv(MARKS, str(tmp_path))
     study = study_of(GRID)
     rows = run_study(
-        study, ledger_of(study, tmp_path), lambda: hands_of(1, ""), lambda p: None, deadly
+        study, trial_store_of(study, tmp_path), lambda: worker_pool(1, ""), lambda p: None, deadly
     ).rows
     assert len(rows) == 6
     (lost,) = (r for r in rows if r.outcome.reason)
@@ -47,7 +47,7 @@ def test_a_scheduler_that_does_not_answer_is_wrong_input(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("flexspline.pipeline.study.cluster.CONNECT_S", 1.0)
-    with pytest.raises(StudyError) as caught, hands_of(1, "tcp://127.0.0.1:1"):
+    with pytest.raises(StudyError) as caught, worker_pool(1, "tcp://127.0.0.1:1"):
         pytest.fail("nobody is there")
     assert "run.scheduler" in str(caught.value)
 
@@ -62,6 +62,10 @@ def test_a_running_scheduler_takes_the_study(
     with LocalCluster(n_workers=1, protocol="tcp", dashboard_address="127.0.0.1:0") as cluster:
         address = cluster.scheduler_address
         rows = run_study(
-            study, ledger_of(study, tmp_path), lambda: hands_of(1, address), lambda p: None, quick
+            study,
+            trial_store_of(study, tmp_path),
+            lambda: worker_pool(1, address),
+            lambda p: None,
+            quick,
         ).rows
     assert [r.outcome for r in rows] == [quick(Task({}, r.values, ())) for r in rows]

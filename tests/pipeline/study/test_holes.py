@@ -9,7 +9,7 @@ from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.study.evaluate import Outcome, Task, figures_of, revolved_torsion
 from flexspline.pipeline.study.holes import Factor, holes_of, of_holes
-from flexspline.pipeline.study.run import ledger_of, nominal_holes, run_study
+from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verify import checked, solid_outcome
 
@@ -54,8 +54,8 @@ method = "grid"
 def nominal(tmp_path_factory: pytest.TempPathFactory) -> Figures:
     """The example: figures without and with correction, and by the solid model."""
     study = study_of(STUDY)
-    ledger = ledger_of(study, tmp_path_factory.mktemp("nominal"))
-    holes = nominal_holes(study, ledger, lambda line: None)
+    store = trial_store_of(study, tmp_path_factory.mktemp("nominal"))
+    holes = nominal_holes(study, store, lambda line: None)
     plain, corrected = (figures_of(study.design, ("torsion",), h) for h in ({}, holes))
     tables = study.design.model_dump(mode="json", exclude_none=True)
     solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
@@ -87,11 +87,11 @@ def test_the_solid_solve_is_done_once_for_all_who_share_the_study(
 ) -> None:
     study = study_of(STUDY)
     monkeypatch.setattr("flexspline.pipeline.study.run.holes_of", lambda *told: HOLES)
-    assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
+    assert nominal_holes(study, trial_store_of(study, tmp_path), print) == HOLES
     monkeypatch.setattr(
         "flexspline.pipeline.study.run.holes_of", lambda *told: pytest.fail("solved again")
     )
-    assert nominal_holes(study, ledger_of(study, tmp_path), print) == HOLES
+    assert nominal_holes(study, trial_store_of(study, tmp_path), print) == HOLES
 
 
 def test_a_design_without_holes_among_others_keeps_its_K() -> None:
@@ -111,7 +111,9 @@ def test_keys_that_only_holes_have() -> None:
 
 def test_every_row_says_its_factor(tmp_path: Path) -> None:
     study = study_of(STUDY)
-    rows = run_study(study, ledger_of(study, tmp_path), threads, lambda p: None, holes=HOLES).rows
+    rows = run_study(
+        study, trial_store_of(study, tmp_path), threads, lambda p: None, holes=HOLES
+    ).rows
     built = [r for r in rows if not r.outcome.reason]
     assert built
     assert {r.outcome.figures["K_e_holes_factor"] for r in built} == {0.97}

@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.study.cluster import hands_of
+from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerStartError
 
 HERE = Path(__file__).parent
@@ -61,9 +61,9 @@ def _sockets(process: psutil.Process) -> list[Any]:
 def test_nothing_listens_while_a_study_runs() -> None:
     """So no other user of the machine reaches a scheduler, a worker or a dashboard."""
     before = doors(psutil.Process())
-    with hands_of(2, "") as hands:
-        pids = {hands.submit(os.getpid).result(timeout=60) for _ in range(4)}
-        pending = [hands.submit(time.sleep, 1) for _ in range(2)]
+    with worker_pool(2, "") as pool:
+        pids = {pool.submit(os.getpid).result(timeout=60) for _ in range(4)}
+        pending = [pool.submit(time.sleep, 1) for _ in range(2)]
         family = psutil.Process().children(recursive=True)
         assert pids <= {p.pid for p in family}
         assert os.getpid() not in pids

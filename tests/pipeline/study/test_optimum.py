@@ -9,7 +9,7 @@ from study_bench import LENGTH, WALL, study_of, threads
 
 from flexspline.pipeline.study.evaluate import TORSION_TOLERANCE, Outcome, Task, evaluate
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.run import run_study, trial_store_of
 from flexspline.pipeline.study.store import Row
 
 TWO = f"""
@@ -29,7 +29,9 @@ design = "xb1-40.toml"
 
 def found(text: str, folder: Path, evaluation) -> StudyResult:
     study = study_of(text)
-    return run_study(study, ledger_of(study, folder), threads, lambda progress: None, evaluation)
+    return run_study(
+        study, trial_store_of(study, folder), threads, lambda progress: None, evaluation
+    )
 
 
 def two_valleys(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

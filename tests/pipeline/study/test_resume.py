@@ -11,7 +11,7 @@ import pytest
 from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 
 from flexspline.pipeline.study.evaluate import Outcome, Task
-from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.run import run_study, trial_store_of
 
 SIZE = 40
 LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")
@@ -40,8 +40,8 @@ class Counted:
 
 def work(folder: Path, seconds: float) -> None:
     study = study_of(LONG_GRID)
-    ledger = ledger_of(study, folder)
-    run_study(study, ledger, threads, silent, Counted(folder / "done", seconds))
+    store = trial_store_of(study, folder)
+    run_study(study, store, threads, silent, Counted(folder / "done", seconds))
 
 
 def started(folder: Path, seconds: float) -> multiprocessing.Process:
@@ -52,7 +52,7 @@ def started(folder: Path, seconds: float) -> multiprocessing.Process:
 
 def test_a_grid_has_every_combination_once(tmp_path: Path) -> None:
     study = study_of(GRID)
-    rows = run_study(study, ledger_of(study, tmp_path), threads, silent, quick).rows
+    rows = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick).rows
     assert sorted((r.values[WALL], r.values[LENGTH]) for r in rows) == sorted(
         (w, n) for w in (0.3, 0.4, 0.5) for n in (25.0, 30.0)
     )
@@ -61,8 +61,8 @@ def test_a_grid_has_every_combination_once(tmp_path: Path) -> None:
 
 def test_the_same_command_again_evaluates_nothing(tmp_path: Path) -> None:
     study, counted = study_of(GRID), Counted(tmp_path / "done", 0.0)
-    first = run_study(study, ledger_of(study, tmp_path), threads, silent, counted).rows
-    again = run_study(study, ledger_of(study, tmp_path), threads, silent, counted).rows
+    first = run_study(study, trial_store_of(study, tmp_path), threads, silent, counted).rows
+    again = run_study(study, trial_store_of(study, tmp_path), threads, silent, counted).rows
     assert again == first
     assert len(counted.lines()) == len(first) == 6
 
@@ -80,9 +80,9 @@ def killed_and_resumed(folder: Path, kills: int, seed: int) -> None:
         time.sleep(random.uniform(0, 0.05))
         os.kill(process.pid, signal.SIGKILL)
         process.join()
-    finished = {r.slot: r for r in ledger_of(study_of(LONG_GRID), folder).rows()}
+    finished = {r.slot: r for r in trial_store_of(study_of(LONG_GRID), folder).rows()}
     work(folder, counted.seconds)
-    rows = {r.slot: r for r in ledger_of(study_of(LONG_GRID), folder).rows()}
+    rows = {r.slot: r for r in trial_store_of(study_of(LONG_GRID), folder).rows()}
     assert sorted(rows) == list(range(SIZE))
     assert {s: rows[s] for s in finished} == finished  # nothing finished was lost or redone
     # a kill can hit two designs between their end and their rows being stored: the one thread's, and the
@@ -107,7 +107,7 @@ def test_two_processes_share_a_study(tmp_path: Path) -> None:
         assert process.exitcode == 0
     lines = Counted(tmp_path / "done", 0).lines()
     assert len(lines) == len(set(lines)) == SIZE
-    assert len(ledger_of(study_of(LONG_GRID), tmp_path).rows()) == SIZE
+    assert len(trial_store_of(study_of(LONG_GRID), tmp_path).rows()) == SIZE
 
 
 def test_a_design_that_cannot_be_built_is_a_row_with_its_reason(tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_a_design_that_cannot_be_built_is_a_row_with_its_reason(tmp_path: Path) 
         "max = 0.5, steps = 3", "max = 0.4, steps = 2"
     )
     study = study_of(text)
-    result = run_study(study, ledger_of(study, tmp_path), threads, silent)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, silent)
     assert len(result.rows) == 2
     assert result.built == ()
     assert all("ring_width_mm" in r.outcome.reason for r in result.rows)
@@ -127,11 +127,11 @@ def test_a_bug_is_no_reason(tmp_path: Path) -> None:
 
     study = study_of(GRID)
     with pytest.raises(ZeroDivisionError):
-        run_study(study, ledger_of(study, tmp_path), threads, silent, broken)
+        run_study(study, trial_store_of(study, tmp_path), threads, silent, broken)
 
 
 def test_a_study_without_an_objective_has_no_best_and_ends(tmp_path: Path) -> None:
     study = study_of(GRID.replace('[objective]\n"K_b_Nm_per_rad" = "maximize"\n', ""))
-    result = run_study(study, ledger_of(study, tmp_path), threads, silent, quick)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
     assert len(result.feasible) == 6
     assert result.best(5) == ()

@@ -10,7 +10,7 @@ from study_bench import LENGTH, WALL, study_of, threads
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.indices import sampled_indices
 from flexspline.pipeline.study.load import StudyError
-from flexspline.pipeline.study.run import ledger_of, run_study, source_of
+from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
 from flexspline.pipeline.study.scatter import Scatter, scatter_of
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.tolerance import TOTAL, Input, saltelli
@@ -40,7 +40,7 @@ def test_a_known_function_through_a_whole_study(tmp_path: Path) -> None:
         x, y, z = ((task.values[i.key] - i.nominal) / (i.high - i.nominal) for i in own)
         return Outcome({TOTAL: x + y**2 + x * z})
 
-    result = run_study(study, ledger_of(study, tmp_path), threads, lambda p: None, evaluation)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None, evaluation)
     (scatter,) = result.scatter
     found = scatter.indices
     assert found is not None
@@ -163,7 +163,7 @@ def test_the_scatter_of_the_design_s_own_uncertainty_is_its_standard_deviation(
     study = study_of(
         'design = "xb1-40.toml"\n[run]\nmethod = "tolerance"\nevaluations = 320\n'
     )  # fmt: skip
-    result = run_study(study, ledger_of(study, tmp_path), threads, lambda p: None)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None)
     (scatter,) = result.scatter
     stated = np.median([r.outcome.figures["backlash_arcsec.std"] for r in result.rows])
     # 128 independent designs know a standard deviation to 1/√(2·128) = 6 %, a Sobol sequence better
@@ -177,7 +177,7 @@ def test_a_study_whose_designs_all_fail_keeps_its_rows(tmp_path: Path) -> None:
     def evaluation(task: Task) -> Outcome:
         return Outcome(reason="nothing could be built")
 
-    result = run_study(study, ledger_of(study, tmp_path), threads, lambda p: None, evaluation)
+    result = run_study(study, trial_store_of(study, tmp_path), threads, lambda p: None, evaluation)
     assert [r.outcome.reason for r in result.rows] == ["nothing could be built"] * 64
     assert result.scatter == ()
     assert "only 0 of" in result.unscattered

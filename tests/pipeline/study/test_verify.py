@@ -8,7 +8,7 @@ from study_bench import EXAMPLES, WALL, study_of, threads
 
 from flexspline.geometry.keys import without_holes
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
-from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.run import run_study, trial_store_of
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verify import checked
 
@@ -44,7 +44,7 @@ def test_the_solid_model_of_a_part_without_holes_agrees(tmp_path: Path) -> None:
     def torsion(task: Task) -> Outcome:
         return evaluate(replace(task, solves=("torsion",)))
 
-    result = run_study(plain, ledger_of(plain, tmp_path), threads, lambda p: None, torsion)
+    result = run_study(plain, trial_store_of(plain, tmp_path), threads, lambda p: None, torsion)
     (verified,) = result.verified
     assert verified.slot == result.pareto[0].slot
     assert {c.key for c in verified.checks} == {

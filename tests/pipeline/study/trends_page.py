@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.study.cluster import Hands
+from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.load import load_study
-from flexspline.pipeline.study.run import ledger_of, run_study
+from flexspline.pipeline.study.run import run_study, trial_store_of
 
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs" / "trends.md"
@@ -149,14 +149,16 @@ def torsion(task: Task) -> Outcome:
 @contextmanager
 def alone():
     with ThreadPoolExecutor(1) as executor:
-        yield Hands(executor, lambda: 1)
+        yield WorkerPool(executor, lambda: 1)
 
 
 def sweep(name: str) -> Sweep:
     """The row's study, carried out here."""
     study = load_study(ROOT / "examples" / "studies" / f"trends-{name}.toml")
     with tempfile.TemporaryDirectory() as folder:
-        rows = run_study(study, ledger_of(study, Path(folder)), alone, lambda p: None, torsion).rows
+        rows = run_study(
+            study, trial_store_of(study, Path(folder)), alone, lambda p: None, torsion
+        ).rows
     assert not any(r.outcome.reason for r in rows), [r.outcome.reason for r in rows]
 
     def column(key: str) -> np.ndarray:
