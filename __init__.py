@@ -55,9 +55,12 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from importlib.metadata import version
+        from importlib.metadata import PackageNotFoundError, version
 
-        found: Any = version("flexspline")
+        try:
+            found: Any = version("flexspline")
+        except PackageNotFoundError:  # a source tree that nobody installed
+            found = "unknown"
     elif name in _PLACE:
         found = getattr(import_module(f"flexspline.{_PLACE[name]}"), name)
     else:

@@ -83,7 +83,7 @@ def _ring_cuts(f: Cup | Hat) -> list[Segment]:
 
 
 def cup_meridian(f: Cup) -> Meridian:
-    """The contract's outline of a cup."""
+    """The outline of a cup (docs/contract.md)."""
     bore, boss = f.bore_diameter_mm / 2, f.boss_diameter_mm / 2
     h = f.diaphragm_thickness_mm
     corners = [
@@ -100,7 +100,7 @@ def cup_meridian(f: Cup) -> Meridian:
 
 
 def hat_meridian(f: Hat) -> Meridian:
-    """The contract's outline of a hat."""
+    """The outline of a hat (docs/contract.md)."""
     outer, inner = f.flange_outer_diameter_mm / 2, f.flange_inner_diameter_mm / 2
     h = f.diaphragm_thickness_mm
     corners = [

@@ -19,7 +19,7 @@ SAME = 1e-9
 class Segment:
     """A straight line, or a circular arc of less than 180° if `centre` is given.
 
-    `patch` names the surface that the segment sweeps, where the contract names it.
+    `patch` names the surface that the segment sweeps, where docs/contract.md names it.
     """
 
     start: Point

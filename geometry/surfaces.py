@@ -16,7 +16,7 @@ SYMMETRY_END = "symmetry_end"
 
 
 class Surface(Protocol):
-    """A surface with a name; `patch` is the contract's name, or a plane of symmetry, or empty."""
+    """A surface with a name; `patch` is its name in docs/contract.md, or a plane of symmetry, or empty."""
 
     @property
     def patch(self) -> str: ...

@@ -43,9 +43,9 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from flexspline.results.records import program_version
+        from flexspline import __version__
 
-        show(program_version())
+        show(__version__)
         raise typer.Exit
 
 

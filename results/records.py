@@ -1,13 +1,13 @@
-"""result.json: the contract's keys, and only those that a command computed."""
+"""result.json: the keys of docs/contract.md, and only those that a command computed."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexspline import __version__
 from flexspline.geometry.errors import readable
 from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
@@ -29,14 +29,9 @@ if TYPE_CHECKING:
 Record = dict[str, Any]
 
 
-def program_version() -> str:
-    """The installed distribution's version."""
-    return version("flexspline")
-
-
 def heading(design: Design) -> Record:
     """Which design, which program."""
-    return {"design": design.name, "version": program_version()}
+    return {"design": design.name, "version": __version__}
 
 
 def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Record:
@@ -58,7 +53,7 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
     solver = {
         name: _solver(k) for name, k in (("flexspline", found.K_b), ("shaft", found.K_e)) if k
     }
-    # the contract's flat figures are the flexspline's, or the shaft's where that alone was solved
+    # these flat figures are the flexspline's, or the shaft's where that alone was solved
     flat = next(iter(solver.values()), {})
     record["solver"] = {**flat, "wall_s": round(wall_s, 3), "parts": solver}
     record["warnings"] = [*warnings(design), *shortfalls(design, found)]

@@ -27,7 +27,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 HALF_WIDTH = pi / 6
-"""φ0 of the contract."""
+"""φ0: torque enters over ±30° about each end of the major axis (docs/contract.md)."""
 TORQUE = NMM_PER_NM
 """Applied torque [N·mm]: 1 N·m."""
 TAIL_SHARE = 0.1

@@ -22,7 +22,7 @@ from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
 LOBE_HALF_WIDTH = pi / 6
-"""φ0: the mesh carries torque over ±30° about each end of the major axis (contract)."""
+"""φ0: the mesh carries torque over ±30° about each end of the major axis (docs/contract.md)."""
 BALANCE_LIMIT = 1e-6
 """Energy and reaction give the same K to this; measured 1e-12 to 1e-10."""
 

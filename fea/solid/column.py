@@ -170,7 +170,7 @@ def _radii(outline: Meridian) -> np.ndarray:
 
 
 def _hole_depth(design: Design, part: str) -> float:
-    """z to which the contract drills: the first segment, the boss or the flange."""
+    """z down to which the bolt holes go: the first segment, the boss or the flange."""
     if part == "shaft":
         return design.shaft.segment[0].length_mm
     f = design.flexspline

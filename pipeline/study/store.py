@@ -37,8 +37,8 @@ class TrialStoreError(ComputationError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(
-            f"the study's storage does not work: {reason}; what is stored is kept, the same command "
-            "goes on from there"
+            f"the study's storage does not work: {reason}; what is stored is kept: run the same "
+            "command again to resume"
         )
 
 

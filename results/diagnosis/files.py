@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+from flexspline import __version__
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.model_file import Provenance
 from flexspline.pipeline.diagnosis.model_text import model_text
@@ -13,7 +14,7 @@ from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
 from flexspline.results.figures.diagnosis.draw import draw_figures
-from flexspline.results.records import as_json, program_version
+from flexspline.results.records import as_json
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
 from flexspline.results.report.diagnosis import diagnosis_document
@@ -58,7 +59,7 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
             first = [float(history.time_s[rows[0]]) for rows in history.unit_slices]
             time = dict(zip(names, first, strict=True))
     provenance = Provenance(
-        program=f"flexspline {program_version()}",
+        program=f"flexspline {__version__}",
         design=diagnosis.design.name,
         measurement=measurement.path.name,
         measurement_sha256=measurement.sha256,

@@ -1,4 +1,4 @@
-"""diagnosis.json: the contract's keys."""
+"""diagnosis.json: the keys of docs/contract.md."""
 
 from __future__ import annotations
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from flexspline import __version__
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.pictures import RunPictures, small
-from flexspline.results.records import program_version
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.content import Pictures, ReportContent
 from flexspline.results.report.page import page_of, png
@@ -73,7 +73,7 @@ def _content(
     peaks = {name: solved.peak for name, solved in result.fields.items()}
     return ReportContent(
         design=design,
-        version=program_version(),
+        version=__version__,
         K_b=found.flexspline,
         K_e=found.shaft,
         K_series_Nm_per_rad=found.series_Nm_per_rad(design),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from datetime import UTC, datetime
 
-from flexspline.results.records import program_version
+from flexspline import __version__
 
 
 def issued(version: str = "") -> str:
@@ -14,7 +14,7 @@ def issued(version: str = "") -> str:
     The date is that of SOURCE_DATE_EPOCH (seconds, UTC) where the environment gives it: then the same
     content gives the same bytes on any day.
     """
-    return f"flexspline {version or program_version()} · {_day()}"
+    return f"flexspline {version or __version__} · {_day()}"
 
 
 def _day() -> str:

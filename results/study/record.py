@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from flexspline import __version__
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Verified
-from flexspline.results.records import program_version
 from flexspline.results.study.labels import entry, valued
 from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.why import disagreement, misses, signed
@@ -23,7 +23,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
     return {
         "study": result.study.name,
         "design": result.study.design.name,
-        "version": program_version(),
+        "version": __version__,
         "method": file.run.method,
         "evaluations": len(result.rows),
         "failed": len(result.rows) - len(result.built),

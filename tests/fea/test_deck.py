@@ -182,7 +182,7 @@ def stiffness_by_calculix(text: str, folder: Path) -> float:
 @pytest.mark.parametrize(
     ("case", "tolerance"),
     [
-        # the demand for the cup of six holes; measured 2e-6
+        # two programs on one mesh; measured 2e-6
         (lambda: wedge("flexspline"), 1e-4),
         # C3D10 integrates with 4 points, we with 11: on the shaft's larger curved elements that is
         # 1.0e-4 (with 4 points ours agrees to 1e-6)

@@ -1,6 +1,6 @@
 """Every bad design file is refused with one line: its key, its value, and the range that works.
 
-Ranges were worked out by hand from the contract's geometry of the two examples:
+Ranges were worked out by hand from the geometry (docs/contract.md) of the two examples:
 xb1-40: Ri = 19.2, Rw = 19.6, L = 30, ring 8 long, boss r = 9, bore r = 4, diaphragm 0.6, wall 0.4;
 hat-25: Ri = 28.8, Rw = 29.3, L = 28, ring from 16 to 27, flange r = 39 to 48, diaphragm 0.5;
 keyed-shaft: segments of 4, 12, 20 mm, r = 10, 9, 8, bore r = 3, keyway 5 x 3 x 16.

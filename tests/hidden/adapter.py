@@ -1,4 +1,4 @@
-"""The one place that knows the program under test: case in, contract's diagnosis.json out."""
+"""The one place that knows the program under test: case in, diagnosis.json out."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class Case:
     Attributes
     ----------
     csv, design : text of the two files. K_b, K_e : N·m/rad.
-    truth : (id, magnitude in the contract's unit), largest effect first; empty where none is named.
+    truth : (id, magnitude in the unit of docs/contract.md), largest effect first; empty where none is named.
     standing : noise units beyond calibration and mimicry, one per hidden effect.
     decidable : all of them are at least 6.
     expected : causes that an `ambiguous` verdict must mention; tolerated : those that it may.

@@ -42,7 +42,7 @@ CAUSES: dict[str, Callable[[Setting, np.random.Generator], Hidden]] = {
     "rate_dependence": draw_rate,
 }
 DECIDABLE = 6.0
-"""Noise units, from the issue: 18 nats, thrice what the contract calls ambiguous."""
+"""Noise units, 18 nats, thrice what docs/contract.md calls ambiguous."""
 FOREIGN_STANDING = (12.0, 30.0, 90.0)
 """Noise units beyond the best two causes at the three levels; 10 are asked for."""
 KEEP_WEAK = 0.2

@@ -1,4 +1,4 @@
-"""A hidden effect: what it adds to the angle, and the size that the contract gives it."""
+"""A hidden effect: what it adds to the angle, and its size as docs/contract.md defines it."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class CannotShowError(ValueError):
 class Hidden:
     """Attributes.
 
-    cause : id in the contract's vocabulary, or ``foreign:…``.
-    magnitude : in the contract's unit; nan for what is in no vocabulary.
+    cause : id of docs/contract.md, or ``foreign:…``.
+    magnitude : in the unit of docs/contract.md; nan for what is in no vocabulary.
     law : one line on the law and its parameters.
     angle : arcsec added on the program's grid. reading_Nm : added to the torque reading.
     """

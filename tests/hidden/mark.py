@@ -16,7 +16,7 @@ Diagnose = Callable[[Case], dict]
 
 
 NEAR = 2 / 5**0.5
-"""Absorbed : left = 2 : 1, where the contract lets `named` stand beside what is unexplained."""
+"""Absorbed : left = 2 : 1, where docs/contract.md lets `named` stand beside what is unexplained."""
 
 
 @dataclass(frozen=True)

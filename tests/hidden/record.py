@@ -75,7 +75,7 @@ def measure(
 
 
 def as_csv(units: list[Unit], rng: np.random.Generator) -> str:
-    """The file a logger writes: contract's columns, digits of a real instrument."""
+    """The file a logger writes: columns of docs/contract.md, digits of a real instrument."""
     several = len(units) > 1
     columns = units[0].program.columns
     header = [*(["unit"] if several else []), *columns, "torque_Nm", "angle_arcsec"]
@@ -117,7 +117,7 @@ FACTOR = {
     "time_min": 1 / 60,
     "time_h": 1 / 3600,
 }
-"""What the contract lets a file write instead, per N·m, arcsec and s."""
+"""Other units that a file may use, per N·m, arcsec and s."""
 
 
 def _names(rng: np.random.Generator) -> dict[str, str]:

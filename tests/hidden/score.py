@@ -1,4 +1,4 @@
-"""The figures that the issue demands, from many marks, and what failed with its seed."""
+"""The figures of merit from many marks, and what failed with its seed."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Figure:
 
 
 def figures(marks: Sequence[Mark]) -> list[Figure]:
-    """The issue's table; counts say how many records each figure rests on.
+    """The table of merits; counts say how many records each figure rests on.
 
     A foreign effect that one named cause mimics better than 2 : 1 is counted apart and without a
-    demand: there the contract allows `named` with something unexplained.
+    demand: there docs/contract.md allows `named` with something unexplained.
     """
     clear = [m for m in marks if m.decidable]
     singles = [m for m in clear if m.kind == "single"]

@@ -1,4 +1,4 @@
-"""The generator keeps the contract's definitions: each magnitude on a law with a known answer."""
+"""The generator keeps the definitions of docs/contract.md: each magnitude on a law with a known answer."""
 
 from __future__ import annotations
 

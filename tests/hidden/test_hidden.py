@@ -1,4 +1,4 @@
-"""The issue's demands on `flexspline diagnose`, over effects hidden in made-up measurements."""
+"""What `flexspline diagnose` must reach over effects hidden in made-up measurements."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def compliance(name: str, seed: int, kind: Kind, off_mm: float = 0.0) -> np.ndar
 
 @dataclass(frozen=True)
 class Hidden:
-    """What was hidden and what was measured: `cause` None for nothing, `size` in the contract's unit."""
+    """What was hidden and what was measured: `cause` None for nothing, `size` in its unit."""
 
     kind: Kind
     cause: str | None

@@ -84,7 +84,7 @@ def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:
         print("first cause where wrong:", Counter(
             (a.kind, a.found[0].id if a.found else a.verdict) for a in wrong if not a.right_first
         ))  # fmt: skip
-    # the figures
+    # shares that a user could rely on; measured: docs/end-points-and-specimens.md
     assert share["clean"] >= 0.95
     assert np.mean([a.right_first for a in wrong]) >= 0.90
     # twins are told apart by size alone; if not first, then said to be possible

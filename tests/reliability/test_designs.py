@@ -1,4 +1,4 @@
-"""Random designs: each is refused by the contract, or answered with finite K between bounds."""
+"""Random designs: each is refused, or answered with finite K between bounds."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def test_backlash_with_given_stiffness_needs_no_fea(tmp_path: Path) -> None:
         cache=tmp_path / "cache",
     )  # fmt: skip
     result = json.loads(done.stdout)
-    # model page: 2T/K at 1.8e4 is 11.46 arcsec
+    # 2T/K at 1.8e4 is 11.46 arcsec
     wind_up = result["backlash_arcsec"]["shaft"] + result["backlash_arcsec"]["flexspline"]
     assert wind_up == pytest.approx(11.46, abs=0.005)
     assert "K_b_Nm_per_rad" not in result  # not computed, so absent

@@ -54,7 +54,7 @@ def test_what_the_script_hid_is_found(done: tuple[Path, dict]) -> None:
     assert said["verdict"] == "named"
     found = {c["id"]: c for c in said["causes"]}
     assert set(found) == {"friction_hysteresis", "thermal_clearance"}
-    # a tenth of what was hidden: the issue asks for 5 % in the median, one record may lie further off
+    # a tenth of what was hidden: 5 % is the median's, one record may lie further off
     friction = found["friction_hysteresis"]["magnitude"]
     assert friction == pytest.approx(hidden["FRICTION"], rel=0.1)
     kelvin = found["thermal_clearance"]["magnitude"]
@@ -219,7 +219,7 @@ def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -
 
 
 def test_run_shows_the_added_terms(done: tuple[Path, dict], tmp_path: Path) -> None:
-    """Every stage of a run; the contract's keys stay as without a model."""
+    """Every stage of a run; the keys stay as without a model."""
     model = done[0] / "extended_model.toml"
     result = flexspline("run", CUP, "--model", model, "--out", tmp_path, "--json")
     assert result.exit_code == 0, result.stderr
@@ -266,7 +266,7 @@ def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_hundred_thousand_rows_within_twenty_seconds(tmp_path: Path) -> None:
-    """The issue's demand, for the diagnosis; processor time, as other work may share the machine."""
+    """Within the time that a person waits; processor time, as other work may share the machine."""
     import time
 
     hidden = runpy.run_path(str(MAKER))

@@ -1,22 +1,17 @@
-"""The table of quantities against the contract's result.json, and how it prints numbers."""
+"""The table of quantities against result.json of docs/contract.md, and how it prints numbers."""
 
 import json
+import re
+import tomllib
+from pathlib import Path
 
 import pytest
 
+from flexspline.geometry.load import design_from
 from flexspline.results.quantities import QUANTITIES, THIN, grouped, quantity
 
-# the example of the contract, section 2, with its values left out
-CONTRACT = json.loads("""
-{"design": "", "version": "",
- "K_b_Nm_per_rad": 0, "K_b_bounds_Nm_per_rad": 0,
- "K_b_lobes_Nm_per_rad": 0, "K_b_lobes_unsupported_Nm_per_rad": 0,
- "K_e_Nm_per_rad": 0, "K_e_bounds_Nm_per_rad": 0, "K_series_Nm_per_rad": 0,
- "wave_generator_peak_mises_MPa": 0, "torque_peak_mises_MPa": 0,
- "backlash_arcsec": {"shaft": 0, "flexspline": 0, "flank_clearance": 0, "bearing_play": 0,
-                     "total": 0, "std": 0},
- "solver": {"model": "", "elements": 0, "dofs": 0, "wall_s": 0, "symmetry": ""}}
-""")
+PAGE = (Path(__file__).parents[2] / "docs" / "contract.md").read_text(encoding="utf-8")
+RECORD = json.loads(re.search(r"```json\n(\{\"design\".*?)```", PAGE, re.S)[1])
 SUFFIXES = {
     "N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s", "mm": "_mm", "%": "_pct",
     "g": "_g", "N·m": "_Nm",
@@ -31,10 +26,16 @@ def flat(record, prefix=""):
             yield prefix + key
 
 
-def test_every_key_of_the_contract_stands_in_the_table_once():
+def test_the_page_s_design_loads():
+    """Its comments, too: the hat's keys are named there, and are another kind's."""
+    design = design_from(tomllib.loads(re.search(r"```toml\n(.*?)```", PAGE, re.S)[1]))
+    assert design.name == "XB1-40 cup"
+
+
+def test_every_key_of_the_page_stands_in_the_table_once():
     keys = [q.key for q in QUANTITIES]
     assert len(keys) == len(set(keys))
-    assert set(flat(CONTRACT)) <= set(keys)
+    assert set(flat(RECORD)) <= set(keys)
 
 
 def test_columns_are_distinct_and_carry_their_unit():

@@ -45,7 +45,7 @@ MODEL_CUP = Cup(
     boss_thickness_mm=2.001,
     bore_diameter_mm=10.0,
 )
-"""The model page's cup: mid radius 20, wall 0.4, length 30, diaphragm 2.0, clamped at 11 mm."""
+"""The published shell model's cup: mid radius 20, wall 0.4, length 30, diaphragm 2.0, clamped at 11 mm."""
 
 
 @st.composite

@@ -26,7 +26,7 @@ from flexspline.geometry.symmetry import sector_of
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 TOLERANCE = 0.005
-"""Asked of the solid model: the contract's default."""
+"""Asked of the solid model: the default of solver.tolerance_pct."""
 REFERENCE = 5e-5
 """Width of the two-sided bounds: a hundred times narrower, and eight times below any estimate so far."""
 FINE = 0.001

@@ -144,7 +144,7 @@ def test_strains_of_a_harmonic_against_cartesian_gradients(record):
 
 
 def test_ring_bent_to_an_ellipse(record):
-    """Model page: σ ≈ E/(1-ν²)·(t/2)·3w0/R² for a wide ring under w0 cos 2φ.
+    """Ring bending: σ ≈ E/(1-ν²)·(t/2)·3w0/R² for a wide ring under w0 cos 2φ.
 
     The thin-ring formula leaves out terms of order t/R = 1/50, and the seat is half a wall inside
     the middle surface: hence 3 %.
@@ -167,7 +167,7 @@ def test_ring_bent_to_an_ellipse(record):
 
 
 def test_lobe_coefficients_against_quadrature_and_parseval():
-    """Contract: cos²(π(φ-φk)/2φ0) within 30° of 0 and 180°."""
+    """docs/contract.md: cos²(π(φ-φk)/2φ0) within 30° of 0 and 180°."""
     phi = (np.arange(36000) + 0.5) * 2 * pi / 36000
     off = np.minimum.reduce([np.abs(phi - k * pi) for k in range(3)])
     bump = np.where(off < HALF_WIDTH, np.cos(pi * off / (2 * HALF_WIDTH)) ** 2, 0.0)
@@ -190,7 +190,7 @@ def test_truncation_bound_holds():
 
 
 def test_model_page_cup_under_lobes(record):
-    """Model page: 45 to 60 kN·m/rad turned evenly, published 26.6 under lobes, alone below 3.
+    """Thin tube and plate: 45 to 60 kN·m/rad turned evenly, published 26.6 under lobes, alone below 3.
 
     A seat that may not lift off is stiffer than contact, no seat softer: the published figure of a
     shell model lies between.

@@ -119,7 +119,7 @@ def test_ellipse_is_linear_in_its_amplitude_and_meets_its_supports():
 
 
 def test_ellipse_bends_the_ring_by_the_ring_formula(record):
-    """Model page: σ ≈ E/(1-ν²)·(t/2)·3w0/R², the bending part of the hoop stress amid the ring.
+    """Ring bending: σ ≈ E/(1-ν²)·(t/2)·3w0/R², the bending part of the hoop stress amid the ring.
 
     The bending part is half the difference of outer and inner surface; the membrane part comes from
     the cup's closed end. Thin-ring formula: good to t/R = 3 %.

@@ -46,7 +46,7 @@ def test_coulomb_tube_and_solid_shaft(inner, outer, record):
 
 
 def test_thin_tube_formula(record):
-    """Model page: 2πG R³t/L; the next term of J is (t/2R)² = 1e-4 of it at R = 20, t = 0.4."""
+    """Bredt: 2πG R³t/L; the next term of J is (t/2R)² = 1e-4 of it at R = 20, t = 0.4."""
     found = torsional_stiffness(tube(19.8, 20.2, 30), STEEL, "grip", 1e-5)
     thin = 2 * pi * STEEL.mu * 20**3 * 0.4 / 30 / NMM_PER_NM
     record("Thin tube, K", "2πGR³t/L (Bredt)", thin, found.K_Nm_per_rad, "N·m/rad")
@@ -54,7 +54,7 @@ def test_thin_tube_formula(record):
 
 
 def test_annular_plate_in_shear(record):
-    """Model page: K = 4πG h/(1/r² - 1/R²). φ is linear in z: the lower bound is all but exact."""
+    """A plate turned in its plane: K = 4πG h/(1/r² - 1/R²). φ is linear in z: a lower bound all but exact."""
     exact = 4 * pi * STEEL.mu * 2 / (1 / 11**2 - 1 / 20**2) / NMM_PER_NM
     found = torsional_stiffness(annular_plate(11, 20, 2), STEEL, "grip", 1e-5)
     source = "Timoshenko and Goodier §43"
@@ -102,7 +102,7 @@ def test_stepped_shaft_between_elementary_bounds(record):
 
 
 def test_model_page_cup(record):
-    """Model page: about 45 to 60 kN·m/rad; thin tube and plate in series give 44.7.
+    """Thin tube and plate in series give 44.7.
 
     The series counts the whole length as tube; in the solid the plate and the driven ring take
     10 mm of it, so K lies above the series.

@@ -1,6 +1,6 @@
 """Unilateral contact of rim and wave generator, against the cases that bracket it.
 
-Published value: the shell model on the model page's cup, 26.6 kN·m/rad for torque at the two lobes.
+Published value: the shell model on its cup, 26.6 kN·m/rad for torque at the two lobes.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ SHALLOW = outline(
 )  # fmt: skip
 """65 nodes on the seat of a thin, almost flat cup."""
 EXAMPLE_CUP = outline()
-MODEL_PAGE_CUP = outline(
+PUBLISHED_CUP = outline(
     inner_diameter_mm=39.6, wall_thickness_mm=0.4, ring_thickness_mm=0.4, length_mm=30.0,
     diaphragm_thickness_mm=2.0, boss_diameter_mm=22.0, boss_thickness_mm=4.0,
     inner_fillet_mm=0.0, outer_fillet_mm=0.0,
@@ -114,10 +114,10 @@ def test_contact_settles_on_a_thin_rim(places: int, monkeypatch) -> None:
     assert len(rounds) <= 25
 
 
-@pytest.mark.parametrize("cup", [SHALLOW, MODEL_PAGE_CUP], ids=["shallow", "model page"])
+@pytest.mark.parametrize("cup", [SHALLOW, PUBLISHED_CUP], ids=["shallow", "published"])
 def test_some_places_tell_what_all_nodes_tell(cup: Meridian) -> None:
     mesh = triangulate(cup)
-    if cup is MODEL_PAGE_CUP:
+    if cup is PUBLISHED_CUP:
         mesh = refined(mesh, np.ones(len(mesh.triangles), bool))
     model = HarmonicModel(mesh, STEEL)
     few, every = (seat_compliance(model, 32, most) for most in (MOST_PLACES, 1000))
@@ -148,7 +148,7 @@ def test_more_angles_change_little(seat) -> None:
     assert K[0] == pytest.approx(K[1], rel=3e-4)
 
 
-@pytest.mark.parametrize("cup", [EXAMPLE_CUP, MODEL_PAGE_CUP], ids=["xb1-40", "model page"])
+@pytest.mark.parametrize("cup", [EXAMPLE_CUP, PUBLISHED_CUP], ids=["xb1-40", "published"])
 def test_contact_lies_between_free_and_held(cup: Meridian) -> None:
     held = lobe_stiffness(cup, STEEL, True, 0.005)
     free = lobe_stiffness(cup, STEEL, False, 0.005)
@@ -167,9 +167,9 @@ def test_published_value_lies_between_free_and_resting(record) -> None:
     model assumed about the ring under the load is not stated, so no closer agreement is asked.
     """
     steel = Elastic(200e3, 0.3)
-    held = lobe_stiffness(MODEL_PAGE_CUP, steel, True, 0.005)
-    free = lobe_stiffness(MODEL_PAGE_CUP, steel, False, 0.005)
-    resting = contact_stiffness(MODEL_PAGE_CUP, steel, held)
+    held = lobe_stiffness(PUBLISHED_CUP, steel, True, 0.005)
+    free = lobe_stiffness(PUBLISHED_CUP, steel, False, 0.005)
+    resting = contact_stiffness(PUBLISHED_CUP, steel, held)
     published = 26_600.0
     record(
         "K_b under lobes, rim resting on the wave generator", "published shell model",

@@ -29,6 +29,6 @@ def test_true_error_over_estimate(name: str, kind: str, tolerance: float, record
 
 def test_no_bias_over_ten_designs_and_more() -> None:
     """An estimate that is honest on the whole has a median near 1, not only extremes in range."""
-    assert len(CASES) >= 10  # the issue's demand
+    assert len(CASES) >= 10  # fewer would say little of the factor
     # one mesh takes the usual scale, two have their own, each with its scatter: 0.8 to 1.8 measured
     assert 0.6 < np.median([ratio(name) for name in CASES]) < 1.6

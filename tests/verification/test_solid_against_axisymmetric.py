@@ -33,7 +33,7 @@ def test_solid_stiffness_lies_within_its_bounds(
         f"K of {name}, to {tolerance:.1%}{how}", "Michell 1899, bounds", exact.K_Nm_per_rad,
         found.K_Nm_per_rad, "N·m/rad",
     )  # fmt: skip
-    # the issue's demand is 0.6 % for all; the tolerance asked for is the program's own promise
+    # the tolerance asked for is the program's own promise
     assert found.K_Nm_per_rad == pytest.approx(exact.K_Nm_per_rad, rel=tolerance)
     assert found.lower_Nm_per_rad < exact.upper_Nm_per_rad
     assert found.upper_Nm_per_rad > exact.lower_Nm_per_rad
@@ -60,7 +60,7 @@ def test_wedge_is_the_full_model(record) -> None:
 
 @pytest.mark.long
 def test_wedge_agrees_with_the_full_model_meshed_apart(record) -> None:
-    """The same by fTetWild, with a mesh of its own for each (the issue: 0.3 %)."""
+    """The same by fTetWild, with a mesh of its own for each (within 0.3 %)."""
     design = design_from(tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8")))
     material = Elastic.of(design.material.flexspline)
     first = first_spec(design, "flexspline")

@@ -53,7 +53,7 @@ def test_tube_in_torsion(record) -> None:
 
 
 def test_thin_tube_formula(record) -> None:
-    """2πGR³t/L (model page) is the limit t → 0 of the same K: off by t²/(4R²)."""
+    """2πGR³t/L (Bredt) is the limit t → 0 of the same K: off by t²/(4R²)."""
     ri, ro, length = 19.2, 19.6, 25.0
     K = torsion(Model.of(tube(ri, ro, length, 1, arcs=20), STEEL), "mesh").K_energy
     middle, wall = (ri + ro) / 2, ro - ri
@@ -129,7 +129,7 @@ def test_lame_cylinder(record) -> None:
 
 
 def test_thin_ring_on_the_ellipse(record) -> None:
-    """σ = E/(1 − ν²)·(t/2)·3w0/R² at the surface (model page), wide ring: plane strain."""
+    """σ = E/(1 − ν²)·(t/2)·3w0/R² at the surface, wide ring: plane strain."""
     R, t, w0 = 20.0, 0.4, 0.2
     width = 1.0
     mesh = sector_mesh(

@@ -27,7 +27,7 @@ A = M * (Z2 - Z1) / 2
 C_MAX = 2 * A * (1 - cos(ALPHA))
 PRINTED = 0.05 + 1e-9
 """The tables print one decimal: half of the last one."""
-ARTICLE, MODEL_PAGE = "the article's print", "recomputed by hand"
+ARTICLE, BY_HAND = "the article's print", "recomputed by hand"
 MEASURED = Path(__file__).parents[2] / "examples/measured/size-40-end-points.csv"
 
 
@@ -120,7 +120,7 @@ def test_printed_form_is_negative(c: float) -> None:
 
 def test_domain_ends_at_c_max(record) -> None:
     limit = play_limit(A, ALPHA) * 1e3
-    record("Largest bearing play the model answers for", MODEL_PAGE, 24.12, limit, "µm")
+    record("Largest bearing play the model answers for", BY_HAND, 24.12, limit, "µm")
     assert play_limit(A, ALPHA) * 1e3 == pytest.approx(24.12, abs=0.005)
     # at the end cos α′ rounds to within 1e-16 of 1, α′ to its root
     assert degrees(working_pressure_angle(C_MAX, A, ALPHA)) == pytest.approx(0, abs=1e-5)
@@ -134,7 +134,7 @@ def test_domain_ends_at_c_max(record) -> None:
 
 def test_bearing_term_saturates(record) -> None:
     largest = flank(play_um(C_MAX * 1e3))
-    record("Bearing term where it saturates", MODEL_PAGE, 61.48, largest, "″")
+    record("Bearing term where it saturates", BY_HAND, 61.48, largest, "″")
     assert flank(play_um(C_MAX * 1e3)) == pytest.approx(61.48, abs=0.005)
     assert involute_clearance_slope(C_MAX, A, ALPHA) == pytest.approx(0, abs=1e-7)
 
@@ -203,7 +203,7 @@ def test_table_5_units_2_and_3_are_outside() -> None:
 def test_table_5_no_clearance_within_tolerance_explains_unit_3(record) -> None:
     largest = compliance(1.8e4) + flank(4) + flank(play_um(C_MAX * 1e3))
     case = "Table 5, most that clearances explain of unit 3's 117″"
-    record(case, MODEL_PAGE, 116.8, largest, "″")
+    record(case, BY_HAND, 116.8, largest, "″")
     assert largest == pytest.approx(116.8, abs=PRINTED)
     plus, minus = unit_readings()["3"]
     assert largest < plus - minus

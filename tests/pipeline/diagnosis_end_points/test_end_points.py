@@ -64,7 +64,7 @@ def test_article_is_ambiguous_for_unit_3_alone(article) -> None:
 
 
 def test_article_units_in_standard_deviations(article) -> None:
-    """Totals 86, 104, 117, 92 against 83.66 ± 12.91 (model page): z = 0.2, 1.6, 2.6, 0.6 or 0.7."""
+    """The article's totals 86, 104, 117, 92 against 83.66 ± 12.91: z = 0.2, 1.6, 2.6, 0.6 or 0.7."""
     z = [u.z for u in article.end_points.units]
     assert z == pytest.approx(
         [0.18, 1.575, 2.58, 0.645], abs=0.01
@@ -77,7 +77,7 @@ def test_article_also_with_stiffness_of_the_example_by_fe() -> None:
 
 
 def test_no_clearance_of_the_source_explains_unit_3() -> None:
-    """j_bn0 = 4 µm gives 43.9″ and play at most 61.48″ (model page, tables 3 and 4): 116.8″ < 117″."""
+    """j_bn0 = 4 µm gives 43.9″ and play at most 61.48″ (article, tables 3 and 4): 116.8″ < 117″."""
     of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
     assert of.limit_arcsec() == pytest.approx(SERIES_ARCSEC + 43.90 + 61.48, abs=0.02)
     assert of.limit_arcsec() < 117

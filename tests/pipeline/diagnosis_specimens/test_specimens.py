@@ -118,7 +118,7 @@ def test_bad_overrides_name_file_line_and_reason(tmp_path, column, value, says) 
 
 
 def test_stiffness_of_a_long_tube_follows_its_formula(bench) -> None:
-    """Tube 2πGR³t/L in series with the rest: 10 mm more add 10/(2πGR³t) (model page)."""
+    """Tube 2πGR³t/L in series with the rest: 10 mm more add 10/(2πGR³t) (Bredt)."""
     longer = with_values(DESIGN, {LENGTH: 50.0})
     longest = with_values(DESIGN, {LENGTH: 60.0})
     added = bench.plain(longest, "flexspline") - bench.plain(longer, "flexspline")
