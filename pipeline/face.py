@@ -17,9 +17,9 @@ from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
-from flexspline.pipeline.diagnosis.model_file import read_model_file
-from flexspline.pipeline.diagnosis.predict import Predicted, predict_file
-from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.diagnosis.model.model_file import read_model_file
+from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
 from flexspline.pipeline.load_cases import RimCase, rim_stiffness, wave_generator_field
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress

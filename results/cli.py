@@ -71,12 +71,12 @@ def run(
 ) -> None:
     """The whole way: CAD, mesh, K_b, K_e, backlash, pictures, report.pdf and report.html."""
     with answered(design):
-        from flexspline.pipeline.diagnosis.model_file import read_model_file
+        from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
         measured = read_model_file(model) if model is not None else None
         job = begin(design, out)
         from flexspline.pipeline.analysis import run as run_chain
-        from flexspline.pipeline.diagnosis.extended_backlash import extended_backlash
+        from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
         from flexspline.results.pictures import write_pictures
         from flexspline.results.records import Record, extended_record, run_record, write_record
         from flexspline.results.report.build import write_run_page, write_run_report

@@ -58,7 +58,7 @@ def tell(line: str) -> None:
 def answered(path: Path | None = None) -> Iterator[None]:
     """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
     from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError
-    from flexspline.pipeline.diagnosis.errors import MeasurementError, ModelFileError
+    from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
 
     where = f"{path}: " if path else ""
     try:

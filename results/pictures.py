@@ -19,7 +19,7 @@ import numpy as np
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.backlash import angle_rad
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.figures.budget import write_budget

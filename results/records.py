@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from flexspline.geometry.design import Design
     from flexspline.pipeline.analysis import RunResult, Stiffnesses
     from flexspline.pipeline.backlash import Backlash
-    from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+    from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
     from flexspline.pipeline.linear_limit import LinearLimit
     from flexspline.pipeline.live import Bounded
 

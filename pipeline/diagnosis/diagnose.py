@@ -12,17 +12,28 @@ from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.holdout import gain_of
-from flexspline.pipeline.diagnosis.leftover import ChannelTest, channel_tests
-from flexspline.pipeline.diagnosis.model import ExtendedModel
-from flexspline.pipeline.diagnosis.naming import model_of, named_causes
+from flexspline.pipeline.diagnosis.measurement.record import (
+    EndPoints,
+    Specimens,
+    Sweep,
+    read_measurement,
+)
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
+    NamedCause,
+    NextMeasurement,
+    Verdict,
+)
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
-from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep, read_measurement
-from flexspline.pipeline.diagnosis.result import NamedCause, NextMeasurement, Outcome, Verdict
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep import Explained, TooFewRowsError, diagnosed
-from flexspline.pipeline.diagnosis.verdict import (
+from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
+from flexspline.pipeline.diagnosis.sweep.named_causes import model_of, named_causes
+from flexspline.pipeline.diagnosis.sweep.offset_race import ExplainedSweep, diagnosed
+from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError
+from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest, channel_tests
+from flexspline.pipeline.diagnosis.sweep.verdict import (
     next_of,
     notes_of,
     summary_of,
@@ -51,8 +62,8 @@ class Diagnosis:
     design: Design
     measurement: Sweep | EndPoints | Specimens
     prediction: Prediction
-    outcome: Outcome
-    explained: Explained | None = None
+    outcome: DiagnosisOutcome
+    explained: ExplainedSweep | None = None
     model: ExtendedModel | None = None
     end_points: EndPointAnalysis | None = None
     specimens: SpecimenAnalysis | None = None
@@ -116,15 +127,15 @@ def diagnose_sweep(design: Design, sweep: Sweep, prediction: Prediction) -> Diag
         explained = diagnosed(sweep, prediction)
     except TooFewRowsError as error:
         return _insufficient(design, sweep, prediction, str(error))
-    weighed = explained.weighed
+    decision = explained.decision
     found = named_causes(explained)
-    model = model_of(weighed.solution, sweep, [c.id for c in found], explained.offset_Nm)
-    tests = channel_tests(explained.prepared, weighed.solution)
+    model = model_of(decision.fit, sweep, [c.id for c in found], explained.offset_Nm)
+    tests = channel_tests(explained.prepared, decision.fit)
     unexplained = unexplained_of(explained, tests)
     verdict = verdict_of(explained, found, tests)
     if verdict == "consistent":
         unexplained = ()
-    outcome = Outcome(
+    outcome = DiagnosisOutcome(
         verdict,
         found,
         unexplained,
@@ -154,5 +165,5 @@ def _insufficient(design: Design, sweep: Sweep, prediction: Prediction, reason: 
     )
     summary = f"Too little data to say anything: {reason}."
     return Diagnosis(
-        design, sweep, prediction, Outcome("insufficient", (), (), None, advice, summary)
+        design, sweep, prediction, DiagnosisOutcome("insufficient", (), (), None, advice, summary)
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
-from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.measurement.history import History
 
 REFERENCE_C = 20.0
 

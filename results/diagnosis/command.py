@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
-from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.results.diagnosis.console import diagnosis_table

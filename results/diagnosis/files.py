@@ -7,9 +7,9 @@ from pathlib import Path
 
 from flexspline import __version__
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.model_file import Provenance
-from flexspline.pipeline.diagnosis.model_text import model_text
-from flexspline.pipeline.diagnosis.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.model.model_file import Provenance
+from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record

@@ -12,10 +12,10 @@ import numpy as np
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import one_line
 from flexspline.geometry.input_file import InputFileError, read_input
-from flexspline.pipeline.diagnosis.errors import MeasurementError
-from flexspline.pipeline.diagnosis.model_file import read_model_file
-from flexspline.pipeline.diagnosis.predict import predict_file
-from flexspline.pipeline.diagnosis.table import LARGEST_BYTES
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.table import LARGEST_BYTES
+from flexspline.pipeline.diagnosis.model.model_file import read_model_file
+from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.results.atomic import write_bytes
 from flexspline.results.records import as_json
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.result import Gain, NamedCause
+from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.records import heading
 
 EXTENDED_MODEL = "extended_model.toml"

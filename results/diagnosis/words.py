@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import floor, log10
 
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.result import Gain, NamedCause, Outcome, left_out
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, left_out
 from flexspline.results.quantities import grouped
 
 CHANNELS = {
@@ -87,7 +87,7 @@ def title_of(cause_id: str) -> str:
         return SPECIMENS[cause_id]
     if cause_id.startswith("geometry:"):
         return f"{channel_words(cause_id.removeprefix('geometry:'))} other than drawn"
-    cause = causes().get(cause_id)
+    cause = known_causes().get(cause_id)
     return cause.title if cause else cause_id
 
 
@@ -104,7 +104,7 @@ def figures_text(value: float, digits: int = 3) -> str:
     return grouped(value, places)
 
 
-def sentence(outcome: Outcome) -> str:
+def sentence(outcome: DiagnosisOutcome) -> str:
     """The verdict in one sentence; magnitudes with as many digits as their deviation bears."""
     if outcome.verdict != "named":
         return outcome.summary

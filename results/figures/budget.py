@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.backlash import Backlash
-from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
 from flexspline.results.figures.words import fit, wrapped
 from flexspline.results.quantities import quantity

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.words import channel_words, figures_text
 from flexspline.results.quantities import grouped

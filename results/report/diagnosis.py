@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.result import Gain, NamedCause, Outcome, Unexplained
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.words import (
     VERDICTS,
@@ -81,7 +81,7 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Paragraph(worded(compared(diagnosis, used)))
 
 
-def _causes(outcome: Outcome) -> Iterable[Block]:
+def _causes(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if not outcome.causes:
         return
     may = outcome.verdict == "ambiguous"
@@ -133,7 +133,7 @@ def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
     )  # fmt: skip
 
 
-def _worth(outcome: Outcome) -> Iterable[Block]:
+def _worth(outcome: DiagnosisOutcome) -> Iterable[Block]:
     gain, found = outcome.gain, bool(outcome.causes)
     if gain is None:
         return
@@ -161,7 +161,7 @@ def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     yield "Measurement noise, the lower limit", gain.noise_floor
 
 
-def _after(outcome: Outcome) -> Iterable[Block]:
+def _after(outcome: DiagnosisOutcome) -> Iterable[Block]:
     after = outcome.next_measurement
     if after is not None:
         yield Heading("What to measure next")
@@ -192,7 +192,7 @@ def _model(diagnosis: Diagnosis) -> Iterable[Block]:
     yield Paragraph(code("flexspline predict DESIGN.toml --model extended_model.toml TORQUE.csv"))
 
 
-def _notes(outcome: Outcome) -> Iterable[Block]:
+def _notes(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if outcome.notes:
         yield Heading("Notes")
         yield Bullets(tuple(capital(n) for n in outcome.notes), small=True)

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     capital,

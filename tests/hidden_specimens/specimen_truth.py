@@ -19,7 +19,7 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from, read_toml
 from flexspline.geometry.meridian import meridian
-from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPECIMENS = 8

@@ -17,10 +17,10 @@ from specimen_truth import MODULUS_STD, OFF_MM, Kind, batch, hidden
 
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.diagnosis.record import Specimens
-from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.diagnose import weighed
-from flexspline.pipeline.diagnosis.specimens.race import Data
+from flexspline.pipeline.diagnosis.specimens.laplace import SpecimenData
 from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -62,9 +62,9 @@ def answers(
                 yield Answer(kind, h.cause, h.size, decision.verdict, decision.found)
 
 
-def data_of(fe, specimens: Specimens) -> Data:
+def data_of(fe, specimens: Specimens) -> SpecimenData:
     K, std = specimens.stiffness_Nm_per_rad, specimens.stiffness_std_Nm_per_rad
-    return Data(fe, -np.log(K), None if std is None else std / K, 0.005, MODULUS_STD)
+    return SpecimenData(fe, -np.log(K), None if std is None else std / K, 0.005, MODULUS_STD)
 
 
 def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:

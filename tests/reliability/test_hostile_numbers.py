@@ -20,8 +20,8 @@ from flexspline.geometry.ranges import STIFFNESS_Nm_per_rad
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.template import template
 from flexspline.pipeline.backlash import backlash
-from flexspline.pipeline.diagnosis.errors import MeasurementError
-from flexspline.pipeline.diagnosis.record import read_measurement
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.study.load import study_from
 from flexspline.results.records import as_json, backlash_record
 

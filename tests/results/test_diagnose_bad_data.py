@@ -8,7 +8,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from flexspline.pipeline.diagnosis import table
+from flexspline.pipeline.diagnosis.measurement import table
 from flexspline.results.cli import app
 
 ROOT = Path(__file__).parents[2]

@@ -6,7 +6,7 @@ from hand_made_gear import design
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import Backlash, angle_rad, backlash
-from flexspline.pipeline.diagnosis.extended_backlash import ExtendedBacklash
+from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 
 STATED = {"youngs_modulus_pct": 2.0, "flank_clearance_um": 1.0, "radial_clearance_um": 2.5}
 

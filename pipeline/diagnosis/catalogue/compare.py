@@ -22,7 +22,7 @@ from flexspline.pipeline.diagnosis.catalogue.table import (
     read_catalogue,
     twist_rad,
 )
-from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.outcome import Gain
 
 LOST_MOTION_SHARE = 0.04
 """Of rated torque; 0.03 at some makers."""

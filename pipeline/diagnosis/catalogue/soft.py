@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.catalogue.table import ARCSEC_PER_RAD, CatalogueRow, twist_rad
-from flexspline.pipeline.diagnosis.effects.cause import Element
-from flexspline.pipeline.diagnosis.effects.stiffness_hardening import LAWS
+from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 
 TOP = 2.0
 """Curves are compared up to this multiple of T2, about a gear's repeated peak torque."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 
 ARCSEC_PER_RAD = 180 * 3600 / pi
 K_UNIT = 1e4

@@ -16,15 +16,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.effects.cause import Rig
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, envelope
 from flexspline.pipeline.diagnosis.end_points.finding import (
     EndPointAnalysis,
     MidPositions,
     UnitFinding,
 )
-from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, readings, weigh
 from flexspline.pipeline.diagnosis.end_points.models import extended, gain_of, rivals_for_unit
 from flexspline.pipeline.diagnosis.end_points.next_measurement import PlanSeparation, separations
 from flexspline.pipeline.diagnosis.end_points.race import (
@@ -34,18 +33,24 @@ from flexspline.pipeline.diagnosis.end_points.race import (
     race,
     several_torques,
 )
+from flexspline.pipeline.diagnosis.end_points.regressors import rig_of
 from flexspline.pipeline.diagnosis.end_points.say import notes_of, summary_of
-from flexspline.pipeline.diagnosis.end_points.terms import rig_of
-from flexspline.pipeline.diagnosis.model import ExtendedModel
-from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.record import EndPoints
-from flexspline.pipeline.diagnosis.result import (
+from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+    UnitDeviations,
+    UnitEvidence,
+    readings,
+    unit_evidence,
+)
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
     NamedCause,
     NextMeasurement,
-    Outcome,
     Unexplained,
     Verdict,
 )
+from flexspline.pipeline.diagnosis.prediction import Prediction
 
 NAMING_NATS = 4.0
 """The simulation within its uncertainty is a rival too, by the contract's limit of evidence."""
@@ -58,7 +63,7 @@ RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 
 def diagnose_end_points(
     design: Design, points: EndPoints, prediction: Prediction
-) -> tuple[Outcome, EndPointAnalysis, ExtendedModel | None]:
+) -> tuple[DiagnosisOutcome, EndPointAnalysis, ExtendedModel | None]:
     """The verdict, what stands behind it, and the model where there is one."""
     fleet, names = fleet_of(points, prediction)
     rig = rig_of(points, prediction)
@@ -66,7 +71,7 @@ def diagnose_end_points(
         envelope(design, prediction.compliance, prediction.gap_arcsec, float(t), fleet.readings[0])
         for t in np.unique(points.torque_Nm)
     )
-    null = weigh(fleet, ())
+    null = unit_evidence(fleet, ())
     units = _units(points, fleet, names, envelopes, null)
     furthest = sorted(range(len(units)), key=lambda u: units[u].p_value)
     some = _some(points, fleet, names, furthest)
@@ -97,7 +102,7 @@ def diagnose_end_points(
         envelopes, units, _mids(fleet, prediction), null.common, null.share, kept.reading,
         tuple(hypotheses), plans,
     )  # fmt: skip
-    outcome = Outcome(
+    outcome = DiagnosisOutcome(
         verdict, found, unexplained,
         gain_of(racing, best, raced) if verdict == "named" else None,
         _next(verdict, plans, units[furthest[0]], found),
@@ -113,7 +118,7 @@ def diagnose_end_points(
 
 
 def _some(
-    points: EndPoints, fleet: Fleet, names: Sequence[str], furthest: Sequence[int]
+    points: EndPoints, fleet: UnitDeviations, names: Sequence[str], furthest: Sequence[int]
 ) -> EndPoints:
     """All rows, or, of a very large file, those of evenly chosen units and of the suspects."""
     if len(points.unit) <= MOST_ROWS:
@@ -127,13 +132,13 @@ def _some(
     )  # fmt: skip
 
 
-def fleet_of(points: EndPoints, prediction: Prediction) -> tuple[Fleet, tuple[str, ...]]:
+def fleet_of(points: EndPoints, prediction: Prediction) -> tuple[UnitDeviations, tuple[str, ...]]:
     """Deviations of all rows, and the units' names in their order."""
     names = tuple(dict.fromkeys(points.unit))
     code = {name: i for i, name in enumerate(names)}
     total = points.angle_plus_arcsec - points.angle_minus_arcsec
     angles = np.concatenate([points.angle_plus_arcsec, points.angle_minus_arcsec])
-    fleet = Fleet(
+    fleet = UnitDeviations(
         total - 2 * points.torque_Nm * prediction.compliance - prediction.gap_arcsec,
         (points.angle_plus_arcsec + points.angle_minus_arcsec) / 2,
         points.torque_Nm,
@@ -155,10 +160,10 @@ def _resolution(angles: np.ndarray) -> float:
 
 def _units(
     points: EndPoints,
-    fleet: Fleet,
+    fleet: UnitDeviations,
     names: Sequence[str],
     envelopes: Sequence[Envelope],
-    null: Weighed,
+    null: UnitEvidence,
 ) -> tuple[UnitFinding, ...]:
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
@@ -184,7 +189,7 @@ def _units(
     return tuple(found)
 
 
-def _mids(fleet: Fleet, prediction: Prediction) -> MidPositions:
+def _mids(fleet: UnitDeviations, prediction: Prediction) -> MidPositions:
     each = [float(fleet.mid[rows].mean()) for rows in fleet.unit_rows]
     spread = float(np.std(each, ddof=1)) if len(each) > 1 else 0.0
     return MidPositions(tuple(each), spread, float(fleet.torque.max()) * prediction.compliance)
@@ -222,8 +227,8 @@ def _decided(
         magnitude, std = _magnitude(best.best, i, rig, prediction)
         term = best.best.terms[i]
         found.append(NamedCause(
-            cause, causes()[cause].title_at(magnitude), float(having / weights.sum()), tuple(alternatives),
-            magnitude, std, causes()[cause].unit, best.score - without,
+            cause, known_causes()[cause].title_at(magnitude), float(having / weights.sum()),
+            tuple(alternatives), magnitude, std, known_causes()[cause].unit, best.score - without,
             float(np.sqrt(np.mean((term.column * best.best.mean[i])[term.column != 0] ** 2))),
             () if best.own is None else (names[best.own],),
         ))  # fmt: skip
@@ -237,14 +242,14 @@ def _channels(h: Hypothesis) -> set[str]:
     return {t.channel for t in h.best.terms}
 
 
-def _magnitude(best: Weighed, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
+def _magnitude(best: UnitEvidence, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
     """The contract's magnitude and its standard deviation, to first order in the amplitude."""
     term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
     if term.cause == "clearance_offset":
         return mean + best.common[0], std
     if term.cause == "series_compliance":
         return 100 * mean / prediction.compliance, 100 * std / prediction.compliance
-    cause = causes()[term.cause]
+    cause = known_causes()[term.cause]
     low, here, high = (
         cause.magnitude(term.elements(a), rig) for a in (mean - std / 2, mean, mean + std / 2)
     )
@@ -264,7 +269,7 @@ def _next(
     if not plans or not found:
         return None
     best = plans[0]
-    titles = [causes()[c].title for c in (found[0].id, *found[0].alternatives)]
+    titles = [known_causes()[c].title for c in (found[0].id, *found[0].alternatives)]
     apart = (
         f"the two of them that are nearest to each other then differ by {best.separation:.0f} times the "
         "noise" if len(titles) > 1 else "it would confirm or clear the suspicion"

@@ -7,22 +7,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
-from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
-from flexspline.pipeline.diagnosis.end_points.terms import Term, terms_of
-from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.end_points.regressors import (
+    EndPointRegressor,
+    end_point_regressors,
+)
+from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+    UnitDeviations,
+    UnitEvidence,
+    unit_evidence,
+)
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.record import EndPoints
-from flexspline.pipeline.diagnosis.result import Gain
 
 FEWEST_UNITS = 3
 """To hold out one and still see what is common."""
 
 
 def extended(
-    weighed: Weighed, fleet: Fleet, names: Sequence[str], prediction: Prediction
+    weighed: UnitEvidence, fleet: UnitDeviations, names: Sequence[str], prediction: Prediction
 ) -> ExtendedModel:
     """The calibrated simulation with the terms of a hypothesis; a unit's own gap beside the common one."""
     elements: dict[str, tuple[Element, ...]] = {}
@@ -48,7 +55,7 @@ def rivals_for_unit(
     row = points.torque_Nm == unit.torque_Nm
     found = []
     for cause in ids:
-        for term in terms_of(points, rig):
+        for term in end_point_regressors(points, rig):
             column = float(term.column[row][0])
             if term.cause != cause or term.channel != "total" or column == 0:
                 continue
@@ -60,12 +67,12 @@ def rivals_for_unit(
     return found
 
 
-def _model(prediction: Prediction, term: Term, amplitude: float) -> ExtendedModel:
+def _model(prediction: Prediction, term: EndPointRegressor, amplitude: float) -> ExtendedModel:
     elements = {term.cause: term.elements(amplitude)}
     return ExtendedModel(prediction.compliance, prediction.gap_arcsec, {}, elements, {})
 
 
-def gain_of(fleet: Fleet, best: Hypothesis, names: Sequence[str]) -> Gain | None:
+def gain_of(fleet: UnitDeviations, best: Hypothesis, names: Sequence[str]) -> Gain | None:
     """Each unit in turn predicted from the others; errors of totals [arcsec].
 
     None for what is one unit's own, which no other unit can predict, and for fewer than three units.
@@ -84,8 +91,8 @@ def gain_of(fleet: Fleet, best: Hypothesis, names: Sequence[str]) -> Gain | None
             torque=fleet.torque[~out],
             unit=unit,
         )
-        calibrated[out] -= weigh(rest, ()).common[0]
-        trained = weigh(rest, [replace(t, column=t.column[~out]) for t in terms])
+        calibrated[out] -= unit_evidence(rest, ()).common[0]
+        trained = unit_evidence(rest, [replace(t, column=t.column[~out]) for t in terms])
         after[out] -= trained.common[0]
         for term, amplitude in zip(terms, trained.mean, strict=True):
             after[out] -= amplitude * term.column[out]

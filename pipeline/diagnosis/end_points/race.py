@@ -10,10 +10,17 @@ from math import log
 import numpy as np
 from scipy.special import logsumexp
 
-from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
-from flexspline.pipeline.diagnosis.end_points.fleet import Fleet, Weighed, weigh
-from flexspline.pipeline.diagnosis.end_points.terms import Term, terms_of
-from flexspline.pipeline.diagnosis.record import EndPoints
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.end_points.regressors import (
+    EndPointRegressor,
+    end_point_regressors,
+)
+from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+    UnitDeviations,
+    UnitEvidence,
+    unit_evidence,
+)
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 
 SUSPECTS = 5
 """Units that may have a cause of their own: those furthest from the prediction."""
@@ -40,22 +47,26 @@ class Hypothesis:
     own: int | None
     score: float
     penalised: float
-    best: Weighed
+    best: UnitEvidence
 
 
-def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> list[Hypothesis]:
+def race(
+    points: EndPoints, rig: Rig, fleet: UnitDeviations, suspects: Sequence[int]
+) -> list[Hypothesis]:
     """All hypotheses, the likeliest first; the null has no causes and score 0."""
-    terms = terms_of(points, rig)
+    terms = end_point_regressors(points, rig)
     several = several_torques(fleet)
     if not several:  # a zero per unit absorbs what shifts mid positions, and a curve needs torques
         terms = [t for t in terms if t.channel == "total"]
     else:
         curve = (fleet.torque / rig.torque_Nm) ** 2
         terms.append(
-            Term(UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,)))
+            EndPointRegressor(
+                UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,))
+            )
         )
     ids = list(dict.fromkeys(t.cause for t in terms))
-    null = weigh(fleet, ())
+    null = unit_evidence(fleet, ())
     found = [Hypothesis((), None, 0.0, null.likelihood, null)]
     for cause in ids:
         mine = [t for t in terms if t.cause == cause]
@@ -74,19 +85,23 @@ def race(points: EndPoints, rig: Rig, fleet: Fleet, suspects: Sequence[int]) -> 
     return sorted(found, key=lambda h: -h.score)
 
 
-def several_torques(fleet: Fleet) -> bool:
+def several_torques(fleet: UnitDeviations) -> bool:
     """Whether some unit was measured at more than one torque."""
     return any(np.ptp(fleet.torque[rows]) > 0 for rows in fleet.unit_rows)
 
 
 def _of(
-    fleet: Fleet, sets: Sequence[tuple[Term, ...]], own: int | None, odds: float, null: Weighed
+    fleet: UnitDeviations,
+    sets: Sequence[tuple[EndPointRegressor, ...]],
+    own: int | None,
+    odds: float,
+    null: UnitEvidence,
 ) -> Hypothesis:
-    weighed = [weigh(fleet, terms) for terms in sets]
+    weighed = [unit_evidence(fleet, terms) for terms in sets]
     scores = [w.evidence for w in weighed]
     best = weighed[int(np.argmax(scores))]
     score = float(logsumexp(scores)) - log(len(scores)) - null.evidence + odds
-    free = weigh(fleet, [replace(t, spread=FREE * t.spread) for t in best.terms])
+    free = unit_evidence(fleet, [replace(t, spread=FREE * t.spread) for t in best.terms])
     allowed = all(not t.positive or m > 0 for t, m in zip(best.terms, free.mean, strict=True))
     penalty = len(best.terms) * log(max(len(fleet.deviation), 2)) / 2
     return Hypothesis(

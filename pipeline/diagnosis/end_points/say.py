@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 
-from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from flexspline.pipeline.diagnosis.result import NamedCause, Verdict, left_out
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Verdict, left_out
 
 LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""
@@ -20,7 +20,7 @@ def summary_of(
     """One or two sentences."""
     beyond = [u for u in analysis.units if not u.within]
     who = _units(beyond)
-    title = causes()[found[0].id].title if found else ""
+    title = known_causes()[found[0].id].title if found else ""
     match verdict:
         case "consistent":
             return "Every unit's total agrees with the simulation within its stated uncertainty."
@@ -29,7 +29,7 @@ def summary_of(
         case "unknown":
             return "The totals depend on torque in a way that no known cause explains."
         case _:
-            others = ", ".join(causes()[a].title for a in found[0].alternatives)
+            others = ", ".join(known_causes()[a].title for a in found[0].alternatives)
             rival = (
                 f"{title} cannot be told from {others}"
                 if others

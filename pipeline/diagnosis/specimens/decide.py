@@ -16,10 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.result import NamedCause, Unexplained, Verdict
-from flexspline.pipeline.diagnosis.specimens.race import Fit, Race
-from flexspline.pipeline.diagnosis.specimens.terms import Term, log_compliance
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained, Verdict
+from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
+from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""
@@ -30,26 +31,26 @@ UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", "lo
 
 
 @dataclass(frozen=True)
-class Decision:
+class SpecimenDecision:
     """The verdict with its causes; `rivals` are fits that stand for the alternatives."""
 
     verdict: Verdict
-    chosen: Fit
+    chosen: LaplaceFit
     found: tuple[NamedCause, ...]
     unexplained: tuple[Unexplained, ...]
-    rivals: tuple[Fit, ...]
+    rivals: tuple[LaplaceFit, ...]
 
 
-def decide(race: Race, torque_Nm: float) -> Decision:
+def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenDecision:
     """The verdict; `torque_Nm` turns compliance into the angle that a cause is worth."""
     best = next((f for f in race.fits if f.named or f.unnamed), None)
     if best is None or best.score - race.null < NAMING_NATS:
         within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
-        return Decision("consistent", within[0] if within else race.null_fit, (), (), ())
+        return SpecimenDecision("consistent", within[0] if within else race.null_fit, (), (), ())
     best = _reduced(race, best)
     unexplained = tuple(_unexplained(race, best, t) for t in best.unnamed)
     found = []
-    rivals: list[Fit] = []
+    rivals: list[LaplaceFit] = []
     for cause in best.named:
         mine = [f for f in race.fits if _stands_for(f, best, cause)]
         near = [
@@ -65,10 +66,10 @@ def decide(race: Race, torque_Nm: float) -> Decision:
     verdict: Verdict = "ambiguous" if rivals else "named"
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
         verdict = "unknown"
-    return Decision(verdict, best, tuple(found), unexplained, tuple(rivals))
+    return SpecimenDecision(verdict, best, tuple(found), unexplained, tuple(rivals))
 
 
-def _reduced(race: Race, best: Fit) -> Fit:
+def _reduced(race: SpecimenRace, best: LaplaceFit) -> LaplaceFit:
     """Without terms that are not worth NAMING_NATS."""
     if len(best.terms) < 2:
         return best
@@ -79,7 +80,7 @@ def _reduced(race: Race, best: Fit) -> Fit:
     return best
 
 
-def _stands_for(f: Fit, best: Fit, cause: str) -> bool:
+def _stands_for(f: LaplaceFit, best: LaplaceFit, cause: str) -> bool:
     """Whether a fit explains the data by another cause in the place of this one."""
     others = set(best.named) - {cause}
     return (
@@ -89,7 +90,11 @@ def _stands_for(f: Fit, best: Fit, cause: str) -> bool:
 
 
 def _named(
-    race: Race, best: Fit, cause: str, alternatives: tuple[str, ...], torque_Nm: float
+    race: SpecimenRace,
+    best: LaplaceFit,
+    cause: str,
+    alternatives: tuple[str, ...],
+    torque_Nm: float,
 ) -> NamedCause:
     weight = np.exp(np.array([f.score for f in race.fits]) - race.fits[0].score)
     having = np.array([cause in f.named for f in race.fits])
@@ -113,10 +118,10 @@ def causes_title(cause: str) -> str:
            "load_zone": "load that enters at the lobes, not evenly"}  # fmt: skip
     if cause.startswith("geometry:"):
         return f"{cause.removeprefix('geometry:')} other than drawn"
-    return own.get(cause) or causes()[cause].title
+    return own.get(cause) or known_causes()[cause].title
 
 
-def magnitude(race: Race, best: Fit, cause: str) -> tuple[float, float]:
+def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, float]:
     """The contract's magnitude and its standard deviation, doubt between alike explanations included."""
     alike = [f for f in race.fits if f.named == best.named and best.score - f.score < NAMING_NATS]
     each = [_value(race, f, cause) for f in alike]
@@ -127,7 +132,7 @@ def magnitude(race: Race, best: Fit, cause: str) -> tuple[float, float]:
     return value, float(np.hypot(std, spread))
 
 
-def _value(race: Race, f: Fit, cause: str) -> tuple[float, float]:
+def _value(race: SpecimenRace, f: LaplaceFit, cause: str) -> tuple[float, float]:
     i = next(i for i, t in enumerate(f.terms) if t.owner == cause)
     term, value = f.terms[i], float(f.mean[i + 1])
     std = float(f.covariance[i + 1, i + 1] ** 0.5)
@@ -146,7 +151,7 @@ def _value(race: Race, f: Fit, cause: str) -> tuple[float, float]:
             return value, std
 
 
-def _rms(race: Race, f: Fit, owners: tuple[str, ...]) -> float:
+def _rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) -> float:
     """Relative rms over the specimens of what some terms change."""
     at = f.mean.copy()
     for i, t in enumerate(f.terms):
@@ -158,7 +163,7 @@ def _rms(race: Race, f: Fit, owners: tuple[str, ...]) -> float:
     return float(np.sqrt(np.mean(change**2)))
 
 
-def _unexplained(race: Race, best: Fit, term: Term) -> Unexplained:
+def _unexplained(race: SpecimenRace, best: LaplaceFit, term: SpecimenParameter) -> Unexplained:
     without = max([race.null, *(f.score for f in race.fits if term not in f.terms)])
     p = float(np.exp(min(0.0, without - best.score)))
     return Unexplained(term.owner[1:], 100 * _rms(race, best, (term.owner,)), p, term.what)

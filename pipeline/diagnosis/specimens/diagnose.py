@@ -8,12 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.record import Specimens
-from flexspline.pipeline.diagnosis.result import Gain, NextMeasurement, Outcome
-from flexspline.pipeline.diagnosis.specimens.decide import Decision, causes_title, decide
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.decide import SpecimenDecision, causes_title, decide
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
-from flexspline.pipeline.diagnosis.specimens.race import Data, Fit, Race, fit, race
+from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance, specimen_parameters
+from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
 from flexspline.pipeline.diagnosis.specimens.stiffness import (
     PARTS,
     Bench,
@@ -21,7 +23,6 @@ from flexspline.pipeline.diagnosis.specimens.stiffness import (
     refined,
     row_designs,
 )
-from flexspline.pipeline.diagnosis.specimens.terms import log_compliance, terms_of
 from flexspline.pipeline.parts import AnalysisContext
 
 FEWEST = 3
@@ -39,7 +40,7 @@ def diagnose_specimens(
     K_e: float,
     context: AnalysisContext,
     full: bool,
-) -> tuple[Outcome, SpecimenAnalysis | None]:
+) -> tuple[DiagnosisOutcome, SpecimenAnalysis | None]:
     """The verdict and what stands behind it; None where there is too little to fit.
 
     `K_b`, `K_e` [N·m/rad] of the nominal design. `full`: they came from FE, and rows are solved with
@@ -57,7 +58,7 @@ def diagnose_specimens(
     parts, notes = _parts(bench, designs, specimens)
     fe = compliances(bench, designs, parts)
     std = specimens.stiffness_std_Nm_per_rad
-    data = Data(
+    data = SpecimenData(
         fe,
         -np.log(specimens.stiffness_Nm_per_rad),
         None if std is None else std / specimens.stiffness_Nm_per_rad,
@@ -80,7 +81,7 @@ def diagnose_specimens(
             _pct(chosen.noise), "%", tuple(range(n)),
         )  # fmt: skip
     most = max(set(parts), key=parts.count)
-    outcome = Outcome(
+    outcome = DiagnosisOutcome(
         decision.verdict, decision.found, decision.unexplained, gain,
         next_specimen(decision, bench, design, most, float(chosen.noise.mean())),
         _summary(decision), (*notes, *_notes(decision, data, full)),
@@ -89,11 +90,11 @@ def diagnose_specimens(
 
 
 def weighed(
-    bench: Bench, data: Data, specimens: Specimens, design: Design
-) -> tuple[Race, Decision]:
+    bench: Bench, data: SpecimenData, specimens: Specimens, design: Design
+) -> tuple[SpecimenRace, SpecimenDecision]:
     """The race, run again where a dimension was found: with FE at what was found."""
     one_material = design.material.shaft is None
-    found = race(data, terms_of(data.fe, specimens.overrides, one_material))
+    found = race(data, specimen_parameters(data.fe, specimens.overrides, one_material))
     decision = decide(found, design.load.torque_Nm)
     wrong = [
         (t.sensitivity.key, float(v))
@@ -105,16 +106,16 @@ def weighed(
     fe = data.fe
     for key, off in wrong:
         fe = refined(bench, fe, key, off)
-    found = race(replace(data, fe=fe), terms_of(fe, specimens.overrides, one_material))
+    found = race(replace(data, fe=fe), specimen_parameters(fe, specimens.overrides, one_material))
     return found, decide(found, design.load.torque_Nm)
 
 
-def _insufficient(n: int) -> Outcome:
+def _insufficient(n: int) -> DiagnosisOutcome:
     reason = f"{n} specimen{'s' if n != 1 else ''}; modulus, one cause and the noise need {FEWEST}"
     advice = NextMeasurement(
         "specimen", "measure at least eight specimens whose length, wall and diaphragm differ", 0.0
     )
-    return Outcome(
+    return DiagnosisOutcome(
         "insufficient", (), (), None, advice, f"Too little data to say anything: {reason}."
     )
 
@@ -138,7 +139,9 @@ def _parts(
     return (part,) * len(designs), [f"the file has no column part: taken as {part}, by {why}"]
 
 
-def _held_out(data: Data, null: Fit, chosen: Fit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _held_out(
+    data: SpecimenData, null: LaplaceFit, chosen: LaplaceFit
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) errors of ln K where each specimen is predicted from the others: FE, calibrated, explained."""
     n = len(data.log_compliance)
     before = np.log(data.fe.total) - data.log_compliance
@@ -157,7 +160,7 @@ def _pct(values: np.ndarray) -> float:
     return 100 * float(np.sqrt(np.mean(values**2)))
 
 
-def _summary(decision: Decision) -> str:
+def _summary(decision: SpecimenDecision) -> str:
     listed = "; ".join(
         f"{c.title}, {c.magnitude:+.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
         for c in decision.found
@@ -179,7 +182,7 @@ def _summary(decision: Decision) -> str:
             return f"There is structure that no known cause explains: {what}.{known}"
 
 
-def _notes(decision: Decision, data: Data, full: bool) -> list[str]:
+def _notes(decision: SpecimenDecision, data: SpecimenData, full: bool) -> list[str]:
     chosen = decision.chosen
     notes = [f"one stiffness is taken to be good to {100 * float(chosen.noise.mean()):.2g} %"]
     if data.std is None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.specimens.race import Fit, Race
+from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 
 @dataclass(frozen=True)
@@ -33,5 +34,5 @@ class SpecimenAnalysis:
     noise: np.ndarray
     held_out: np.ndarray
     held_out_before: np.ndarray
-    race: Race
-    chosen: Fit
+    race: SpecimenRace
+    chosen: LaplaceFit

@@ -8,11 +8,11 @@ from dataclasses import replace
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
-from flexspline.pipeline.diagnosis.result import NextMeasurement
-from flexspline.pipeline.diagnosis.specimens.decide import Decision, causes_title
-from flexspline.pipeline.diagnosis.specimens.race import Fit
+from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.decide import SpecimenDecision, causes_title
+from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
 from flexspline.pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
-from flexspline.pipeline.diagnosis.specimens.terms import log_compliance
 
 FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""
@@ -26,7 +26,7 @@ CONFIRM = {
 
 
 def next_specimen(
-    decision: Decision, bench: Bench, design: Design, part: str, noise: float
+    decision: SpecimenDecision, bench: Bench, design: Design, part: str, noise: float
 ) -> NextMeasurement | None:
     """What to measure next; None where nothing is in doubt."""
     match decision.verdict:
@@ -51,7 +51,7 @@ def next_specimen(
 
 
 def _separating(
-    decision: Decision, bench: Bench, design: Design, part: str, noise: float
+    decision: SpecimenDecision, bench: Bench, design: Design, part: str, noise: float
 ) -> NextMeasurement:
     """The dimension whose change drives the two nearest rivals furthest apart."""
     fits = (decision.chosen, *decision.rivals)
@@ -85,17 +85,19 @@ def _separating(
     )
 
 
-def _others(decision: Decision) -> tuple[str, ...]:
+def _others(decision: SpecimenDecision) -> tuple[str, ...]:
     return tuple(dict.fromkeys(a for c in decision.found for a in c.alternatives))
 
 
-def _compliances(fits: Sequence[Fit], bench: Bench, design: Design, part: str) -> Compliances:
+def _compliances(
+    fits: Sequence[LaplaceFit], bench: Bench, design: Design, part: str
+) -> Compliances:
     terms = [t for f in fits for t in f.terms]
     keys = {t.sensitivity.key for t in terms if t.sensitivity is not None}
     return compliances(bench, (design,), (part,), keys, any(t.kind == "zone" for t in terms))
 
 
-def _apart(fits: Sequence[Fit], fe: Compliances) -> float:
+def _apart(fits: Sequence[LaplaceFit], fe: Compliances) -> float:
     """Smallest difference of ln C between the first fit and a rival at a new specimen."""
     by_key = {s.key: s for s in fe.sensitivities}
     values = []

@@ -22,8 +22,8 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values, without_holes
 from flexspline.geometry.meridian import meridian
-from flexspline.pipeline.diagnosis.errors import MeasurementError
-from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 from flexspline.pipeline.parts import DRIVEN, AnalysisContext
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.result import NamedCause
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
     capital,
     channel_words,
@@ -62,10 +62,10 @@ class Part:
 
 def parts(shown: Seen) -> list[Part]:
     """Named causes, then structure that has no name."""
-    weighed = shown.explained.weighed
+    decision = shown.explained.decision
     found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
     told = {p.owner for p in found}
-    for owner, rms in sorted(weighed.rms.items(), key=lambda item: -item[1]):
+    for owner, rms in sorted(decision.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < shown.noise_arcsec / 3:
             continue
         key = owner.removeprefix("?")
@@ -158,7 +158,7 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
     if part.owner == OFFSET:
         _offset(axes, shown)
         return
-    added, torque = shown.solution.added(part.owner), shown.history.torque_Nm
+    added, torque = shown.fit.added(part.owner), shown.history.torque_Nm
     factor, chosen = np.ones(len(torque)), shown.kept
     if part.view == "gap":
         factor = 2 * np.sign(torque)
@@ -193,7 +193,7 @@ def _offset(axes: Axes, shown: Seen) -> None:
     """Near zero torque: where the gap is crossed, by the reading and by the torque put right."""
     prepared = shown.explained.prepared
     read, history = prepared.sweep.history.torque_Nm, shown.history
-    gap = shown.solution.measured_rig().gap_arcsec
+    gap = shown.fit.measured_rig().gap_arcsec
     offset = shown.explained.offset_Nm
     angle = shown.left + history.sign * gap / 2
     reach = max(4 * abs(offset), 3 * prepared.band_Nm)

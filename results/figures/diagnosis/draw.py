@@ -9,8 +9,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.record import Specimens, Sweep
-from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
+from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.results.diagnosis.words import channel_words
 from flexspline.results.figures.diagnosis.captions import caption

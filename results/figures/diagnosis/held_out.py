@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import MOST_POINTS

@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.effects.operators import rising
-from flexspline.pipeline.diagnosis.record import History, Sweep
-from flexspline.pipeline.diagnosis.solution import Solution, calibrated_residual, less_zero
-from flexspline.pipeline.diagnosis.sweep import Explained
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep.offset_race import ExplainedSweep
 
 MOST_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
@@ -43,11 +44,11 @@ class Seen:
     """A sweep's diagnosis as arrays over its rows."""
 
     diagnosis: Diagnosis
-    explained: Explained
+    explained: ExplainedSweep
 
     @property
-    def solution(self) -> Solution:
-        return self.explained.weighed.solution
+    def fit(self) -> SweepFit:
+        return self.explained.decision.fit
 
     @property
     def history(self) -> History:
@@ -74,12 +75,12 @@ class Seen:
     @cached_property
     def left(self) -> np.ndarray:
         """(n,) measured less the best model."""
-        return self.solution.residual()
+        return self.fit.residual()
 
     @cached_property
     def calibrated(self) -> np.ndarray:
         """(n,) measured less the simulation alone, calibrated as far as its uncertainty goes."""
-        return calibrated_residual(self.solution.race)
+        return calibrated_residual(self.fit.evidence)
 
     @cached_property
     def nominal(self) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.result import Gain
+from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.results.diagnosis.words import channel_words, figures_text
 from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP

@@ -15,13 +15,13 @@ import json, sys
 from pathlib import Path
 import numpy as np
 from histories import PREDICTION, sweep
-import flexspline.pipeline.diagnosis.effects as effects
+import flexspline.pipeline.diagnosis.causes as folder
 
 if sys.argv[1]:
-    effects.__path__.append(sys.argv[1])
+    folder.__path__.append(sys.argv[1])
 from flexspline.pipeline.diagnosis.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.record import Sweep
-from flexspline.pipeline.diagnosis.effects import causes
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.geometry.load import load_design
 
 rng = np.random.default_rng(11)

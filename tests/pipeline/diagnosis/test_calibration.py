@@ -9,26 +9,26 @@ import pytest
 from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 
-from flexspline.pipeline.diagnosis.columns import columns_of
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.effects.cause import Rig
-from flexspline.pipeline.diagnosis.noise import Noise
-from flexspline.pipeline.diagnosis.result import NamedCause, left_out
-from flexspline.pipeline.diagnosis.solution import ALLOWED, calibrated_residual, less_zero
-from flexspline.pipeline.diagnosis.terms import Race, race
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.outcome import NamedCause, left_out
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.fit import ALLOWED, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 
 SIGMA = 0.5
 
 
-def raced(compliance: float, gap: float) -> Race:
+def raced(compliance: float, gap: float) -> GaussianEvidence:
     """A record that lacks nothing but so many standard deviations of stiffness and gap."""
     history = swept(cycles=2)
-    columns = columns_of(
-        Rig(PREDICTION, history), {"clearance_offset": causes()["clearance_offset"]}
+    columns = design_matrix(
+        Rig(PREDICTION, history), {"clearance_offset": known_causes()["clearance_offset"]}
     )
     target = columns.base[:, 1:3] @ (np.array([compliance, gap]) * columns.base_prior[1:3])
     kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
-    return race(columns, target, kept, Noise(SIGMA**2, 0.0, 0.5))
+    return gaussian_evidence(columns, target, kept, Noise(SIGMA**2, 0.0, 0.5))
 
 
 def rms(values: np.ndarray) -> float:
@@ -62,7 +62,7 @@ def test_no_other_calibration_within_its_limits_is_better(compliance: float, gap
 
 
 def named(cause: str, magnitude: float) -> NamedCause:
-    title = causes()[cause].title_at(magnitude)
+    title = known_causes()[cause].title_at(magnitude)
     return NamedCause(cause, title, 1.0, (), magnitude, 0.5, "%", 20.0, 3.0)
 
 

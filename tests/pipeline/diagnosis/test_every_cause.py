@@ -1,4 +1,4 @@
-"""One contract for every cause in `pipeline.diagnosis.effects`, and each magnitude by hand."""
+"""One contract for every cause in `pipeline.diagnosis.causes`, and each magnitude by hand."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, shape_of, sweep
 
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.effects.cause import Cause, Element, Rig
-from flexspline.pipeline.diagnosis.shape_check import CHANNELS, channels_needed, fault_of
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
+from flexspline.pipeline.diagnosis.model.shape_check import CHANNELS, channels_needed, fault_of
 
 UNITS = {
     "friction_hysteresis": "arcsec",
@@ -29,7 +29,7 @@ UNITS = {
     "rate_dependence": "arcsec per N·m/s",
 }
 """The contract's table of sweep causes."""
-EVERY = list(causes().values())
+EVERY = list(known_causes().values())
 RIG = Rig(PREDICTION, sweep())
 SEARCHED = {"torque_offset"}
 """Found where the gap is crossed, not by shapes."""
@@ -147,7 +147,7 @@ def test_what_may_not_be_negative_has_a_magnitude_of_one_sign(cause: Cause) -> N
 
 
 def magnitude(cause_id: str, shape: dict, *amplitudes: float, rig: Rig = RIG) -> float:
-    return causes()[cause_id].magnitude([Element(shape, amplitudes)], rig)
+    return known_causes()[cause_id].magnitude([Element(shape, amplitudes)], rig)
 
 
 def test_friction_is_twice_one_slider_s_amplitude() -> None:
@@ -173,7 +173,7 @@ def test_gap_per_kelvin() -> None:
     shape = shape_of("thermal_clearance", lag_s=0.0)
     assert magnitude("thermal_clearance", shape, -0.4) == pytest.approx(-0.4)
     warm = replace(sweep(), temperature_C=np.full(len(sweep()), 30.0))
-    added = causes()["thermal_clearance"].columns(shape, warm)[:, 0] * -0.4
+    added = known_causes()["thermal_clearance"].columns(shape, warm)[:, 0] * -0.4
     # the gap changes by 10 K · −0.4; either side moves by half of it
     np.testing.assert_allclose(added, -2.0 * np.sign(warm.torque_Nm), atol=1e-12)
 
@@ -207,7 +207,7 @@ def test_growth_per_cycle_and_per_hour() -> None:
     hours = 5.0 * (len(sweep()) - 1) / 3600
     shape = shape_of("sensor_drift", exponent=1.0, settling_s=0.0)
     assert magnitude("sensor_drift", shape, 2.0) == pytest.approx(2.0 / hours)
-    angle = causes()["sensor_drift"].columns(shape, sweep())[:, 0] * 2.0
+    angle = known_causes()["sensor_drift"].columns(shape, sweep())[:, 0] * 2.0
     assert angle[-1] - angle[0] == pytest.approx(2.0)
 
 
@@ -216,13 +216,13 @@ def test_lag_per_rate() -> None:
     shape = shape_of("rate_dependence", exponent=1.0, lag_s=2.0, deadband_Nm=0.0)
     assert magnitude("rate_dependence", shape, 30.0) == pytest.approx(30.0)
     history = sweep(cycles=1, hold=0, rows=400)  # 0.02 N·m in 5 s: 0.004 N·m/s
-    added = causes()["rate_dependence"].columns(shape, history)[:, 0] * 30.0
+    added = known_causes()["rate_dependence"].columns(shape, history)[:, 0] * 30.0
     assert added[50] == pytest.approx(-30.0 * 0.004, rel=1e-6)
     assert added[250] == pytest.approx(30.0 * 0.004, rel=1e-6)
 
 
 def test_torque_offset_is_the_reading_s() -> None:
-    offset = causes()["torque_offset"]
+    offset = known_causes()["torque_offset"]
     elements = [Element({}, (0.05,))]
     assert offset.magnitude(elements, RIG) == pytest.approx(0.05)
     felt = offset.felt(elements, RIG.history)

@@ -8,9 +8,9 @@ import pytest
 from histories import shape_of
 
 from flexspline.pipeline.backlash import Backlash
-from flexspline.pipeline.diagnosis.effects.cause import Element
-from flexspline.pipeline.diagnosis.extended_backlash import extended_backlash
-from flexspline.pipeline.diagnosis.model import ExtendedModel
+from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 
 NOMINAL = Backlash(5.0, 6.0, 30.0, 40.0, 81.0, 12.0, {}, 0.0, None)
 SIMULATED = ExtendedModel(11.0, 70.0, {"": 0.0}, {}, {})

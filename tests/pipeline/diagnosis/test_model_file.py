@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from histories import PREDICTION, shape_of, sweep
 
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.effects.cause import Element, Rig
-from flexspline.pipeline.diagnosis.errors import MeasurementError, ModelFileError
-from flexspline.pipeline.diagnosis.model import ExtendedModel
-from flexspline.pipeline.diagnosis.model_file import ModelFile, Provenance, read_model_file
-from flexspline.pipeline.diagnosis.model_text import model_text
-from flexspline.pipeline.diagnosis.predict import predict_file
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.model_file import ModelFile, Provenance, read_model_file
+from flexspline.pipeline.diagnosis.model.model_text import model_text
+from flexspline.pipeline.diagnosis.model.predict import predict_file
 
 FRICTION = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=2, loaded=0, held=1, start=0)
 ORIGIN = Provenance(
@@ -62,7 +62,7 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
 def test_every_cause_s_every_shape_makes_the_round_trip(tmp_path: Path) -> None:
     rig = Rig(PREDICTION, sweep())
     elements = {}
-    for cause in causes().values():
+    for cause in known_causes().values():
         shapes = cause.shapes(rig) or [{}]
         widths = [cause.columns(s, rig.history).shape[1] for s in shapes]
         elements[cause.id] = tuple(

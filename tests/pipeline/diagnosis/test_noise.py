@@ -7,7 +7,7 @@ import pytest
 from histories import sweep as swept
 from scipy.linalg import cholesky, toeplitz
 
-from flexspline.pipeline.diagnosis.noise import (
+from flexspline.pipeline.diagnosis.measurement.noise import (
     Noise,
     crossing_band_Nm,
     estimated,

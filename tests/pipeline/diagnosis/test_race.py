@@ -10,31 +10,32 @@ from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 from scipy.stats import multivariate_normal
 
-from flexspline.pipeline.diagnosis.columns import columns_of
-from flexspline.pipeline.diagnosis.crossing import crossing
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.effects.cause import Rig
-from flexspline.pipeline.diagnosis.leftover import channel_tests
-from flexspline.pipeline.diagnosis.noise import Noise
-from flexspline.pipeline.diagnosis.record import History, Sweep
-from flexspline.pipeline.diagnosis.search import Search
-from flexspline.pipeline.diagnosis.solution import solved
-from flexspline.pipeline.diagnosis.sweep import Prepared
-from flexspline.pipeline.diagnosis.terms import Race, race
-from flexspline.pipeline.diagnosis.thinning import MOST_ROWS, thinned
-from flexspline.pipeline.diagnosis.tune import tuned
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.thinning import MOST_ROWS, thinned
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.residual_tests import channel_tests
+from flexspline.pipeline.diagnosis.sweep.search import Search
+from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.torque_offset import crossing
 
 SIGMA = 0.5
 
 
-def raced(history: History, target: np.ndarray, noise: float = SIGMA) -> Race:
+def raced(history: History, target: np.ndarray, noise: float = SIGMA) -> GaussianEvidence:
     known = {
-        k: causes()[k]
+        k: known_causes()[k]
         for k in ("friction_hysteresis", "stiffness_hardening", "direction_asymmetry")
     }
-    columns = columns_of(Rig(PREDICTION, history), known)
+    columns = design_matrix(Rig(PREDICTION, history), known)
     kept = np.abs(history.torque_Nm) > 0.07 * LARGEST
-    return race(columns, target, kept, Noise(noise**2, 0.0, 0.5))
+    return gaussian_evidence(columns, target, kept, Noise(noise**2, 0.0, 0.5))
 
 
 def test_evidence_is_the_gaussian_density() -> None:
@@ -53,13 +54,16 @@ def test_evidence_is_the_gaussian_density() -> None:
         covariance = (x * prior**2) @ x.T + SIGMA**2 * np.eye(len(x))
         return float(multivariate_normal.logpdf(now.target[kept], cov=covariance))
 
-    found = Search(now).candidate(chosen).evidence
+    found = Search(now).candidate(chosen).log_evidence
     assert found == pytest.approx(density(chosen) - density(()), abs=1e-3)
 
 
 def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
     history = swept(cycles=2)
-    friction, asymmetry = causes()["friction_hysteresis"], causes()["direction_asymmetry"]
+    friction, asymmetry = (
+        known_causes()["friction_hysteresis"],
+        known_causes()["direction_asymmetry"],
+    )
     rig = Rig(PREDICTION, history)
     angle = 4.0 * friction.columns(friction.shapes(rig)[7], history)[:, 0]
     angle = angle + 1.5 * asymmetry.columns(asymmetry.shapes(rig)[0], history)[:, 0]
@@ -71,7 +75,7 @@ def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
     allowed = (
         c for c in pairs
         if all((a >= 0).all() or not now.terms[i].positive
-               for i, a in zip(c.terms, solved(now, c.terms).fit.amplitudes(now), strict=True))
+               for i, a in zip(c.terms, fit_regressors(now, c.terms).posterior.amplitudes(now), strict=True))
     )  # fmt: skip
     assert best.score >= max(c.score for c in allowed) - 1e-6
 
@@ -79,7 +83,7 @@ def test_the_beam_finds_what_trying_all_pairs_finds() -> None:
 def test_tuning_finds_the_knee() -> None:
     """A knee between two of the grid's, from the nearest of them."""
     history = swept(cycles=3, rows=120)
-    hardening = causes()["stiffness_hardening"]
+    hardening = known_causes()["stiffness_hardening"]
     shape = next(
         s for s in hardening.shapes(Rig(PREDICTION, history)) if s["law"] == 0 and s["held"] == 0
     )
@@ -103,11 +107,11 @@ def test_p_values_are_even_where_nothing_is_left() -> None:
     found: list[float] = []
     for _ in range(60):
         now = raced(history, rng.normal(0, SIGMA, len(history)))
-        prepared = Prepared(
+        prepared = PreparedSweep(
             _sweep(history), PREDICTION, now.columns.rig, now.columns, now.target, now.kept,
             np.zeros(len(history), bool), 0.07 * LARGEST, 56.0, now.noise,
         )  # fmt: skip
-        tests = channel_tests(prepared, solved(now, ()))
+        tests = channel_tests(prepared, fit_regressors(now, ()))
         found += [t.p_value for t in tests if t.channel in ("torque_Nm", "temperature_C")]
     share = np.mean(np.array(found) < 0.1)
     # 120 values, half of them nearly independent: 0.1 ± 3·√(0.09/60)

@@ -19,9 +19,9 @@ from flexspline.pipeline.diagnosis.catalogue.table import (
     read_catalogue,
     twist_rad,
 )
-from flexspline.pipeline.diagnosis.effects import causes
-from flexspline.pipeline.diagnosis.errors import MeasurementError
-from flexspline.pipeline.diagnosis.record import History
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.history import History
 
 ROWS = read_catalogue(DATA / "hd_torsional_stiffness.csv")
 
@@ -83,7 +83,7 @@ def test_elements_are_the_same_curve() -> None:
     row = row_of(32, ">50")
     T = np.array([5.0, 29.0, 60.0, 108.0, 200.0])
     none = np.zeros(len(T), int)
-    added = causes()["stiffness_hardening"].angle_arcsec(
+    added = known_causes()["stiffness_hardening"].angle_arcsec(
         hardening_elements(row, 216.0), History(T, none, none)
     )
     assert added + T / row.K[2] * ARCSEC_PER_RAD == pytest.approx(

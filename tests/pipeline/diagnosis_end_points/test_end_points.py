@@ -13,8 +13,8 @@ from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import SIGNIFICANT
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import prediction_of
-from flexspline.pipeline.diagnosis.record import EndPoints
 
 ROOT = Path(__file__).parents[3]
 DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")

@@ -18,8 +18,8 @@ from flexspline.geometry.load import design_from, load_design, read_toml
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
-from flexspline.pipeline.diagnosis.errors import MeasurementError
-from flexspline.pipeline.diagnosis.record import Specimens
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm

@@ -1,0 +1,139 @@
+"""What a cause is: a forward model on the whole torque history, linear in its amplitudes."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.prediction import Prediction
+
+Shape = Mapping[str, float]
+"""Shape parameters by name, each with its unit in the name."""
+
+
+@dataclass(frozen=True)
+class Rig:
+    """The prediction, and what the record spans: fixes grids of shapes and the size of effects.
+
+    `compliance` [arcsec per N·m] and `gap_arcsec` are what was measured, all linear terms together;
+    as predicted until something is fitted.
+    """
+
+    prediction: Prediction
+    history: History
+    measured: tuple[float, float] | None = None
+
+    @property
+    def compliance(self) -> float:
+        return self.measured[0] if self.measured else self.prediction.compliance
+
+    @property
+    def gap_arcsec(self) -> float:
+        return self.measured[1] if self.measured else self.prediction.gap_arcsec
+
+    @cached_property
+    def torque_Nm(self) -> float:
+        """Largest torque."""
+        return float(np.abs(self.history.torque_Nm).max())
+
+    @cached_property
+    def scale_arcsec(self) -> float:
+        """Predicted angle at the largest torque."""
+        return self.prediction.scale_arcsec(self.torque_Nm)
+
+    @cached_property
+    def cycles(self) -> int:
+        """Number of cycles, of the unit that has most."""
+        return int(self.history.cycle.max()) + 1
+
+    @cached_property
+    def duration_s(self) -> float:
+        """Longest time of one unit; 0 where time is not recorded."""
+        t = self.history.time_s
+        if t is None:
+            return 0.0
+        return max(float(np.ptp(t[rows])) for rows in self.history.unit_slices)
+
+
+@dataclass(frozen=True)
+class Element:
+    """One elementary term of a cause: a shape and its amplitudes (k,) in the cause's own unit."""
+
+    shape: Shape
+    amplitudes: tuple[float, ...]
+
+
+class Cause(ABC):
+    """One physical cause.
+
+    Several elements of one cause may act at once, with different shapes: hysteresis is not one loop
+    shape. The same object is the hypothesis and, later, the extension of the model.
+    """
+
+    id: ClassVar[str]
+    """As in the contract."""
+    title: ClassVar[str]
+    """What a person reads: a noun phrase."""
+    unit: ClassVar[str]
+    """Of the magnitude."""
+    positive: ClassVar[bool] = False
+    """Whether physics forbids negative amplitudes."""
+    exact: ClassVar[bool] = False
+    """Whether the columns are the cause's only shape, so that it leaves no misfit."""
+    shape_doubt: ClassVar[float] = 0.007
+    """Share of the magnitude by which the shapes tried may miss a real gear's: found on made-up records
+    with laws that are none of these shapes (docs/decisions.md)."""
+    needs_time: ClassVar[bool] = False
+    """Whether nothing can be said of it where time was not recorded."""
+    vary: ClassVar[str] = "torque_Nm"
+    """What to vary to see it, where the rivals' predictions do not decide: a channel, or torque_rate,
+    torque_amplitude, hold."""
+    tunable: ClassVar[tuple[str, ...]] = ()
+    """Continuous shape parameters, which are refined around the best of `shapes`."""
+    reveals: ClassVar[str]
+    """The measurement that shows this cause most plainly."""
+
+    def title_at(self, magnitude: float) -> str:
+        """What a person reads where its sign changes what it is."""
+        return self.title
+
+    @abstractmethod
+    def shapes(self, rig: Rig) -> list[Shape]:
+        """Shapes worth trying on a rig's record; none where it lacks the channel."""
+
+    def possible(self, shape: Shape) -> bool:
+        """Whether refining may go as far as this shape."""
+        return True
+
+    @abstractmethod
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        """(n, k) angle [arcsec] for one unit of each of the k amplitudes."""
+
+    def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        """Columns of several shapes at once."""
+        return [self.columns(shape, history) for shape in shapes]
+
+    @abstractmethod
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        """Prior standard deviation of an amplitude: the size that such effects have in real gears."""
+
+    @abstractmethod
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        """The contract's magnitude of all elements together, in `unit`."""
+
+    def angle_arcsec(self, elements: Sequence[Element], history: History) -> np.ndarray:
+        """(n,) what the elements add to the angle."""
+        total = np.zeros(len(history))
+        for e in elements:
+            total += self.columns(e.shape, history) @ np.array(e.amplitudes)
+        return total
+
+    def felt(self, elements: Sequence[Element], history: History) -> History:
+        """The history that the gear felt, where the cause is in the reading of it."""
+        return history

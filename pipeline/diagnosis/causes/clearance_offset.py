@@ -1,0 +1,34 @@
+"""A gap other than the simulated one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+
+class ClearanceOffset(Cause):
+    """The gap is `amplitude` [arcsec] wider than simulated, at 20 °C: twist ±½ of it."""
+
+    id = "clearance_offset"
+    title = "clearance other than simulated"
+    unit = "arcsec"
+    exact = True
+    shape_doubt = 0.003
+    vary = "temperature_C"
+    reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return [{}]
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return history.sign[:, None] / 2
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return rig.gap_arcsec - rig.prediction.gap_arcsec

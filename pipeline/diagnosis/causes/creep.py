@@ -1,0 +1,87 @@
+"""Twist that goes on growing while torque is held."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.operators import lags
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import hold_s, ramp_s
+
+EXPONENTS = (0.0, 0.15, 0.3, 0.5)
+SHORTEST_HOLD = 0.06
+"""Of a ramp from zero: what stands still for less is a turn, not a hold."""
+PER_DECADE = 3
+"""Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
+DECADE_ROWS = np.array([0.1, 1.0])
+
+
+class Creep(Cause):
+    """Kelvin elements in series: twist c·Σ w_k·lag_k(T), c [arcsec per N·m and decade], c ≥ 0.
+
+    Retardation times run from `shortest_s` to `longest_s` with weights ∝ τ^exponent: equal weights
+    give the logarithm of time, an exponent a power law; equal ends are a single Kelvin element.
+    """
+
+    id = "creep"
+    title = "creep (twist that grows while torque is held)"
+    unit = "%"
+    positive = True
+    tunable = ("shortest_s", "longest_s", "exponent")
+    shape_doubt = 0.05
+    vary = "hold"
+    needs_time = True
+    reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        hold = hold_s(rig.history)
+        ramp = ramp_s(rig.history)
+        if rig.duration_s <= 0 or hold < SHORTEST_HOLD * ramp or hold == 0:
+            return []
+        long = max(10 * hold, rig.duration_s)
+        found: list[Shape] = [
+            {"shortest_s": low, "longest_s": long, "exponent": n, "hold_s": hold}
+            for n in EXPONENTS
+            for low in sorted({hold / 300, hold / 30, hold / 5})
+        ]
+        for share in (0.15, 0.4, 1.0, 3.0):
+            tau = share * hold
+            if tau > 0.3 * ramp:
+                found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        low, high = shape["shortest_s"], shape["longest_s"]
+        alone = high < 1.001 * low  # one Kelvin element; much shorter than a hold it is a lag
+        long_enough = high > (0.4 if alone else 3.0) * shape["hold_s"]
+        return low <= high and long_enough and shape["exponent"] <= 0.8
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        tau, weight = self._kelvin(shape)
+        return (lags(history.torque_Nm, history, tau) @ weight)[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.06 * rig.prediction.compliance
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""
+        grown = 0.0
+        for e in elements:
+            tau, weight = self._kelvin(e.shape)
+            t = DECADE_ROWS * e.shape["hold_s"]
+            response = -np.expm1(-t[:, None] / tau) @ weight
+            grown += e.amplitudes[0] * float(response[1] - response[0])
+        return 100 * grown / rig.compliance
+
+    @staticmethod
+    def _kelvin(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+        low, high, n = shape["shortest_s"], shape["longest_s"], shape["exponent"]
+        count = 1 + round(PER_DECADE * np.log10(high / low))
+        tau = np.geomspace(low, high, count)
+        if count == 1:
+            return tau, np.ones(1)
+        weight = (tau / shape["hold_s"]) ** n / PER_DECADE
+        return tau, weight

@@ -1,0 +1,149 @@
+"""Friction: loading and unloading branches differ, whatever the rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm, torque_noise_Nm
+
+THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
+"""Of the elements, as shares of the largest torque."""
+SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
+"""How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
+ALIKE, GROWING, CLOSING = 0, 1, 2
+"""How the loop's width goes with |T|: the same, in proportion, or only near zero within a `reach`."""
+SPREAD_ELEMENTS = 14
+MOST_BENT = 2.0
+"""Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
+NOISE_WIDTHS = 2.0
+LOOP_ROWS = 201
+DEADBAND = 0.001
+"""Reversals of torque below this share of the largest (or twice its noise) are noise."""
+VARIANTS = (
+    (SINGLE, 0, 1, 0), (SINGLE, 0, 0, 0), (EVEN, 0, 1, 0), (EVEN, 0, 0, 0), (SINGLE, 1, 1, 0),
+    (EXPONENTIAL, 0, 1, 0), (EXPONENTIAL, 0, 0, 0), (SINGLE, 0, 1, -1), (EVEN, 0, 1, -1),
+    (EXPONENTIAL, 0, 1, -1), (DAHL, 0, 1, 0), (DAHL, 0, 0, 0), (SINGLE, CLOSING, 1, 0),
+    (EVEN, CLOSING, 1, 0),
+)  # fmt: skip
+"""Spread, loaded, held, start of the shapes tried."""
+
+
+class FrictionHysteresis(Cause):
+    """Friction elements (Prandtl-Ishlinskii): twist −a·s/r, s the state of a stop of threshold r.
+
+    While torque rises the friction holds the output back by a, while it falls it holds it forward: a
+    loop 2a [arcsec] wide. Shapes: a single threshold, or thresholds spread evenly from 0 to r (a
+    rounded loop), or Dahl's exponential approach; width the same everywhere, growing with |T| or
+    closing (`loaded`); and whether the friction also takes torque at the loop's ends (`held` = 1) or
+    leaves the chord as it is (`held` = 0).
+    """
+
+    id = "friction_hysteresis"
+    title = "friction hysteresis"
+    unit = "arcsec"
+    positive = True
+    tunable = ("threshold_Nm", "exponent", "reach")
+    shape_doubt = 0.015
+    vary = "torque_rate"
+    reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        largest = rig.torque_Nm
+        deadband = max(DEADBAND * largest, deadband_Nm(rig.history))
+        found: list[Shape] = []
+        # an element narrower than the torque's noise cannot be seen
+        least = NOISE_WIDTHS * torque_noise_Nm(rig.history) / largest
+        shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-3]]
+        for share in shares:
+            for spread, loaded, held, start in VARIANTS:
+                if share > 0.5 and (loaded or spread):
+                    continue
+                found.append({
+                    "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
+                    "held": held, "start": start, "largest_torque_Nm": largest,
+                    "deadband_Nm": deadband, "exponent": float(spread == DAHL),
+                    "reach": 0.35 * (loaded == CLOSING),
+                })  # fmt: skip
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        return (
+            shape["threshold_Nm"] >= shape["deadband_Nm"]
+            and shape["exponent"] <= MOST_BENT
+            and shape["reach"] < 0.8
+        )
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return self.columns_of_all([shape], history)[0]
+
+    def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        stopped = [s for s in shapes if s["spread"] != DAHL]
+        sloped = [s for s in shapes if s["spread"] == DAHL]
+        states = dict(zip(map(id, sloped), self._dahls(sloped, history), strict=True))
+        if stopped:
+            parts = [self._thresholds(int(s["spread"]), s["threshold_Nm"]) for s in stopped]
+            each = np.concatenate([r for r, _ in parts])
+            lengths = [len(r) for r, _ in parts]
+            start = np.repeat([s["start"] for s in stopped], lengths)
+            # the even and exponential spreads repeat thresholds; each pair is run once
+            pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
+            where = where.ravel()  # of two dimensions in numpy 2.0.0
+            torque = steadied(history, shapes[0]["deadband_Nm"])
+            run = stops(history, torque, pairs[:, 0], pairs[:, 1])
+            at = 0
+            for s, (r, weight) in zip(stopped, parts, strict=True):
+                mine = where[at : at + len(r)]
+                states[id(s)] = run[:, mine] @ (weight / r)
+                at += len(r)
+        return [self._column(s, states[id(s)], history) for s in shapes]
+
+    @staticmethod
+    def _dahls(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        if not shapes:
+            return []
+        widths = np.array([s["threshold_Nm"] for s in shapes])
+        exponents = np.array([s["exponent"] for s in shapes])
+        return list(dahl(history, widths, exponents, shapes[0]["deadband_Nm"]).T)
+
+    def _column(self, shape: Shape, state: np.ndarray, history: History) -> np.ndarray:
+        r, largest = shape["threshold_Nm"], shape["largest_torque_Nm"]
+        if not shape["held"]:
+            if shape["spread"] == DAHL:
+                at_end = float(np.tanh(largest / r))
+            else:
+                each, weight = self._thresholds(int(shape["spread"]), r)
+                at_end = float(weight @ np.minimum(1, largest / each))
+            state = state - at_end * history.torque_Nm / largest
+        if shape["loaded"] == GROWING:
+            state = state * np.abs(history.torque_Nm) / largest
+        elif shape["loaded"] == CLOSING:
+            state = state * np.exp(-((history.torque_Nm / (shape["reach"] * largest)) ** 2) / 2)
+        return -state[:, None]
+
+    @staticmethod
+    def _thresholds(spread: int, r: float) -> tuple[np.ndarray, np.ndarray]:
+        """Thresholds (m,) [N·m] and the share (m,) of the friction that each holds."""
+        if spread == SINGLE:
+            return np.array([r]), np.ones(1)
+        level = (np.arange(SPREAD_ELEMENTS) + 0.5) / SPREAD_ELEMENTS
+        if spread == EVEN:
+            return 2 * r * level, 2 * level / SPREAD_ELEMENTS
+        each = -r * np.log1p(-level)
+        return each, each / each.sum()
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.2 * rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        """Full width at T = 0 of the closed loop at the largest amplitude."""
+        up = np.linspace(-rig.torque_Nm, rig.torque_Nm, LOOP_ROWS)
+        loop = np.concatenate([up, up[::-1], up, up[::-1]])
+        none = np.zeros(len(loop), int)
+        angle = self.angle_arcsec(elements, History(loop, none, none))
+        rising, falling = 2 * LOOP_ROWS + LOOP_ROWS // 2, 3 * LOOP_ROWS + LOOP_ROWS // 2
+        return float(angle[falling] - angle[rising])

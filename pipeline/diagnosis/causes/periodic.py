@@ -1,0 +1,51 @@
+"""What two causes periodic in the wave generator's angle share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
+"""Per turn, and which come together: eccentricity, the two lobes, and their multiples."""
+KEYS = ("harmonic", "second_harmonic", "third_harmonic")
+
+
+def harmonic_shapes(rig: Rig) -> list[Shape]:
+    """Sets of harmonics, where the input angle was recorded.
+
+    At positions that are multiples of a harmonic's period it is the same everywhere; such a harmonic is
+    left out, unless there is but one position.
+    """
+    angle = rig.history.input_angle_deg
+    if angle is None:
+        return []
+    places = np.radians(np.unique(np.mod(angle, 360.0)))
+
+    def varies(n: int) -> bool:
+        return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > 0.1)
+
+    seen = {n for n in (1, 2, 4) if len(places) == 1 or varies(n)}
+    return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)]
+
+
+def harmonic(shape: Shape, history: History) -> np.ndarray:
+    """(n, 2m) cosine and sine of each of the shape's m harmonics."""
+    if history.input_angle_deg is None:
+        raise ValueError("a periodic cause needs the input angle")
+    turn = np.radians(history.input_angle_deg)
+    orders = [shape[k] for k in KEYS if k in shape]
+    return np.column_stack([f(n * turn) for n in orders for f in (np.cos, np.sin)])
+
+
+def largest_amplitude(elements: Sequence[Element]) -> float:
+    """Zero-to-peak amplitude of the largest harmonic; elements may share harmonics."""
+    total: dict[float, np.ndarray] = {}
+    for e in elements:
+        pairs = np.array(e.amplitudes).reshape(-1, 2)
+        for order, pair in zip([e.shape[k] for k in KEYS if k in e.shape], pairs, strict=True):
+            total[order] = total.get(order, np.zeros(2)) + pair
+    return max(float(np.hypot(*pair)) for pair in total.values())

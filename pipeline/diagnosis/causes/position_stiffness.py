@@ -1,0 +1,39 @@
+"""Compliance that varies with the wave generator's angle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.periodic import (
+    harmonic,
+    harmonic_shapes,
+    largest_amplitude,
+)
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+
+class PositionStiffness(Cause):
+    """Twist T·Σ (a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
+
+    id = "position_stiffness"
+    title = "stiffness that varies with the wave generator's angle"
+    unit = "%"
+    exact = True
+    shape_doubt = 0.005
+    vary = "input_angle_deg"
+    reveals = "the same sweep at many wave generator angles"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return harmonic_shapes(rig)
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return harmonic(shape, history) * history.torque_Nm[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.15 * rig.prediction.compliance
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return 100 * largest_amplitude(elements) / rig.compliance

@@ -1,0 +1,73 @@
+"""Twist that lags torque, growing with its rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.operators import lags, steadied
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import (
+    deadband_Nm,
+    ramp_s,
+    shortest_lag_s,
+)
+
+LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
+"""Time constants as shares of a ramp: a longer lag is creep."""
+EXPONENTS = (0.6, 0.8, 1.25, 1.6)
+
+
+class RateDependence(Cause):
+    """Twist −a·q, q the torque's rate seen through a lag, a ≥ 0 [arcsec per N·m/s].
+
+    q = (T − lag_τ(T))/τ; `exponent` other than 1: |q/rate|^exponent at the record's typical rate.
+    """
+
+    id = "rate_dependence"
+    title = "rate dependence (twist that lags torque)"
+    unit = "arcsec per N·m/s"
+    positive = True
+    tunable = ("lag_s", "exponent")
+    shape_doubt = 0.02
+    vary = "torque_rate"
+    reveals = "the same sweep ten times slower and ten times faster"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        ramp = ramp_s(rig.history)
+        if ramp <= 0:
+            return []
+        rate = rig.torque_Nm / ramp
+        shortest = shortest_lag_s(rig.history)
+        common = {
+            "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest,
+            "deadband_Nm": deadband_Nm(rig.history),
+        }  # fmt: skip
+        lags_s = sorted({max(s * ramp, shortest) for s in LAG_SHARES})
+        found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
+        found += [
+            {"lag_s": max(LAG_SHARES[1] * ramp, shortest), "exponent": n, **common}
+            for n in EXPONENTS
+        ]
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        longest = LAG_SHARES[-1] * shape["ramp_s"]
+        return 0.4 <= shape["exponent"] <= 1.8 and shape["shortest_s"] <= shape["lag_s"] <= longest
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        tau, n = shape["lag_s"], shape["exponent"]
+        torque = steadied(history, shape["deadband_Nm"])
+        rate = (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
+        if n != 1.0:
+            unit = shape["rate_Nm_per_s"]
+            rate = unit * np.sign(rate) * np.abs(rate / unit) ** n
+        return -rate[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.15 * rig.scale_arcsec / shape["rate_Nm_per_s"]
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return sum(e.amplitudes[0] for e in elements)

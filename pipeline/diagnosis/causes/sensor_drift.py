@@ -1,0 +1,62 @@
+"""An angle reading that drifts with time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+SATURATION = (0.2, 0.5)
+EXPONENTS = (1.0, 0.5, 1.6)
+SECONDS_PER_HOUR = 3600.0
+
+
+class SensorDrift(Cause):
+    """Angle d·g(t) with d [arcsec] and g from 0 at the start to 1 after `duration_s`.
+
+    Steady, slowing (a power of time, or saturating with `settling_s`), or quickening.
+    """
+
+    id = "sensor_drift"
+    title = "drift of the angle reading"
+    unit = "arcsec/h"
+    tunable = ("exponent", "settling_s")
+    shape_doubt = 0.02
+    vary = "time_s"
+    needs_time = True
+    reveals = "the same torque held, or returned to, over hours with the wave generator untouched"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        if rig.duration_s <= 0:
+            return []
+        d = rig.duration_s
+        found: list[Shape] = [
+            {"exponent": n, "settling_s": 0.0, "duration_s": d} for n in EXPONENTS
+        ]
+        found += [{"exponent": 1.0, "settling_s": s * d, "duration_s": d} for s in SATURATION]
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        return 0.35 <= shape["exponent"] <= 2.0 and shape["settling_s"] >= 0.0
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        if history.time_s is None:
+            raise ValueError("drift needs time")
+        t = history.time_s.astype(float)
+        for rows in history.unit_slices:
+            t[rows] -= t[rows[0]]
+        if shape["settling_s"] > 0:
+            s = shape["settling_s"]
+            grown = np.expm1(-t / s) / np.expm1(-shape["duration_s"] / s)
+        else:
+            grown = (t / shape["duration_s"]) ** shape["exponent"]
+        return grown[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.4 * rig.scale_arcsec
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return sum(e.amplitudes[0] for e in elements) / (rig.duration_s / SECONDS_PER_HOUR)

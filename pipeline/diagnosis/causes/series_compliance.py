@@ -1,0 +1,39 @@
+"""An elastic part left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+STIFFER = "gear stiffer than simulated"
+
+
+class SeriesCompliance(Cause):
+    """A spring in series that the simulation does not have: twist c·T with c [arcsec per N·m]."""
+
+    id = "series_compliance"
+    title = "elastic part left out of the simulation"
+    unit = "%"
+    exact = True
+    shape_doubt = 0.003
+    vary = "input_angle_deg"
+    reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
+
+    def title_at(self, magnitude: float) -> str:
+        return self.title if magnitude >= 0 else STIFFER
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return [{}]
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return history.torque_Nm[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.4 * rig.prediction.compliance
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return 100 * (rig.compliance / rig.prediction.compliance - 1)

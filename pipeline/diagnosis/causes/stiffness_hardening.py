@@ -1,0 +1,124 @@
+"""Stiffness that grows with load: soft wind-up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
+TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
+"""Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
+KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.75)
+SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
+POWERS = (0.5, 0.6, 0.72)
+LIMITS = {
+    0: (0.1, 0.78),
+    1: (0.1, 0.7),
+    2: (0.48, 0.76),
+    3: (1.0, 1.0),
+    4: (0.1, 0.7),
+    5: (0.08, 0.5),
+}
+"""Of the parameter, by law."""
+CHORDS = ((0.05, 0.20), (0.80, 1.00))
+"""Between which shares of the largest torque the contract takes chord stiffness."""
+
+
+class StiffnessHardening(Cause):
+    """Odd, concave twist a·g(|T|)·sign T [arcsec], g = 1 at the largest torque, a ≥ 0.
+
+    Laws: a knee (K1, K2), two knees (K1, K2, K3), tanh, a power below 1, the linear less the cubic,
+    rational. Real soft wind-up may leave the stiffness as simulated at full load (`held` 0), on the
+    chord (1), or at zero (2): that slope is taken off.
+    """
+
+    id = "stiffness_hardening"
+    title = "stiffness that grows with load (soft wind-up)"
+    unit = "1"
+    positive = True
+    tunable = ("parameter", "second", "share")
+    vary = "torque_amplitude"
+    reveals = "a sweep to a larger torque with finely spaced steps below a fifth of it"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]
+        laws += [("power", p) for p in POWERS] + [("cubic", 1.0)]
+        laws += [("rational", s) for s in SCALES]
+        found: list[Shape] = [
+            {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.torque_Nm}
+            for law, p in laws
+            for held in (0, 1, 2)
+            if not (law == "power" and held == 2)  # infinitely soft at zero
+        ]
+        found += [
+            {
+                "law": LAWS["two knees"], "parameter": p, "second": q, "share": share, "held": held,
+                "largest_torque_Nm": rig.torque_Nm,
+            }
+            for p, q in TWO_KNEES
+            for share in (0.35, 0.65)
+            for held in (0, 1, 2)
+        ]  # fmt: skip
+        return found
+
+    def possible(self, shape: Shape) -> bool:
+        """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
+        low, high = LIMITS[int(shape["law"])]
+        second = shape.get("second", 0.6)
+        return low <= shape["parameter"] <= high and shape["parameter"] < second <= 0.9
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
+        slope = {0: 0.0, 1: 1.0, 2: self._slope_at_zero(shape)}[int(shape["held"])]
+        return ((self._law(shape, x) - slope * x) * history.sign)[:, None]
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.3 * rig.prediction.compliance * rig.torque_Nm
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        """Chord stiffness over 80–100 % of the largest torque / over 5–20 %."""
+        low, high = ((b - a) / self._twist(elements, rig, a, b) for a, b in CHORDS)
+        return high / low
+
+    def _twist(self, elements: Sequence[Element], rig: Rig, a: float, b: float) -> float:
+        torque = np.array([a, b]) * rig.torque_Nm
+        none = np.zeros(2, int)
+        angle = rig.compliance * torque + self.angle_arcsec(elements, History(torque, none, none))
+        return float(angle[1] - angle[0])
+
+    @staticmethod
+    def _law(shape: Shape, x: np.ndarray) -> np.ndarray:
+        p = shape["parameter"]
+        match int(shape["law"]):
+            case 0:
+                return np.minimum(x, p) / p
+            case 1:
+                return np.tanh(x / p) / np.tanh(1 / p)
+            case 2:
+                return x**p
+            case 3:
+                return 1.5 * x - 0.5 * x**3
+            case 5:
+                q, share = shape["second"], shape["share"]
+                return share * np.minimum(x, p) / p + (1 - share) * np.minimum(x, q) / q
+            case _:
+                return x * (1 + p) / (x + p)
+
+    @staticmethod
+    def _slope_at_zero(shape: Shape) -> float:
+        p = shape["parameter"]
+        match int(shape["law"]):
+            case 0:
+                return 1 / p
+            case 1:
+                return float(1 / p / np.tanh(1 / p))
+            case 3:
+                return 1.5
+            case 5:
+                return shape["share"] / p + (1 - shape["share"]) / shape["second"]
+            case _:
+                return (1 + p) / p

@@ -1,0 +1,39 @@
+"""A torque reading that is shifted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+
+class TorqueOffset(Cause):
+    """The reading is `amplitude` [N·m] above the true torque: every other term sees the true one.
+
+    On a straight branch that is a shift of the angle's zero, which is free; it shows where the torque
+    changes sign. Its amplitude is searched by `pipeline.diagnosis.crossing`, not linearly.
+    """
+
+    id = "torque_offset"
+    title = "shifted torque reading"
+    unit = "N·m"
+    shape_doubt = 0.02
+    reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        return []
+
+    def columns(self, shape: Shape, history: History) -> np.ndarray:
+        return np.zeros((len(history), 1))
+
+    def spread(self, shape: Shape, rig: Rig) -> float:
+        return 0.1 * rig.torque_Nm
+
+    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
+        return sum(e.amplitudes[0] for e in elements)
+
+    def felt(self, elements: Sequence[Element], history: History) -> History:
+        return history.shifted(sum(e.amplitudes[0] for e in elements))

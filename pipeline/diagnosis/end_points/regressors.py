@@ -1,0 +1,100 @@
+"""What can move end points apart or sideways, in the few shapes that end points can show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import SINGLE
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.prediction import Prediction
+
+HARDENING = ({"law": 0, "parameter": 0.2}, {"law": 0, "parameter": 0.45}, {"law": 0, "parameter": 0.8},
+             {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0}, {"law": 4, "parameter": 0.1},
+             {"law": 4, "parameter": 0.3}, {"law": 4, "parameter": 1.0})  # fmt: skip
+HELD = (0, 2)
+"""Stiffness as simulated at full load, or near zero."""
+FRICTION_SHARES = (0.04, 0.3, 0.6)
+"""Thresholds as shares of the largest torque."""
+SIDES = (-1.0, 1.0)
+"""Torque raised to ±T leaves friction holding back; torque come down to ±T, holding forward."""
+
+
+@dataclass(frozen=True)
+class EndPointRegressor:
+    """One hypothesis: a column for the totals or the mid positions of the rows.
+
+    Attributes
+    ----------
+    cause : its id. channel : "total" or "mid". column : (n,) arcsec per unit of amplitude.
+    spread : prior standard deviation of the amplitude. positive : whether physics forbids less than 0.
+    element : an element with amplitude 1, for models.
+    """
+
+    cause: str
+    channel: str
+    column: np.ndarray
+    spread: float
+    positive: bool
+    element: Element
+
+    def of(self, unit_rows: np.ndarray) -> EndPointRegressor:
+        """The same of one unit alone; `unit_rows` (n,) mask."""
+        return replace(self, column=np.where(unit_rows, self.column, 0.0))
+
+    def elements(self, amplitude: float) -> tuple[Element, ...]:
+        """The cause's elements at an amplitude."""
+        return (Element(self.element.shape, tuple(a * amplitude for a in self.element.amplitudes)),)
+
+
+def rig_of(points: EndPoints, prediction: Prediction) -> Rig:
+    """A rig that goes straight to +T and to −T of every row."""
+    largest = float(points.torque_Nm.max())
+    none = np.zeros(2, int)
+    return Rig(prediction, History(np.array([largest, -largest]), none, none))
+
+
+def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]:
+    """All hypotheses for a file's rows."""
+    torque, largest = points.torque_Nm, rig.torque_Nm
+    ones = np.ones_like(torque)
+    clearance, series = known_causes()["clearance_offset"], known_causes()["series_compliance"]
+    hardening, asymmetry = (
+        known_causes()["stiffness_hardening"],
+        known_causes()["direction_asymmetry"],
+    )
+    friction = known_causes()["friction_hysteresis"]
+    found = [
+        EndPointRegressor(clearance.id, "total", ones, clearance.spread({}, rig), False, Element({}, (1.0,))),
+        EndPointRegressor(series.id, "total", 2 * torque, series.spread({}, rig), False, Element({}, (1.0,))),
+        EndPointRegressor(asymmetry.id, "mid", torque, asymmetry.spread({}, rig), False,
+             Element({"exponent": 1.0, "rounding_Nm": 0.0, "largest_torque_Nm": largest}, (1.0,))),
+    ]  # fmt: skip
+    for law in HARDENING:
+        for held in HELD:
+            shape = {**law, "held": held, "largest_torque_Nm": largest}
+            found.append(EndPointRegressor(
+                hardening.id, "total", 2 * _at(hardening, shape, torque), hardening.spread(shape, rig),
+                True, Element(shape, (1.0,)),
+            ))  # fmt: skip
+    for share in FRICTION_SHARES:
+        shape = {
+            "threshold_Nm": share * largest, "spread": SINGLE, "loaded": 0, "held": 1, "start": 0,
+            "largest_torque_Nm": largest, "deadband_Nm": 0.0,
+        }  # fmt: skip
+        width = 2 * np.minimum(1.0, torque / (share * largest))
+        for side in SIDES:
+            found.append(EndPointRegressor(
+                friction.id, "total", side * width, friction.spread(shape, rig), True,
+                Element(shape, (1.0,)),
+            ))  # fmt: skip
+    return found
+
+
+def _at(cause: Cause, shape: Shape, torque: np.ndarray) -> np.ndarray:
+    none = np.zeros(len(torque), int)
+    return cause.columns(shape, History(torque, none, none))[:, 0]

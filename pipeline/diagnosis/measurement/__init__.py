@@ -1,0 +1,1 @@
+"""A measured file: read, checked, its noise and its torque programme."""

@@ -1,0 +1,59 @@
+"""What a rig did, row by row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class History:
+    """What a rig did, row by row: the input of every forward model.
+
+    Attributes
+    ----------
+    torque_Nm : (n,) torque on the output.
+    unit : (n,) index of the unit under test; `cycle` (n,) load cycle, counted from 0 in each unit.
+    time_s, temperature_C, input_angle_deg : (n,), None where not recorded. `input_angle_deg` is where
+        the wave generator was locked.
+    """
+
+    torque_Nm: np.ndarray
+    unit: np.ndarray
+    cycle: np.ndarray
+    time_s: np.ndarray | None = None
+    temperature_C: np.ndarray | None = None
+    input_angle_deg: np.ndarray | None = None
+    memo: dict[tuple[str, float], np.ndarray] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """What operators have made of this history once and need again; never part of its value."""
+
+    def __len__(self) -> int:
+        return len(self.torque_Nm)
+
+    def rows(self, chosen: np.ndarray) -> History:
+        """The chosen rows (mask or indices)."""
+
+        def part(values: np.ndarray | None) -> np.ndarray | None:
+            return None if values is None else values[chosen]
+
+        return History(
+            self.torque_Nm[chosen], self.unit[chosen], self.cycle[chosen],
+            part(self.time_s), part(self.temperature_C), part(self.input_angle_deg),
+        )  # fmt: skip
+
+    def shifted(self, offset_Nm: float) -> History:
+        """The true torque, where the reading is `offset_Nm` too high."""
+        return replace(self, torque_Nm=self.torque_Nm - offset_Nm)
+
+    @property
+    def sign(self) -> np.ndarray:
+        """(n,) on which side of the gap the teeth bear: −1, 0 or 1."""
+        return np.sign(self.torque_Nm)
+
+    @property
+    def unit_slices(self) -> list[np.ndarray]:
+        """Row indices of each unit, in order."""
+        return [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]

@@ -1,0 +1,97 @@
+"""A table with torque as a history: units, cycles, and an order of time that is checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
+
+LARGEST_CYCLE = 1_000_000
+
+
+@dataclass(frozen=True)
+class NamedHistory:
+    """A file's history, the names of its units, and the file's own cycle numbers of each."""
+
+    history: History
+    units: tuple[str, ...]
+    cycles: tuple[tuple[float, ...], ...]
+
+
+def history_of(table: MeasuredTable) -> NamedHistory:
+    """What the rig did, by a table with `torque_Nm`.
+
+    Raises
+    ------
+    MeasurementError : time or cycles that run backwards within a unit; cycles that are no numbers.
+    """
+    n = len(table)
+    names = tuple(dict.fromkeys(table.labels.get("unit", ("",))))
+    code = {name: i for i, name in enumerate(names)}
+    unit = np.array([code[u] for u in table.labels.get("unit", ("",) * n)])
+    _refuse_backward(table, "time_s", unit, "time runs backwards")
+    _refuse_backward(table, "cycle", unit, "cycle numbers run backwards")
+    torque = table.numbers["torque_Nm"]
+    recorded = "cycle" in table.numbers
+    cycle = table.numbers["cycle"] if recorded else np.zeros(n)
+    if recorded:
+        odd = np.flatnonzero((cycle != np.floor(cycle)) | (cycle < 0))
+        if len(odd):
+            raise table.refuse(
+                int(odd[0]), f"cycle = {cycle[odd[0]]:g} is not a whole number from 0"
+            )
+        large = np.flatnonzero(cycle > LARGEST_CYCLE)
+        if len(large):
+            raise table.refuse(
+                int(large[0]), f"cycle = {cycle[large[0]]:g} is beyond {LARGEST_CYCLE}"
+            )
+    counted = np.zeros(n, int)
+    own: list[tuple[float, ...]] = []
+    for u in range(len(names)):
+        rows = np.flatnonzero(unit == u)
+        given = cycle[rows] if recorded else counted_cycles(torque[rows])
+        values, index = np.unique(given, return_inverse=True)
+        counted[rows] = index if not recorded else (given - values[0]).astype(int)
+        own.append(tuple(float(v) for v in values))
+    history = History(
+        torque, unit, counted,
+        table.numbers.get("time_s"),
+        table.numbers.get("temperature_C"),
+        table.numbers.get("input_angle_deg"),
+    )  # fmt: skip
+    return NamedHistory(history, names, tuple(own))
+
+
+def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:
+    """Cycle number (n,) from 1, where the file has none.
+
+    A cycle ends where the torque, having been beyond half its largest value on both sides, last rose
+    through 0 before going beyond +½ again.
+    """
+    limit = np.abs(torque_Nm).max() / 2
+    far = np.flatnonzero(np.abs(torque_Nm) > limit)
+    positive = torque_Nm[far] > 0
+    returns = far[1:][positive[1:] & ~positive[:-1]]  # first row beyond +½ after a row beyond −½
+    first_positive = far[positive][:1]
+    starts = []
+    for row in returns:
+        if len(first_positive) and row > first_positive[0]:
+            below = np.flatnonzero(torque_Nm[:row] <= 0)
+            starts.append(below[-1] + 1)
+    return 1.0 + np.searchsorted(np.array(starts, int), np.arange(len(torque_Nm)), side="right")
+
+
+def _refuse_backward(table: MeasuredTable, name: str, unit: np.ndarray, reason: str) -> None:
+    values = table.numbers.get(name)
+    if values is None:
+        return
+    for u in np.unique(unit):
+        rows = np.flatnonzero(unit == u)
+        back = np.flatnonzero(np.diff(values[rows]) < 0)
+        if len(back):
+            row = rows[back[0] + 1]
+            was = values[rows[back[0]]]
+            raise table.refuse(int(row), f"{reason}: {name} = {values[row]:g} after {was:g}")

@@ -1,0 +1,161 @@
+"""The three kinds of measurement, told apart by their columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
+from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
+
+FEWEST_SWEEP_ROWS = 4
+"""One more than zero, stiffness and gap."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Torque sweeps with the wave generator locked: `angle_arcsec` (n,) for each row of `history`."""
+
+    path: Path
+    history: History
+    angle_arcsec: np.ndarray
+    units: tuple[str, ...]
+    cycles: tuple[tuple[float, ...], ...]
+    """The file's own cycle numbers of each unit."""
+    line: np.ndarray
+    cycles_recorded: bool
+    ignored: tuple[str, ...] = ()
+    sha256: str = ""
+
+    def __len__(self) -> int:
+        return len(self.angle_arcsec)
+
+
+@dataclass(frozen=True)
+class EndPoints:
+    """Angles at +T and −T of several units; arrays (n,)."""
+
+    path: Path
+    unit: tuple[str, ...]
+    torque_Nm: np.ndarray
+    angle_plus_arcsec: np.ndarray
+    angle_minus_arcsec: np.ndarray
+    sha256: str = ""
+
+
+@dataclass(frozen=True)
+class Specimens:
+    """Measured stiffness of several parts; `overrides` design keys with a value for each row."""
+
+    path: Path
+    specimen: tuple[str, ...]
+    part: tuple[str, ...]
+    stiffness_Nm_per_rad: np.ndarray
+    stiffness_std_Nm_per_rad: np.ndarray | None
+    overrides: dict[str, np.ndarray]
+    line: np.ndarray
+    part_recorded: bool = True
+    sha256: str = ""
+
+
+Measurement = Sweep | EndPoints | Specimens
+
+
+def read_measurement(path: Path) -> Measurement:
+    """Read a CSV file of any of the contract's three kinds.
+
+    Raises
+    ------
+    MeasurementError : unreadable, no known kind, or values that cannot be.
+    """
+    table = read_table(path)
+    if table.has("specimen", "stiffness_Nm_per_rad"):
+        return _specimens(table)
+    if table.has("angle_plus_arcsec", "angle_minus_arcsec"):
+        return _end_points(table)
+    if table.has("torque_Nm", "angle_arcsec"):
+        return _sweep(table)
+    wanted = {
+        "a torque sweep": ("torque_Nm", "angle_arcsec"),
+        "end points": ("unit", "torque_Nm", "angle_plus_arcsec", "angle_minus_arcsec"),
+        "specimens": ("specimen", "stiffness_Nm_per_rad"),
+    }
+    kind, missing = min(
+        ((k, [n for n in names if not table.has(n)]) for k, names in wanted.items()),
+        key=lambda pair: len(pair[1]) / len(wanted[pair[0]]),
+    )
+    raise table.refuse(None, f"column {', '.join(missing)} is missing for {kind}")
+
+
+def _sweep(table: MeasuredTable) -> Sweep:
+    n = len(table)
+    if n < FEWEST_SWEEP_ROWS:
+        raise table.refuse(
+            n - 1, f"{n} data rows; a torque sweep needs at least {FEWEST_SWEEP_ROWS}"
+        )
+    if np.any(table.numbers["torque_Nm"]):  # none at all is too little data, and no error
+        _refuse_empty(table, "torque_Nm", TORQUE_Nm.low)
+    _refuse_empty(table, "angle_arcsec", SMALLEST_ANGLE_arcsec)
+    found = history_of(table)
+    return Sweep(
+        table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
+        table.line, "cycle" in table.numbers, table.ignored, table.sha256,
+    )  # fmt: skip
+
+
+def _refuse_empty(table: MeasuredTable, name: str, least: float) -> None:
+    """Readings that are all nothing: a channel that was not connected, or a slipped exponent."""
+    largest = np.abs(table.numbers[name]).max()
+    if largest < least:
+        unit = name.rpartition("_")[2].replace("Nm", "N·m")
+        raise table.refuse(
+            None,
+            f"the largest {name} is {largest:g}: a measurement needs at least {least:g} {unit}; "
+            "is the unit right, was the channel connected?",
+        )
+
+
+def _end_points(table: MeasuredTable) -> EndPoints:
+    for name in ("unit", "torque_Nm"):
+        if not table.has(name):
+            raise table.refuse(None, f"column {name} is missing for end points")
+    torque = table.numbers["torque_Nm"]
+    bad = np.flatnonzero(~((torque >= TORQUE_Nm.low) & (torque <= TORQUE_Nm.high)))
+    if len(bad):
+        reason = f"torque_Nm = {torque[bad[0]]:g}: must be {TORQUE_Nm} N·m; both signs are meant"
+        raise table.refuse(int(bad[0]), reason)
+    angles = np.abs([table.numbers[f"angle_{way}_arcsec"] for way in ("plus", "minus")])
+    if angles.max() < SMALLEST_ANGLE_arcsec:
+        _refuse_empty(table, "angle_plus_arcsec", SMALLEST_ANGLE_arcsec)
+    return EndPoints(
+        table.path, table.labels["unit"], torque,
+        table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"], table.sha256,
+    )  # fmt: skip
+
+
+PARTS = ("flexspline", "shaft", "series")
+
+
+def _specimens(table: MeasuredTable) -> Specimens:
+    n = len(table)
+    part = table.labels.get("part", ("series",) * n)
+    for i, p in enumerate(part):
+        if p not in PARTS:
+            raise table.refuse(i, f'part = "{p[:40]}": must be one of {", ".join(PARTS)}')
+    for name in ("stiffness_Nm_per_rad", "stiffness_std_Nm_per_rad"):
+        values = table.numbers.get(name, np.ones(n))
+        low, high = STIFFNESS_Nm_per_rad
+        bad = np.flatnonzero(~((values >= low) & (values <= high)))
+        if len(bad):
+            reason = f"{name} = {values[bad[0]]:g}: must be {STIFFNESS_Nm_per_rad} N·m/rad"
+            raise table.refuse(int(bad[0]), reason)
+    return Specimens(
+        table.path, table.labels["specimen"], part,
+        table.numbers["stiffness_Nm_per_rad"], table.numbers.get("stiffness_std_Nm_per_rad"),
+        {k: v for k, v in table.numbers.items() if "." in k}, table.line,
+        "part" in table.labels, table.sha256,
+    )  # fmt: skip

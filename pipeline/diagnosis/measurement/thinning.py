@@ -1,0 +1,98 @@
+"""Long records made shorter without losing what they say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import crossing_band_Nm
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+
+MOST_ROWS = 6000
+FEWEST_PER_CYCLE = 150
+"""Rows of a cycle that are left: a block is then well below the crossing's band."""
+SPIKE = 6.0
+
+
+def thinned(sweep: Sweep) -> Sweep:
+    """A record of at most about 6000 rows: means over blocks of neighbouring rows of one cycle.
+
+    Torque, angle and every channel are averaged over the same rows, so a straight branch stays what it
+    was; a corner is rounded over one block. Spikes of single rows are taken out first. Where cycles
+    are many and short, whole cycles are left out instead, evenly.
+    """
+    n = len(sweep)
+    if n <= MOST_ROWS:
+        return sweep
+    h = sweep.history
+    keys = h.unit * (int(h.cycle.max()) + 1) + h.cycle
+    labels, counts = np.unique(keys, return_counts=True)
+    block = int(np.ceil(n / MOST_ROWS))
+    if np.median(counts) / block < FEWEST_PER_CYCLE:
+        block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
+    near = np.abs(h.torque_Nm) < crossing_band_Nm(h)
+    groups: list[np.ndarray] = []
+    for label in _spared(labels, counts, block):
+        rows = np.flatnonzero(keys == label)
+        rows = rows[~_spikes(sweep.angle_arcsec[rows])]
+        groups += _blocks(rows, near[rows], block)
+    first = np.array([g[0] for g in groups])
+    order = np.argsort(first)
+    groups = [groups[i] for i in order]
+    return _averaged(sweep, groups, first[order])
+
+
+def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
+    """Blocks of neighbouring rows (m,); each row near zero torque stays by itself.
+
+    A mean over both sides of the gap is on neither.
+    """
+    edges = np.flatnonzero(np.diff(near.astype(int)) != 0) + 1
+    found: list[np.ndarray] = []
+    for part, inside in zip(np.split(rows, edges), np.split(near, edges), strict=True):
+        if len(part):
+            count = len(part) if inside[0] else max(1, len(part) // block)
+            found += np.array_split(part, count)
+    return found
+
+
+def _spared(labels: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:
+    """Cycles that are kept, so that few enough rows remain; the first and the last always."""
+    many = int(MOST_ROWS / max(1.0, np.median(counts) / block))
+    if len(labels) <= many:
+        return labels
+    return labels[np.unique(np.linspace(0, len(labels) - 1, max(2, many)).round().astype(int))]
+
+
+def _spikes(angle: np.ndarray) -> np.ndarray:
+    """Rows far from both neighbours."""
+    if len(angle) < 5:
+        return np.zeros(len(angle), bool)
+    off = angle[1:-1] - (angle[:-2] + angle[2:]) / 2
+    scale = 1.4826 * np.median(np.abs(off - np.median(off))) + 1e-12
+    far = np.zeros(len(angle), bool)
+    far[1:-1] = np.abs(off - np.median(off)) > SPIKE * scale
+    # a spike pulls its neighbours' differences too: only the largest of three is the spike
+    size = np.zeros(len(angle))
+    size[1:-1] = np.abs(off)
+    return far & (size >= np.maximum(np.roll(size, 1), np.roll(size, -1)))
+
+
+def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Sweep:
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.array([values[g].mean() for g in groups])
+
+    def maybe(values: np.ndarray | None) -> np.ndarray | None:
+        return None if values is None else mean(values)
+
+    h = sweep.history
+    history = History(
+        mean(h.torque_Nm), h.unit[first], h.cycle[first],
+        maybe(h.time_s), maybe(h.temperature_C),
+        None if h.input_angle_deg is None else h.input_angle_deg[first],
+    )  # fmt: skip
+    return replace(
+        sweep, history=history, angle_arcsec=mean(sweep.angle_arcsec), line=sweep.line[first]
+    )

@@ -1,0 +1,1 @@
+"""The extended model: its forward model, its file, and its predictions."""

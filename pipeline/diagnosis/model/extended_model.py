@@ -1,0 +1,112 @@
+"""The extended model: the calibrated simulation and the causes found, as one forward model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.measurement.errors import ChannelError
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
+
+Channel = Sequence[float] | np.ndarray
+"""One value for each row of a history."""
+
+
+@dataclass(frozen=True)
+class ExtendedModel:
+    """θ = θ0 + T·compliance + sign(T)·gap/2 + what each cause adds; T is the torque that the gear felt.
+
+    Attributes
+    ----------
+    compliance : [arcsec per N·m]; gap_arcsec : as calibrated within the design's uncertainty.
+    zeros_arcsec : zero of each unit, by its name.
+    own : of each unit, by its name, deviation of compliance and gap from the common ones.
+    elements : of each cause, by its id.
+    """
+
+    compliance: float
+    gap_arcsec: float
+    zeros_arcsec: Mapping[str, float]
+    elements: Mapping[str, tuple[Element, ...]]
+    own: Mapping[str, tuple[float, float]]
+
+    def angle_arcsec(
+        self,
+        torque_Nm: Channel,
+        time_s: Channel | None = None,
+        temperature_C: Channel | None = None,
+        input_angle_deg: Channel | None = None,
+        cycle: Channel | None = None,
+        unit: str = "",
+    ) -> np.ndarray:
+        """(n,) angle [arcsec] for a history of torque, row by row; `unit` names the unit under test.
+
+        Raises
+        ------
+        ChannelError : a channel that a cause of the model needs is missing, is not finite, or
+            is not as long as the torque.
+        """
+        torque = _channel("torque_Nm", torque_Nm, torque_Nm)
+        history = History(
+            torque,
+            np.zeros(len(torque), int),
+            np.zeros(len(torque), int)
+            if cycle is None
+            else _channel("cycle", cycle, torque).astype(int),
+            *(
+                None if values is None else _channel(name, values, torque)
+                for name, values in (
+                    ("time_s", time_s),
+                    ("temperature_C", temperature_C),
+                    ("input_angle_deg", input_angle_deg),
+                )
+            ),
+        )
+        for cause_id, elements in self.elements.items():
+            for channel in channels_needed(known_causes()[cause_id], elements):
+                if getattr(history, channel) is None:
+                    raise ChannelError(channel, f"is missing; {cause_id} needs it")
+        return self.angle_of(history, (unit,))
+
+    def angle_of(self, history: History, units: tuple[str, ...] = ("",)) -> np.ndarray:
+        """(n,) angle; `units` names the history's units. A unit not fitted has zero 0.
+
+        Raises
+        ------
+        ValueError : the history lacks a channel that a cause needs.
+        """
+        felt = self.felt(history)
+        angle = felt.torque_Nm * self.compliance + felt.sign * self.gap_arcsec / 2
+        for cause_id, elements in self.elements.items():
+            angle += known_causes()[cause_id].angle_arcsec(elements, felt)
+        for code, name in enumerate(units):
+            rows = felt.unit == code
+            compliance, gap = self.own.get(name, (0.0, 0.0))
+            angle[rows] += self.zeros_arcsec.get(name, 0.0)
+            angle[rows] += compliance * felt.torque_Nm[rows] + gap * felt.sign[rows] / 2
+        return angle
+
+    def felt(self, history: History) -> History:
+        """The history that the gear felt."""
+        for cause_id, elements in self.elements.items():
+            history = known_causes()[cause_id].felt(elements, history)
+        return history
+
+
+def _channel(
+    name: str, values: Sequence[float] | np.ndarray, torque: Sequence[float] | np.ndarray
+) -> np.ndarray:
+    """The values as numbers (n,), as many as torques."""
+    found = np.asarray(values, float)
+    if found.ndim != 1 or len(found) != len(torque):
+        raise ChannelError(
+            name, f"has the shape {found.shape}, the torque has {len(torque)} values"
+        )
+    if not np.isfinite(found).all():
+        raise ChannelError(name, "holds a value that is not finite")
+    return found

@@ -1,0 +1,94 @@
+"""Angles of a torque history by an extended model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHistory, history_of
+from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
+from flexspline.pipeline.diagnosis.model.model_file import ModelFile
+from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
+
+CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
+"""Causes that go on from the record's first cycle and from its first row's time."""
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """`angle_arcsec` (n,), and what the reader should know about it, one line each."""
+
+    angle_arcsec: np.ndarray
+    warnings: tuple[str, ...]
+
+
+def predict_file(file: ModelFile, csv: Path) -> Predicted:
+    """The angle for each row of a file with `torque_Nm` and whatever channels the model needs.
+
+    Cycles are counted from the record's first one, by the file's own numbers. Drift goes on from the
+    record's first row where the file's clock stands later; an earlier one is another clock, and drift
+    then starts with the file.
+
+    Raises
+    ------
+    MeasurementError : the file cannot be read, or lacks a channel that a cause of the model needs.
+    """
+    table = read_table(csv)
+    if not table.has("torque_Nm"):
+        raise table.refuse(None, "column torque_Nm is missing")
+    found = history_of(table)
+    history = _as_recorded(found, file, table)
+    if not file.provenance.time_recorded:  # there rows stood for seconds
+        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    for cause_id, elements in file.model.elements.items():
+        for channel in channels_needed(known_causes()[cause_id], elements):
+            if getattr(history, channel) is None:
+                raise table.refuse(
+                    None, f"column {channel} is missing; {cause_id} in {file.path.name} needs it"
+                )
+    angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
+    strange = [u for u in found.units if u not in file.model.zeros_arcsec]
+    told = f"unit {', '.join(strange)}: " if any(strange) else ""
+    warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []
+    return Predicted(angle, tuple(warnings))
+
+
+def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:
+    """(n,) how much more the reading has drifted than from the file's own first row."""
+    more = np.zeros(len(history))
+    elements = file.model.elements.get(CLOCK_COUNTS)
+    if elements is None or history.time_s is None:
+        return more
+    drift = known_causes()[CLOCK_COUNTS]
+    for code, name in enumerate(found.units):
+        rows = np.flatnonzero(history.unit == code)
+        first = file.provenance.first_time_s.get(name, np.inf)
+        if history.time_s[rows[0]] > first:
+            own = history.rows(rows)
+            with_first = history.rows(np.r_[rows[0], rows])
+            time = np.r_[first, history.time_s[rows]]
+            since = drift.angle_arcsec(elements, replace(with_first, time_s=time))[1:]
+            more[rows] = since - drift.angle_arcsec(elements, own)
+    return more
+
+
+def _as_recorded(found: NamedHistory, file: ModelFile, table: MeasuredTable) -> History:
+    """The history with its cycles counted as in the model's record."""
+    if "cycle" not in table.numbers:
+        return found.history
+    cycle = found.history.cycle.copy()
+    for code, name in enumerate(found.units):
+        rows = found.history.unit == code
+        first = file.provenance.first_cycle.get(name, found.cycles[code][0])
+        before = int(first - found.cycles[code][0])
+        if before > 0 and CYCLES_COUNT in file.model.elements:
+            raise table.refuse(
+                int(np.flatnonzero(rows)[0]),
+                f"cycle = {found.cycles[code][0]:g} lies before the model's first, {first:g}",
+            )
+        cycle[rows] += max(-before, 0)
+    return replace(found.history, cycle=cycle)

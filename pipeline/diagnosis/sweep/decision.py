@@ -1,0 +1,147 @@
+"""From a finished race to causes: which are named, which rivals remain, what is left over."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
+from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
+
+NAMING_NATS, SECOND_NATS = 4.5, 7.0
+"""A cause must raise the score by this over the best set without it: one of several by more, as the
+others' misfit may feed it."""
+MINOR_SHARE = 0.045
+"""An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
+has but one shape."""
+TOGETHER = 3.0
+"""Times that many effects may be larger, each for itself, than what they are together."""
+RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
+"""The contract's limits for a rival."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A race decided.
+
+    Attributes
+    ----------
+    fit : the best set of terms, fitted. named : ids of its causes, largest first.
+    rms : of each owner [arcsec]. rivals : of each cause, ids that explain the record as well.
+    evidence_nats : of each cause, nats over the best set without it.
+    """
+
+    search: Search
+    best: Candidate
+    fit: SweepFit
+    named: tuple[str, ...]
+    rms: dict[str, float]
+    rivals: dict[str, tuple[str, ...]]
+    rival_sets: dict[str, Candidate]
+    evidence_nats: dict[str, float]
+
+    @property
+    def named_rms(self) -> float:
+        """Of all named causes together [arcsec]."""
+        return float(np.sqrt(sum(self.rms[c] ** 2 for c in self.named)))
+
+    @property
+    def unnamed_rms(self) -> float:
+        """Of all competitors and minor causes in the best set [arcsec]."""
+        return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
+
+
+def decide(evidence: GaussianEvidence, beside: bool = False) -> Decision:
+    """Run the race and decide it; `beside`: another cause is already known."""
+    search = Search(evidence)
+    best = _plausible(evidence, search, search.run())
+    nats: dict[str, float] = {}
+    for _ in range(4):
+        without = {c: _without(evidence, best, c) for c in best.named(evidence)}
+        nats = {c: best.score - w.score for c, w in without.items()}
+        limit = NAMING_NATS if len(nats) == 1 and not beside else SECOND_NATS
+        weak = [c for c, e in nats.items() if e < limit]
+        if not weak:
+            break
+        best = without[min(weak, key=lambda c: nats[c])]
+    fit = fit_regressors(evidence, best.terms)
+    rms = owner_rms(fit, sorted(best.owners(evidence)))
+    largest = max(
+        (rms[c] for c in best.named(evidence) if not known_causes()[c].exact), default=0.0
+    )
+    named = sorted(
+        (c for c in best.named(evidence) if rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
+    )
+    rivals: dict[str, tuple[str, ...]] = {}
+    rival_sets: dict[str, Candidate] = {}
+    for cause in named:
+        rivals[cause], found = _rivals(evidence, best, cause)
+        if found is not None:
+            rival_sets[cause] = found
+    return Decision(search, best, fit, tuple(named), rms, rivals, rival_sets, nats)
+
+
+def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
+    """The best set in which effects do not nearly cancel: such sets fit a misfit, or the noise."""
+    for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
+        if not _cancels(evidence, c):
+            return c
+    return search.candidate(())
+
+
+def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
+    """Whether a set with a competitor holds large effects that together are small."""
+    owners = c.owners(evidence)
+    if not any(o.startswith("?") for o in owners):
+        return False
+    fit = fit_regressors(evidence, c.terms)
+    parts = np.array([fit.added(o)[evidence.kept] for o in owners])
+    parts -= parts.mean(axis=1, keepdims=True)
+    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
+
+
+def _without(evidence: GaussianEvidence, best: Candidate, cause: str) -> Candidate:
+    """The best set that does without a cause: competitors and other causes may stand in."""
+    start = [i for i in best.terms if evidence.terms[i].owner != cause]
+    search = Search(evidence, lambda t: t.owner != cause)
+    return _plausible(evidence, search, search.run([start, ()], most=len(best.terms) + 2))
+
+
+def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
+    """Lets in the terms of these owners."""
+    return lambda term: term.owner in owners
+
+
+def _rivals(
+    evidence: GaussianEvidence, best: Candidate, cause: str
+) -> tuple[tuple[str, ...], Candidate | None]:
+    """Ids of other causes that, in the place of this one, explain the record as well."""
+    start = tuple(i for i in best.terms if evidence.terms[i].owner != cause)
+    present = {evidence.terms[i].owner for i in best.terms}
+    others = {t.cause.id for t in evidence.terms if t.cause} - present
+    mine = penalised(evidence, best.terms)
+    found: list[tuple[float, str, Candidate]] = []
+    for other in sorted(others):
+        allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
+        search = Search(evidence, owned_by(allowed))
+        rival = search.run([start], most=len(best.terms) + 3)
+        if other not in rival.named(evidence):
+            continue
+        gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
+        if gap < RIVAL_EVIDENCE or mine - penalised(evidence, rival.terms) < RIVAL_LIKELIHOOD:
+            found.append((gap, other, rival))
+    found.sort(key=lambda f: f[0])
+    return tuple(f[1] for f in found), (found[0][2] if found else None)
+
+
+def penalised(evidence: GaussianEvidence, terms: tuple[int, ...]) -> float:
+    """Log likelihood less ½ log n for each amplitude."""
+    fit = fit_regressors(evidence, terms).posterior
+    count = len(fit.mean) - fit.base_count
+    return -fit.chi2 / 2 - count * log(max(evidence.rows, 2)) / 2

@@ -1,0 +1,189 @@
+"""The race on one record: whitened columns, their products, and the evidence of any set of terms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Shape
+from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
+from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, Regressor
+
+MOST_ROWS = 4000
+"""Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
+
+
+@dataclass(frozen=True)
+class GaussianEvidence:
+    """Products of whitened columns, with the base (zero, compliance, gap) marginalised.
+
+    Attributes
+    ----------
+    gram (P, P), right (P,) : of columns scaled to unit prior, less what the base explains.
+    base_gain : evidence of the base alone. rows : number of whitened rows. total : yᵀy whitened.
+    """
+
+    columns: DesignMatrix
+    noise: Noise
+    kept: np.ndarray
+    target: np.ndarray
+    """(n,) measured less nominal angle."""
+    gram: np.ndarray
+    right: np.ndarray
+    scale: np.ndarray
+    base_gram: np.ndarray
+    base_right: np.ndarray
+    base_cross: np.ndarray
+    total: float
+    rows: int
+    y: np.ndarray
+    base: np.ndarray
+    x: np.ndarray
+    """(r,), (r, b), (r, P) whitened; x scaled to unit prior."""
+
+    def prepared(self, values: np.ndarray) -> np.ndarray:
+        """(n, k) further columns of the record, whitened like all others."""
+        stretches = stretches_of(self.columns.rig.history, self.kept)
+        block = max(1, int(self.kept.sum()) // MOST_ROWS)
+        return _summed(self.noise.whitened(values[self.kept].astype(float), stretches), block)
+
+    @property
+    def terms(self) -> tuple[Regressor, ...]:
+        return self.columns.terms
+
+
+def gaussian_evidence(
+    columns: DesignMatrix, target: np.ndarray, kept: np.ndarray, noise: Noise
+) -> GaussianEvidence:
+    """Whiten the kept rows and form all products."""
+    empty = np.empty((0, 0))
+    bare = GaussianEvidence(
+        columns, noise, kept, target, empty, np.empty(0), np.empty(0), empty, np.empty(0), empty,
+        0.0, 0, np.empty(0), empty, empty,
+    )  # fmt: skip
+    y = bare.prepared(target[:, None])[:, 0]
+    base = bare.prepared(columns.base)
+    prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
+    step = 64
+    wide = [
+        bare.prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)
+    ]
+    x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
+    block = max(1, int(kept.sum()) // MOST_ROWS)
+    base_gram = base.T @ base + np.diag(columns.base_prior**-2)
+    base_right = base.T @ y
+    cross = base.T @ x
+    solved = np.linalg.solve(base_gram, np.column_stack([base_right, cross]))
+    gram = x.T @ x - cross.T @ solved[:, 1:]
+    right = x.T @ y - cross.T @ solved[:, 0]
+    return replace(
+        bare, gram=gram, right=right, scale=prior, base_gram=base_gram, base_right=base_right,
+        base_cross=cross, total=float(y @ y), rows=len(y) * block, y=y, base=base, x=x,
+    )  # fmt: skip
+
+
+def with_shapes(
+    old: GaussianEvidence, shapes: Sequence[tuple[Regressor, Shape]]
+) -> GaussianEvidence:
+    """The race with further shapes, each beside a term of the same cause; known ones are skipped."""
+    known = {_shape_key(t.owner, t.shape) for t in old.terms}
+    columns, terms, blocks = old.columns, list(old.terms), []
+    width = columns.all.shape[1]
+    for like, shape in shapes:
+        key = _shape_key(like.owner, shape)
+        if like.cause is None or key in known:
+            continue
+        known.add(key)
+        block = like.cause.columns(shape, columns.rig.history)
+        k = block.shape[1]
+        spread = np.full(k, like.cause.spread(shape, columns.rig))
+        terms.append(replace(like, shape=shape, at=slice(width, width + k), prior=spread))
+        blocks.append(block.astype(np.float32))
+        width += k
+    if not blocks:
+        return old
+    new = np.hstack(blocks)
+    prior = np.concatenate([t.prior for t in terms[len(old.terms) :]])
+    x = old.prepared(new) * prior
+    cross = old.base.T @ x
+    solved = np.linalg.solve(old.base_gram, np.column_stack([old.base_right, cross]))
+    mixed = old.x.T @ x - old.base_cross.T @ solved[:, 1:]
+    own = x.T @ x - cross.T @ solved[:, 1:]
+    return replace(
+        old,
+        columns=replace(columns, all=np.hstack([columns.all, new]), terms=tuple(terms)),
+        gram=np.block([[old.gram, mixed], [mixed.T, own]]),
+        right=np.concatenate([old.right, x.T @ old.y - cross.T @ solved[:, 0]]),
+        scale=np.concatenate([old.scale, prior]),
+        base_cross=np.hstack([old.base_cross, cross]),
+        x=np.hstack([old.x, x]),
+    )
+
+
+def _shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
+    return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
+
+
+def _summed(values: np.ndarray, block: int) -> np.ndarray:
+    if block == 1:
+        return values
+    n = len(values) // block * block
+    return values[:n].reshape(-1, block, values.shape[1]).sum(axis=1) / np.sqrt(block)
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Posterior of a set of terms: `amplitudes` of each term's columns, `covariance` over them and the base.
+
+    Order of `mean` and `covariance`: base first, then the terms' columns in the order of `terms`.
+    """
+
+    terms: tuple[int, ...]
+    mean: np.ndarray
+    covariance: np.ndarray
+    base_count: int
+    chi2: float
+
+    def amplitudes(self, evidence: GaussianEvidence) -> list[np.ndarray]:
+        """Amplitudes (k,) of each term."""
+        at, out = self.base_count, []
+        for i in self.terms:
+            k = evidence.terms[i].at.stop - evidence.terms[i].at.start
+            out.append(self.mean[at : at + k])
+            at += k
+        return out
+
+
+def column_indices(evidence: GaussianEvidence, chosen: Sequence[int]) -> np.ndarray:
+    """Columns of several terms, in order."""
+    return np.concatenate(
+        [np.arange(evidence.terms[i].at.start, evidence.terms[i].at.stop) for i in chosen]
+        or [np.empty(0, int)]
+    ).astype(int)
+
+
+def posterior_of(evidence: GaussianEvidence, chosen: Sequence[int]) -> Posterior:
+    """Posterior mean and covariance of base and the chosen terms together."""
+    at = column_indices(evidence, chosen)
+    b = len(evidence.base_right)
+    own = evidence.gram[np.ix_(at, at)] + evidence.base_cross[:, at].T @ np.linalg.solve(
+        evidence.base_gram, evidence.base_cross[:, at]
+    )
+    matrix = np.block(
+        [
+            [evidence.base_gram, evidence.base_cross[:, at]],
+            [evidence.base_cross[:, at].T, own + np.eye(len(at))],
+        ]
+    )
+    whole = evidence.right[at] + evidence.base_cross[:, at].T @ np.linalg.solve(
+        evidence.base_gram, evidence.base_right
+    )
+    right = np.concatenate([evidence.base_right, whole])
+    inverse = np.linalg.inv(matrix)
+    mean = inverse @ right
+    scale = np.concatenate([np.ones(b), evidence.scale[at]])
+    plain = matrix - np.diag(np.concatenate([evidence.columns.base_prior**-2, np.ones(len(at))]))
+    chi2 = evidence.total - 2 * mean @ right + mean @ plain @ mean
+    return Posterior(tuple(chosen), mean * scale, inverse * np.outer(scale, scale), b, float(chi2))

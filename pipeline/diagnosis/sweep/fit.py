@@ -1,0 +1,155 @@
+"""From a set of terms to the causes' elements, their magnitudes, and the model they make."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, Posterior, posterior_of
+from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS
+
+ALLOWED = 2.0
+"""Standard deviations by which a calibration may move without being a finding."""
+LINEAR = {"series_compliance": 0, "clearance_offset": 1}
+"""Causes whose elements are part of the measured compliance or gap."""
+
+
+@dataclass(frozen=True)
+class SweepFit:
+    """A fitted set of terms on one race."""
+
+    evidence: GaussianEvidence
+    posterior: Posterior
+
+    @property
+    def rig(self) -> Rig:
+        return self.evidence.columns.rig
+
+    @property
+    def units(self) -> int:
+        return len(self.rig.history.unit_slices)
+
+    def elements(self, mean: np.ndarray | None = None) -> dict[str, tuple[Element, ...]]:
+        """Elements of each cause, by id."""
+        posterior = self.posterior if mean is None else replace(self.posterior, mean=mean)
+        found: dict[str, tuple[Element, ...]] = {}
+        for i, amplitudes in zip(posterior.terms, posterior.amplitudes(self.evidence), strict=True):
+            term = self.evidence.terms[i]
+            if term.cause is not None:
+                element = Element(term.shape, tuple(float(a) for a in amplitudes))
+                found[term.cause.id] = (*found.get(term.cause.id, ()), element)
+        return found
+
+    def measured_rig(self, mean: np.ndarray | None = None) -> Rig:
+        """The rig with compliance and gap as measured."""
+        mean = self.posterior.mean if mean is None else mean
+        k = self.units
+        change = mean[k : k + 2].copy()
+        if k > 1:
+            change += mean[k + 2 : k + 2 + 2 * k].reshape(k, 2).mean(axis=0)
+        for cause_id, elements in self.elements(mean).items():
+            if cause_id in LINEAR:
+                change[LINEAR[cause_id]] += sum(e.amplitudes[0] for e in elements)
+        p = self.rig.prediction
+        return replace(
+            self.rig, measured=(p.compliance + float(change[0]), p.gap_arcsec + float(change[1]))
+        )
+
+    def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
+        """The contract's magnitude of each named cause."""
+        rig = self.measured_rig(mean)
+        return {c: known_causes()[c].magnitude(e, rig) for c, e in self.elements(mean).items()}
+
+    def magnitude_stds(self) -> dict[str, float]:
+        """Their standard deviations by the posterior, to first order."""
+        at_mean = self.magnitudes()
+        slope = {c: np.zeros(len(self.posterior.mean)) for c in at_mean}
+        std = np.sqrt(np.diag(self.posterior.covariance))
+        for j in range(self.units, len(std)):
+            step = np.zeros(len(std))
+            step[j] = 0.3 * std[j]
+            for c, value in self.magnitudes(self.posterior.mean + step).items():
+                slope[c][j] = (value - at_mean[c]) / step[j]
+        return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slope.items()}
+
+    def added(self, owner: str) -> np.ndarray:
+        """(n,) angle [arcsec] that all terms of an owner add."""
+        total = np.zeros(len(self.rig.history))
+        for i, amplitudes in zip(
+            self.posterior.terms, self.posterior.amplitudes(self.evidence), strict=True
+        ):
+            term = self.evidence.terms[i]
+            if term.owner == owner:
+                total += self.evidence.columns.all[:, term.at] @ amplitudes
+        return total
+
+    def residual(self) -> np.ndarray:
+        """(n,) measured less fitted angle, all rows."""
+        left = (
+            self.evidence.target
+            - self.evidence.columns.base @ self.posterior.mean[: self.posterior.base_count]
+        )
+        for i, amplitudes in zip(
+            self.posterior.terms, self.posterior.amplitudes(self.evidence), strict=True
+        ):
+            left = left - self.evidence.columns.all[:, self.evidence.terms[i].at] @ amplitudes
+        return left
+
+    def residual_as_read(self) -> np.ndarray:
+        """(n,) measured less predicted from the torque as it was read, its noise included."""
+        of_noise = slice(self.posterior.base_count - len(NOISE_WINDOWS), self.posterior.base_count)
+        return (
+            self.residual()
+            + self.evidence.columns.base[:, of_noise] @ self.posterior.mean[of_noise]
+        )
+
+
+def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
+    """(n,) measured less the simulation alone, calibrated on the race's rows as far as its doubt goes.
+
+    Stiffness and gap, common and each unit's own, move by no more than `ALLOWED` of their stated
+    standard deviations, and the best within those limits is taken; zeros are free.
+    """
+    from scipy.optimize import lsq_linear
+
+    history = evidence.columns.rig.history
+    units = len(history.unit_slices)
+    limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
+    limit = np.full(len(evidence.base_right), np.inf)
+    limit[limited] = ALLOWED * evidence.columns.base_prior[limited]
+    # the fit's normal equations G x = b as least squares: G = L Lᵀ, so |Lᵀx − L⁻¹b|² is its misfit
+    lower = np.linalg.cholesky(evidence.base_gram)
+    mean = lsq_linear(lower.T, np.linalg.solve(lower, evidence.base_right), (-limit, limit)).x
+    seen = evidence.columns.base[:, limited] @ mean[limited]
+    return less_zero(evidence.target - seen, evidence.kept, history)
+
+
+def less_zero(values: np.ndarray, rows: np.ndarray, history: History) -> np.ndarray:
+    """(n,) values less each unit's mean over the given rows (mask); over all where it has none."""
+    out = values.copy()
+    for own in history.unit_slices:
+        chosen = own[rows[own]]
+        out[own] -= values[chosen if len(chosen) else own].mean()
+    return out
+
+
+def fit_regressors(evidence: GaussianEvidence, terms: Sequence[int]) -> SweepFit:
+    """Fit a set of terms."""
+    return SweepFit(evidence, posterior_of(evidence, terms))
+
+
+def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
+    """Rms [arcsec] of what each owner adds over the kept rows, each unit's mean removed."""
+    kept, unit = fit.evidence.kept, fit.rig.history.unit
+    found = {}
+    for owner in owners:
+        added = fit.added(owner)[kept]
+        for u in np.unique(unit[kept]):
+            added[unit[kept] == u] -= added[unit[kept] == u].mean()
+        found[owner] = float(np.sqrt(np.mean(added**2)))
+    return found

@@ -1,0 +1,141 @@
+"""The measurement that would tell rivals apart best, computed from what they predict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+
+ROWS = 64
+"""Of one triangular cycle."""
+DEFAULT_RAMP_S = 30.0
+WARMER_K = 20.0
+POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
+MORE_CYCLES = 40
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Something a rig can do: which channel it varies, in words, and the record it would give."""
+
+    vary: str
+    doing: str
+    history: History
+
+
+def plans(prepared: PreparedSweep) -> list[Plan]:
+    """Each plan holds a part like the record so far and a part where one thing is changed."""
+    h = prepared.rig.history
+    largest = prepared.rig.torque_Nm
+    ramp = ramp_s(prepared.sweep.history) or DEFAULT_RAMP_S
+    warm = float(np.mean(h.temperature_C)) if h.temperature_C is not None else REFERENCE_C
+    last = int(h.cycle.max())
+
+    def cycles(
+        amplitudes: Sequence[float] = (1.0, 1.0), ramps: Sequence[float] = (1.0, 1.0),
+        warmer: Sequence[float] = (0.0, 0.0), places: Sequence[float] = (0.0, 0.0),
+        numbers: Sequence[int] = (0, 0), hold: float = 0.0,
+    ) -> History:  # fmt: skip
+        torque, time, temperature, place, cycle = [], [], [], [], []
+        now = 0.0
+        for a, r, w, p, c in zip(amplitudes, ramps, warmer, places, numbers, strict=True):
+            t, at = _triangle(largest * a, ramp * r * a, hold * ramp)
+            torque.append(t)
+            time.append(now + at)
+            now += at[-1]
+            temperature.append(np.full(len(t), warm + w))
+            place.append(np.full(len(t), p))
+            cycle.append(np.full(len(t), c))
+        n = sum(map(len, torque))
+        return History(
+            np.concatenate(torque), np.zeros(n, int), np.concatenate(cycle), np.concatenate(time),
+            np.concatenate(temperature), np.concatenate(place),
+        )  # fmt: skip
+
+    place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
+    many = [place0 + p for p in POSITIONS_DEG]
+    k = len(many)
+    same = (place0, place0)
+    return [
+        Plan("temperature_C", f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
+             cycles(warmer=(0.0, WARMER_K), places=same, numbers=(last, last))),
+        Plan("torque_rate", "repeat the sweep ten times slower and ten times faster",
+             cycles((1.0,) * 3, (1.0, 10.0, 0.1), (0.0,) * 3, (place0,) * 3, (last,) * 3)),
+        Plan("hold", "hold the torque at both ends for twenty ramps",
+             cycles(places=same, numbers=(last, last), hold=20.0)),
+        Plan("torque_amplitude", "sweep to a quarter, half, and one and a half times the largest torque",
+             cycles((0.25, 0.5, 1.0, 1.5), (1.0,) * 4, (0.0,) * 4, (place0,) * 4, (last,) * 4)),
+        Plan("input_angle_deg", "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+             cycles((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k)),
+        Plan("cycle", f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
+             cycles(places=same, numbers=(last, last + MORE_CYCLES))),
+    ]  # fmt: skip
+
+
+def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, np.ndarray]:
+    """Torque [N·m] and time [s] of 0 → +A → (hold) → −A → (hold) → 0."""
+    quarter = np.arange(1, ROWS // 4 + 1) / (ROWS // 4)
+    up, down = amplitude * quarter, amplitude * (1 - 2 * np.arange(1, ROWS // 2 + 1) / (ROWS // 2))
+    parts = [(up, ramp), (down, 2 * ramp), (-amplitude * (1 - quarter), ramp)]
+    torque, time, now = [], [], 0.0
+    for i, (values, length) in enumerate(parts):
+        at = now + length * np.arange(1, len(values) + 1) / len(values)
+        torque.append(values)
+        time.append(at)
+        now = at[-1]
+        if hold > 0 and i < 2:
+            n = ROWS // 4
+            torque.append(np.full(n, values[-1]))
+            time.append(now + hold * np.arange(1, n + 1) / n)
+            now += hold
+    return np.concatenate(torque), np.concatenate(time)
+
+
+def best_plan(
+    prepared: PreparedSweep, models: Sequence[ExtendedModel]
+) -> tuple[Plan, float] | None:
+    """The plan whose predicted records differ most between models, in units of noise.
+
+    Of each difference, what a new zero, compliance or gap would absorb does not count.
+    """
+    if len(models) < 2:
+        return None
+    found = []
+    for plan in plans(prepared):
+        h = plan.history
+        free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
+        first = models[0].angle_of(h)
+        separations = []
+        for other in models[1:]:
+            off = other.angle_of(h) - first
+            off = off - free @ np.linalg.lstsq(free, off, rcond=None)[0]
+            separations.append(float(np.sqrt(off @ off)) / prepared.noise.std_arcsec)
+        found.append((min(separations), plan))
+    separation, plan = max(found, key=lambda f: f[0])
+    return plan, separation
+
+
+def to_tell_apart(
+    prepared: PreparedSweep, models: Sequence[ExtendedModel], cause: str, rivals: Sequence[str]
+) -> NextMeasurement:
+    """The next measurement for a cause and its rivals."""
+    titles = " from ".join(
+        [known_causes()[cause].title, " or ".join(known_causes()[r].title for r in rivals)]
+    )
+    chosen = best_plan(prepared, models)
+    if chosen is None:
+        vary = known_causes()[cause].vary
+        return NextMeasurement(vary, f"to tell {titles}: {known_causes()[cause].reveals}", 0.0)
+    plan, separation = chosen
+    times = f"their predictions then differ by {separation:.0f} times the noise"
+    why = f"{plan.doing}: {times}; it tells {titles}"
+    return NextMeasurement(plan.vary, why, separation)

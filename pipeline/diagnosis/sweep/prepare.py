@@ -1,0 +1,107 @@
+"""A sweep with its rows sorted out: which rows identify causes, its noise, its regressors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexspline.geometry.errors import FlexsplineError
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Rig
+from flexspline.pipeline.diagnosis.measurement.noise import (
+    Noise,
+    crossing_band_Nm,
+    estimated,
+    isolated_outliers,
+    rough_residual,
+    stretches_of,
+)
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, design_matrix
+from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
+
+FEWEST_KEPT, PER_UNIT = 12, 4
+"""Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
+
+
+class TooFewRowsError(FlexsplineError, ValueError):
+    """Too few rows lie outside the gap's crossing and the torque's turns: `count` of `wanted`."""
+
+    def __init__(self, count: int, wanted: int) -> None:
+        self.count, self.wanted = count, wanted
+        super().__init__(
+            f"only {count} rows lie outside the gap's crossing and the torque's turns;"
+            f" {wanted} are needed"
+        )
+
+
+@dataclass(frozen=True)
+class PreparedSweep:
+    """A sweep with its rows sorted out.
+
+    Attributes
+    ----------
+    kept : (n,) rows that name causes: outside the gap crossing, no outliers.
+    outlier : (n,). band_Nm : half width of the crossing. offset_Nm : taken off the torque reading.
+    """
+
+    sweep: Sweep
+    prediction: Prediction
+    rig: Rig
+    columns: DesignMatrix
+    target: np.ndarray
+    kept: np.ndarray
+    outlier: np.ndarray
+    band_Nm: float
+    rows_per_cycle: float
+    noise: Noise
+    offset_Nm: float = 0.0
+
+
+def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> PreparedSweep:
+    """Sort the rows out and evaluate every term.
+
+    Raises
+    ------
+    TooFewRowsError
+    """
+    history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
+    if history.time_s is None:
+        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    rig = Rig(prediction, history)
+    target = sweep.angle_arcsec - prediction.angle_arcsec(history)
+    band = crossing_band_Nm(history)
+    kept = naming_rows(history, band)
+    count = sum(len(np.unique(history.cycle[rows])) for rows in history.unit_slices)
+    per_cycle = len(history) / count
+    wanted = FEWEST_KEPT + PER_UNIT * (len(history.unit_slices) - 1)
+    if int(kept.sum()) < wanted:
+        raise TooFewRowsError(int(kept.sum()), wanted)
+    rough = rough_residual(target, history, kept, per_cycle)
+    spread = 1.4826 * float(np.median(np.abs(rough))) + 1e-9
+    outlier = np.zeros(len(kept), bool)
+    outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
+    good = ~outlier[kept]
+    kept &= ~outlier
+    noise = estimated(rough[good], stretches_of(history, kept), per_cycle, int(kept.sum()) // 6)
+    return PreparedSweep(
+        sweep,
+        prediction,
+        rig,
+        design_matrix(rig, _knowable(sweep)),
+        target,
+        kept,
+        outlier,
+        band,
+        per_cycle,
+        noise,
+        offset_Nm,
+    )
+
+
+def _knowable(sweep: Sweep) -> dict[str, Cause]:
+    """Causes that the record's channels let one speak of."""
+    timed = sweep.history.time_s is not None
+    return {name: c for name, c in known_causes().items() if timed or not c.needs_time}

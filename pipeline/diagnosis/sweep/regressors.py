@@ -1,0 +1,141 @@
+"""Every term of the race evaluated on one record: shapes of the causes, competitors, calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Rig, Shape
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
+
+ZERO_STD_ARCSEC = 1e5
+"""The zero of the angle is free."""
+UNNAMED_SPREAD = 0.15
+"""Prior size of an unnamed term, as a share of the predicted angle."""
+
+
+@dataclass(frozen=True)
+class Regressor:
+    """One shape of a cause, or one competitor (`cause` None); `at` its columns among all."""
+
+    cause: Cause | None
+    shape: Shape
+    channel: str
+    what: str
+    at: slice
+    prior: np.ndarray
+    """(k,) standard deviations of the amplitudes."""
+    positive: bool
+    """Whether its amplitudes may not be negative."""
+    log_share: float
+    against: frozenset[str] = frozenset()
+    """Owners beside which it does not stand."""
+    """Log of the share of its cause's (or channel's) prior that this shape has."""
+
+    @property
+    def owner(self) -> str:
+        """Cause id, or `?channel`."""
+        return self.cause.id if self.cause else f"?{self.channel}"
+
+
+@dataclass(frozen=True)
+class DesignMatrix:
+    """All columns of a record before whitening; float32 keeps 100 000 rows in memory."""
+
+    rig: Rig
+    base: np.ndarray
+    base_prior: np.ndarray
+    """(b,) standard deviations; the columns are zeros, compliance and gap, common and per unit."""
+    all: np.ndarray
+    terms: tuple[Regressor, ...]
+
+
+def design_matrix(rig: Rig, known: dict[str, Cause]) -> DesignMatrix:
+    """Evaluate every shape of every cause, and every competitor, on a rig's record."""
+    base, prior = base_columns(rig)
+    blocks: list[np.ndarray] = []
+    terms: list[Regressor] = []
+    width = 0
+    for cause in known.values():
+        shapes = cause.shapes(rig)
+        for shape, block in zip(shapes, cause.columns_of_all(shapes, rig.history), strict=True):
+            k = block.shape[1]
+            spread = np.full(k, cause.spread(shape, rig))
+            at = slice(width, width + k)
+            share = -log(len(shapes))
+            terms.append(
+                Regressor(cause, shape, "", cause.title, at, spread, cause.positive, share)
+            )
+            blocks.append(block.astype(np.float32))
+            width += k
+    rivals = nuisance_terms(rig)
+    for rival in rivals:
+        terms.append(_competitor(rival, rivals, width, rig))
+        blocks.append(rival.columns.astype(np.float32))
+        width += rival.columns.shape[1]
+    return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms))
+
+
+def _competitor(
+    rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: Rig
+) -> Regressor:
+    alike = sum(r.channel == rival.channel for r in rivals)
+    k = rival.columns.shape[1]
+    prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec)
+    return Regressor(
+        None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike),
+        rival.against,
+    )  # fmt: skip
+
+
+CORNER = 4.0
+NOISE_WINDOWS = (2, 7)
+"""Rows on each side over which the torque is taken as a parabola."""
+
+
+def jitter(history: History, width: int) -> np.ndarray:
+    """(n,) torque less a parabola through its neighbours: its noise, and little else.
+
+    With noise in the torque reading, whatever knows the true torque better explains the angle better.
+    These columns take that away from every term, so that no cause is found in the torque's noise.
+    """
+    out = np.zeros(len(history))
+    for rows in history.unit_slices:
+        n = len(rows)
+        torque = history.torque_Nm[rows]
+        t = np.arange(n, dtype=float) if history.time_s is None else history.time_s[rows]
+        near = np.clip(np.arange(n)[:, None] + np.arange(-width, width + 1), 0, n - 1)
+        x = t[near] - t[:, None]
+        x /= np.maximum(np.abs(x).max(axis=1, keepdims=True), 1e-12)
+        basis = np.stack([np.ones_like(x), x, x * x], axis=2)
+        gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
+        right = np.einsum("nwi,nw->ni", basis, torque[near])
+        out[rows] = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
+    for hold in holds(history):
+        out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
+    # beyond its noise it is a corner of the programme, not noise
+    return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
+
+
+def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
+    """(n, b) columns of the calibration and their prior standard deviations (b,).
+
+    Zero of each unit; deviation of compliance and gap, common, and per unit if several; torque noise.
+    """
+    h, p = rig.history, rig.prediction
+    units = [np.isin(np.arange(len(h)), rows).astype(float) for rows in h.unit_slices]
+    columns = [*units, h.torque_Nm, h.sign / 2]
+    prior = [ZERO_STD_ARCSEC] * len(units) + [p.compliance_std, p.gap_std_arcsec]
+    if len(units) > 1:
+        for own in units:
+            columns += [own * h.torque_Nm, own * h.sign / 2]
+            prior += [p.compliance_std, p.gap_std_arcsec]
+    for width in NOISE_WINDOWS:
+        columns.append(jitter(h, width))
+        prior.append(p.compliance)
+    return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)

@@ -1,0 +1,54 @@
+"""Which rows of a record may name causes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.operators import rising
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+
+SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
+"""Of the largest torque; of a unit's rows."""
+
+
+def naming_rows(history: History, band_Nm: float) -> np.ndarray:
+    """(n,) rows that may name causes, outliers aside."""
+    return (np.abs(history.torque_Nm) > band_Nm) & ~turning(history) & ~settling(history)
+
+
+def turning(history: History) -> np.ndarray:
+    """(n,) rows at which the torque turns, each with the one after it.
+
+    What a row there shows depends on how reading and turning fall together: friction has not turned
+    yet, a rate is half of what it was. A few rows of sparse records would decide between them.
+    """
+    direction = rising(history, deadband_Nm(history) + 1e-9)
+    out = np.zeros(len(history), bool)
+    for rows in history.unit_slices:
+        turned = _turns(direction[rows])
+        for back in (0, 1):
+            out[rows[turned - back]] = True
+    return out
+
+
+def settling(history: History) -> np.ndarray:
+    """(n,) rows before a unit's torque first turns far from zero.
+
+    What a friction element remembers from before the record is not known; the first far turn wipes it
+    out. Only where most of the record remains.
+    """
+    direction = rising(history, deadband_Nm(history) + 1e-9)
+    far = SETTLED_AT * np.abs(history.torque_Nm).max()
+    out = np.zeros(len(history), bool)
+    for rows in history.unit_slices:
+        turned = [i for i in _turns(direction[rows]) if abs(history.torque_Nm[rows[i]]) > far]
+        if turned and turned[0] < SETTLING_SHARE * len(rows):
+            out[rows[: turned[0]]] = True
+    return out
+
+
+def _turns(direction: np.ndarray) -> np.ndarray:
+    """Rows (t,) at which a direction (m,) of ±1, 0 before it first moves, differs from the last row's."""
+    turned = np.flatnonzero(np.diff(direction) != 0) + 1
+    return turned[direction[turned - 1] != 0]

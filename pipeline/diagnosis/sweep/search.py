@@ -1,0 +1,228 @@
+"""The race: which set of terms explains a record best, by evidence, several at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
+
+NAMED_COST = 4.5
+"""Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
+UNNAMED_COST = 9.0
+"""Against each competitor: at equal evidence a named cause is preferred."""
+ELEMENT_COST = 1.0
+"""Against a further element of a cause already named."""
+BEAM, PER_OWNERS, PER_SINGLE = 18, 3, 8
+MOST_TERMS = 8
+WORTH = 0.5
+"""Nats that a larger set must gain for the search to go on."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set of terms; `log_evidence` in nats beyond the base, `score` with the set's prior."""
+
+    terms: tuple[int, ...]
+    log_evidence: float
+    score: float
+
+    def owners(self, evidence: GaussianEvidence) -> frozenset[str]:
+        return frozenset(evidence.terms[i].owner for i in self.terms)
+
+    def log_evidence_with_shapes(self, search: Search) -> float:
+        """Evidence with the shapes' prior, but not the costs of naming."""
+        return self.log_evidence + sum(search.evidence.terms[i].log_share for i in self.terms)
+
+    def named(self, evidence: GaussianEvidence) -> frozenset[str]:
+        """Ids of its causes."""
+        return frozenset(c.id for i in self.terms if (c := evidence.terms[i].cause))
+
+
+@dataclass
+class Search:
+    """A beam search over sets of terms of one race; remembers every set that it tried."""
+
+    evidence: GaussianEvidence
+    allowed: Callable[[Regressor], bool] = lambda term: True
+    best: dict[frozenset[str], Candidate] = field(default_factory=dict)
+    """Best candidate of each set of owners."""
+    tried: list[Candidate] = field(default_factory=list)
+    """Every candidate."""
+
+    def __post_init__(self) -> None:
+        sizes: dict[int, list[int]] = {}
+        for i, term in enumerate(self.evidence.terms):
+            if self.allowed(term):
+                sizes.setdefault(term.at.stop - term.at.start, []).append(i)
+        self._groups = [_Group.of(self.evidence, members) for members in sizes.values()]
+        self._seen: set[frozenset[int]] = set()
+
+    def run(self, starts: Iterable[Sequence[int]] = ((),), most: int = MOST_TERMS) -> Candidate:
+        """The best set found from the given ones, growing by one term at a time."""
+        beam = [self.candidate(s) for s in starts]
+        for c in beam:
+            self._remember(c)
+        top = max(c.score for c in beam)
+        while beam:
+            grown: list[Candidate] = []
+            for c in beam:
+                if len(c.terms) < most:
+                    grown += self._grown(c)
+            beam = self._chosen(grown)
+            if not beam or beam[0].score < top + WORTH:
+                break
+            top = beam[0].score
+        return max(self.best.values(), key=lambda c: c.score)
+
+    def candidate(self, terms: Sequence[int]) -> Candidate:
+        """Evidence and score of one set."""
+        at = column_indices(self.evidence, terms)
+        if len(at) == 0:
+            return Candidate((), 0.0, 0.0)
+        matrix = self.evidence.gram[np.ix_(at, at)] + np.eye(len(at))
+        right = self.evidence.right[at]
+        gain = right @ np.linalg.solve(matrix, right) / 2
+        nats = float(gain - np.linalg.slogdet(matrix)[1] / 2)
+        return Candidate(tuple(terms), nats, nats + self.prior(terms))
+
+    def prior(self, terms: Sequence[int]) -> float:
+        """Log prior of a set: costs of its owners and of its shapes."""
+        total, seen = 0.0, set[str]()
+        for i in terms:
+            term = self.evidence.terms[i]
+            total += term.log_share
+            if term.cause is None:
+                total -= UNNAMED_COST
+            else:
+                total -= ELEMENT_COST if term.cause.id in seen else NAMED_COST
+                seen.add(term.cause.id)
+        return total
+
+    def _remember(self, c: Candidate) -> None:
+        self.tried.append(c)
+        owners = c.owners(self.evidence)
+        if owners not in self.best or self.best[owners].score < c.score:
+            self.best[owners] = c
+
+    def _grown(self, c: Candidate) -> list[Candidate]:
+        """Best sets with one term more: the best few of each owner."""
+        evidence = self.evidence
+        at = column_indices(evidence, c.terms)
+        inverse = np.linalg.inv(evidence.gram[np.ix_(at, at)] + np.eye(len(at)))
+        mean = inverse @ evidence.right[at]
+        held = np.array(
+            [evidence.terms[i].positive for i in c.terms for _ in range(_width(evidence.terms[i]))],
+            bool,
+        )
+        cross = evidence.gram[at]
+        pull = inverse @ cross
+        found: list[Candidate] = []
+        present = {evidence.terms[i].owner for i in c.terms if evidence.terms[i].cause}
+        shut = frozenset[str]().union(*(evidence.terms[i].against for i in c.terms))
+        for group in self._groups:
+            gain, valid = group.gains(evidence, cross, pull, mean, held)
+            prior = group.log_share - np.where(
+                group.unnamed, UNNAMED_COST,
+                np.where([o in present for o in group.owners], ELEMENT_COST, NAMED_COST),
+            )  # fmt: skip
+            barred = group.barred(present, shut)
+            score = np.where(valid & ~barred, gain + prior, -np.inf)
+            for owner in set(group.owners):
+                mine = np.flatnonzero(group.is_owner[owner])
+                order = mine[np.argsort(-score[mine])][: None if not c.terms else 2]
+                for j in order:
+                    term = int(group.members[j])
+                    if np.isfinite(score[j]) and term not in c.terms:
+                        key = frozenset((*c.terms, term))
+                        if key not in self._seen:
+                            self._seen.add(key)
+                            found.append(Candidate(
+                                (*c.terms, term), c.log_evidence + float(gain[j]), c.score + float(score[j])
+                            ))  # fmt: skip
+        for f in found:
+            self._remember(f)
+        return found
+
+    def _chosen(self, grown: list[Candidate]) -> list[Candidate]:
+        kept: list[Candidate] = []
+        count: dict[frozenset[str], int] = {}
+        for c in sorted(grown, key=lambda c: -c.score):
+            owners = c.owners(self.evidence)
+            single = len(owners) == 1 and len(c.terms) == 1
+            if count.get(owners, 0) < (PER_SINGLE if single else PER_OWNERS):
+                count[owners] = count.get(owners, 0) + 1
+                kept.append(c)
+            if len(kept) == BEAM:
+                break
+        return kept
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Terms with the same number k of columns, for arithmetic on all of them at once."""
+
+    members: np.ndarray
+    at: np.ndarray
+    own: np.ndarray
+    log_share: np.ndarray
+    owners: list[str]
+    unnamed: np.ndarray
+    positive: np.ndarray
+    is_owner: dict[str, np.ndarray]
+    against: list[frozenset[str]]
+
+    @staticmethod
+    def of(evidence: GaussianEvidence, members: list[int]) -> _Group:
+        terms = [evidence.terms[i] for i in members]
+        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
+        owners = [t.owner for t in terms]
+        return _Group(
+            np.array(members),
+            at,
+            evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]),
+            np.array([t.log_share for t in terms]),
+            owners,
+            np.array([t.cause is None for t in terms]),
+            np.array([t.positive for t in terms]),
+            {o: np.array([x == o for x in owners]) for o in set(owners)},
+            [t.against for t in terms],
+        )
+
+    def barred(self, present: set[str], shut: frozenset[str]) -> np.ndarray:
+        """(m,) members that do not stand beside the causes present, or are shut out by a term there."""
+        return np.array(
+            [
+                o in shut or not a.isdisjoint(present)
+                for o, a in zip(self.owners, self.against, strict=True)
+            ]
+        )
+
+    def gains(
+        self,
+        evidence: GaussianEvidence,
+        cross: np.ndarray,
+        pull: np.ndarray,
+        mean: np.ndarray,
+        held: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Evidence (m,) that each member adds to a set, and whether all signs stay as physics has them."""
+        c, p = cross[:, self.at], pull[:, self.at]  # (s, m, k)
+        matrix = self.own - np.einsum("smk,sml->mkl", c, p)
+        right = evidence.right[self.at] - np.einsum("smk,s->mk", c, mean)
+        # a member of the set itself leaves nothing but its prior
+        _, logdet = np.linalg.slogdet(matrix)
+        amplitude = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        gain = (right * amplitude).sum(axis=1) / 2 - logdet / 2
+        valid = ~self.positive | (amplitude >= 0).all(axis=1)
+        if held.any():
+            moved = mean[held, None] - np.einsum("smk,mk->sm", p[held], amplitude)
+            valid &= (moved >= 0).all(axis=0)
+        return gain, valid
+
+
+def _width(term: Regressor) -> int:
+    return int(term.at.stop - term.at.start)

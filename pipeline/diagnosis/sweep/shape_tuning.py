@@ -1,0 +1,107 @@
+"""Shapes refined: Gauss-Newton steps of the continuous shape parameters of a set of terms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Shape
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
+
+STEPS = 4
+STEP_STD = 0.4
+"""Prior standard deviation of the log of a shape parameter, about where a step starts."""
+LONGEST = 0.5
+DIFFERENCE = 0.03
+ENOUGH = 0.05
+"""Nats: a step that gains less is the last."""
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """Terms of a set, each with its tuned shape; `gain` in nats over the untuned."""
+
+    shapes: tuple[tuple[Regressor, Shape], ...]
+    gain: float
+
+
+def tuned(evidence: GaussianEvidence, chosen: Sequence[int]) -> Tuned:
+    """Move the shapes of a set of terms to where the record has them best."""
+    terms = [evidence.terms[i] for i in chosen]
+    shapes = [dict(t.shape) for t in terms]
+    blocks = [evidence.x[:, t.at] for t in terms]
+    first = value = _value(evidence, blocks)
+    for _ in range(STEPS):
+        keys = [
+            (j, k)
+            for j, t in enumerate(terms)
+            if t.cause
+            for k in t.cause.tunable
+            if shapes[j].get(k, 0.0) > 0
+        ]
+        if not keys:
+            break
+        step = _step(evidence, terms, shapes, blocks, keys)
+        moved = False
+        for share in (1.0, 0.35):
+            new = [dict(s) for s in shapes]
+            for (j, k), change in zip(keys, step, strict=True):
+                new[j][k] *= float(np.exp(share * change))
+            new = [n if _possible(t, n) else s for t, n, s in zip(terms, new, shapes, strict=True)]
+            trial = [
+                b if n == s else _block(evidence, t, n)
+                for t, n, s, b in zip(terms, new, shapes, blocks, strict=True)
+            ]
+            found = _value(evidence, trial)
+            if found > value:
+                gained = found - value
+                shapes, blocks, value, moved = new, trial, found, True
+                break
+        if not moved or gained < ENOUGH:
+            break
+    return Tuned(tuple(zip(terms, shapes, strict=True)), value - first)
+
+
+def _possible(term: Regressor, shape: Shape) -> bool:
+    return term.cause is not None and term.cause.possible(shape)
+
+
+def _block(evidence: GaussianEvidence, term: Regressor, shape: Shape) -> np.ndarray:
+    assert term.cause is not None
+    spread = term.cause.spread(shape, evidence.columns.rig)
+    return evidence.prepared(term.cause.columns(shape, evidence.columns.rig.history)) * spread
+
+
+def _value(evidence: GaussianEvidence, blocks: list[np.ndarray]) -> float:
+    """Log evidence of base and blocks, up to a constant."""
+    x = np.hstack([evidence.base, *blocks])
+    prior = np.concatenate(
+        [evidence.columns.base_prior**-2, np.ones(x.shape[1] - evidence.base.shape[1])]
+    )
+    matrix = x.T @ x + np.diag(prior)
+    right = x.T @ evidence.y
+    return float(right @ np.linalg.solve(matrix, right) / 2 - np.linalg.slogdet(matrix)[1] / 2)
+
+
+def _step(
+    evidence: GaussianEvidence, terms: list[Regressor], shapes: list[dict[str, float]],
+    blocks: list[np.ndarray], keys: list[tuple[int, str]],
+) -> np.ndarray:  # fmt: skip
+    """Change of the log of each tunable parameter."""
+    b = evidence.base.shape[1]
+    x = np.hstack([evidence.base, *blocks])
+    prior = np.concatenate([evidence.columns.base_prior**-2, np.ones(x.shape[1] - b)])
+    amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
+    ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
+    slopes = []
+    for j, key in keys:
+        nearby = {**shapes[j], key: shapes[j][key] * np.exp(DIFFERENCE)}
+        change = (_block(evidence, terms[j], nearby) - blocks[j]) / DIFFERENCE
+        slopes.append(change @ amplitude[ends[j] : ends[j + 1]])
+    whole = np.column_stack([x, *slopes])
+    prior = np.concatenate([prior, np.full(len(keys), STEP_STD**-2)])
+    found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
+    return np.clip(found[-len(keys) :], -LONGEST, LONGEST)
