@@ -6,6 +6,7 @@ import doctest
 import importlib
 import json
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -36,6 +37,12 @@ def test_docstring_examples(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     outcome = doctest.testmod(importlib.import_module(name))
     assert outcome.attempted
     assert not outcome.failed
+
+
+def test_the_drawings_of_the_rooms_are_the_code_s() -> None:
+    drawn = runpy.run_path(str(ROOT / "docs" / "make_architecture.py"))
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert drawn["written"](page) == page, "run  python3 docs/make_architecture.py"
 
 
 def test_readme_opens_with_two_commands_in_order() -> None:

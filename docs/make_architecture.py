@@ -1,0 +1,92 @@
+"""Writes the drawings in architecture.md from the imports of the code.
+
+    python3 docs/make_architecture.py
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "architecture.md"
+ROOMS = ("geometry", "fea", "pipeline", "results")
+MARK = "<!-- drawn by docs/make_architecture.py: {} -->\n"
+
+
+def modules(room: str) -> Iterator[tuple[tuple[str, ...], Path]]:
+    """Dotted name, in parts, and file of every module of a room."""
+    for path in sorted((ROOT / room).rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        yield parts[:-1] if parts[-1] == "__init__" else parts, path
+
+
+def packages() -> set[tuple[str, ...]]:
+    """Every folder of modules, as parts of its dotted name."""
+    return {path.parent.relative_to(ROOT).parts for room in ROOMS for _, path in modules(room)}
+
+
+def imported(path: Path) -> Iterator[tuple[str, ...]]:
+    """Modules of ours that a file imports anywhere, less the leading `flexspline`."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("flexspline."):
+            for alias in node.names:
+                yield (*node.module.split(".")[1:], alias.name)
+
+
+def arrows() -> Counter[tuple[str, str]]:
+    """How many import statements lead from one package to another."""
+    known, found = packages(), Counter[tuple[str, str]]()
+    for room in ROOMS:
+        for _, path in modules(room):
+            here = path.parent.relative_to(ROOT).parts
+            for target in imported(path):
+                there = next(target[:n] for n in range(len(target), 0, -1) if target[:n] in known)
+                if there != here:
+                    found[".".join(here), ".".join(there)] += 1
+    return found
+
+
+def between_rooms() -> str:
+    """The four rooms, and how many imports lead from one to another."""
+    total = Counter[tuple[str, str]]()
+    for (here, there), count in arrows().items():
+        total[here.split(".")[0], there.split(".")[0]] += count
+    lines = [f"  {a} -->|{n}| {b}" for (a, b), n in sorted(total.items()) if a != b]
+    return "\n".join(["```mermaid", "graph RL", *lines, "```", ""])
+
+
+def within(room: str) -> str:
+    """The packages of one room, and what each of them imports there."""
+    found = {
+        k: n
+        for k, n in sorted(arrows().items())
+        if all(name.split(".")[0] == room for name in k)
+    }
+    names = sorted({name for pair in found for name in pair})
+    shown = [f'  {n.replace(".", "_")}["{n.removeprefix(room + ".")}"]' for n in names]
+    lines = [
+        f"  {a.replace('.', '_')} -->|{n}| {b.replace('.', '_')}" for (a, b), n in found.items()
+    ]
+    return "\n".join(["```mermaid", "graph LR", *shown, *lines, "```", ""])
+
+
+def drawings() -> dict[str, str]:
+    """Every drawing of the page, by the name in its mark."""
+    made = {"rooms": between_rooms()}
+    return made | {room: within(room) for room in ROOMS if room != "geometry"}
+
+
+def written(page: str) -> str:
+    """The page with its drawings made anew."""
+    for name, drawing in drawings().items():
+        mark = MARK.format(name)
+        before, after = page.split(mark)
+        page = before + mark + drawing + after.split("```\n", 1)[1]
+    return page
+
+
+if __name__ == "__main__":
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
