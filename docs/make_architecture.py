@@ -1,6 +1,6 @@
 """Writes the drawings in architecture.md from the imports of the code.
 
-    python3 docs/make_architecture.py
+python3 docs/make_architecture.py
 """
 
 from __future__ import annotations
@@ -61,9 +61,7 @@ def between_rooms() -> str:
 def within(room: str) -> str:
     """The packages of one room, and what each of them imports there."""
     found = {
-        k: n
-        for k, n in sorted(arrows().items())
-        if all(name.split(".")[0] == room for name in k)
+        k: n for k, n in sorted(arrows().items()) if all(name.split(".")[0] == room for name in k)
     }
     names = sorted({name for pair in found for name in pair})
     shown = [f'  {n.replace(".", "_")}["{n.removeprefix(room + ".")}"]' for n in names]

@@ -20,6 +20,7 @@ from flexspline.results.atomic import write_bytes
 from flexspline.results.renders.whole import Parity, whole_part
 
 STL_CHORD_ERROR_MM = 0.01
+"""Below what a printer or a viewer resolves."""
 
 
 def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
@@ -74,6 +75,7 @@ def write_decks(context: AnalysisContext, folder: Path) -> list[Path]:
 ENDINGS = {".step": b"END-ISO-10303-21;", ".vtu": b"</VTKFile>"}
 """How whole files end: their writers say nothing of a full disk."""
 STL_HEAD_BYTES, STL_TRIANGLE_BYTES = 84, 50
+"""Of the binary format."""
 
 
 class ExportError(ComputationError):

@@ -29,6 +29,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME, Meridian
 
 BULK = 0.6
+"""As for the lobes."""
 LAYER_POINTS = 16
 """On each edge: a layer may end within it."""
 TWIST = Wave(0, torsion=True)

@@ -33,6 +33,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 BULK = 0.5
+"""Share of the estimated energy error in the triangles that are refined, beside those that LOCAL adds."""
 LOCAL = 0.5
 """Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
 QUIET_ROUNDS = 2

@@ -38,7 +38,9 @@ from flexspline.fea.axisymmetric.patches import Boundary
 from flexspline.fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
 
 PRIMAL_DEGREE = 5
+"""Of quadrature: r³|∇ψ|², with ψ of degree 2."""
 DUAL_DEGREE = 11
+"""Of quadrature: p³|∇φ|², with p(r) ≥ 1/r of degree 3."""
 
 
 @dataclass(frozen=True)

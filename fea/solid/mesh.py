@@ -22,7 +22,9 @@ AREA_TOLERANCE = 0.005
 """A patch whose mesh area is farther than this from its CAD area is refused: parabolas for arcs of a coarse
 mesh leave 0.1 %, facets on the wrong side of a patch edge more."""
 ASTRAY_SHARE = 0.002
+"""Of the boundary: a few facets across sharp edges; a crack along a cut would be many."""
 VOLUME_TOLERANCE = 0.01
+"""Parabolas for arcs of a coarse mesh lose 0.1 %; a mesh with a hole closed is off by more."""
 OFF_PLANE = 1e-6
 """Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
 ENVELOPES_PER_EDGE = 6

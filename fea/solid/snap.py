@@ -14,6 +14,7 @@ ROUNDS = 40
 """Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the
 distance, so 40 reach rounding."""
 AGREED = 1e-8
+"""[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
 
 
 def snap_to_surfaces(

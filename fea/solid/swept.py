@@ -37,6 +37,7 @@ from flexspline.geometry.surfaces import Surface, part_surfaces
 LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
 ON_SURFACE = 1e-6
+"""[mm] Nodes are computed on their surfaces; what is farther off belongs to another."""
 TOLERANCE = 1e-3
 """Of volume and patch areas; parabolas for arcs of 15° leave 1e-5."""
 

@@ -12,6 +12,7 @@ from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerDiedError
 
 CONNECT_S = 30.0
+"""[s] distributed's own default."""
 
 
 @dataclass(frozen=True)

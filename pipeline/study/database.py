@@ -20,6 +20,7 @@ LOCK_S = 60
 SERVER: dict[str, Any] = {"pool_pre_ping": True}
 """A connection that the server dropped meanwhile is made anew."""
 OPENINGS = 6
+"""Tries, 0.5 s to 2.5 s apart: 7.5 s in all for another process to finish making the tables."""
 
 
 class StorageError(DesignError):

@@ -28,6 +28,7 @@ SHORTER = 0.85
 """Per failure; with LONGER it rests at one success in five or so (Rechenberg's 1/5 rule)."""
 LONGER = 1.6
 SHORTEST = 1e-4
+"""Of a key's span: no drawing states a dimension finer."""
 CHANGES = 0.2
 """How often a listed value is drawn anew instead of kept."""
 

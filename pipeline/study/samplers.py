@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 POPULATION = (8, 50)
 """Least and largest of NSGA-II: an eighth of the evaluations between them."""
 STARTUP = 10
+"""Random designs before TPE models what it has seen: Optuna's default."""
 
 
 def excesses(study: Study, figures: Mapping[str, float]) -> list[float]:

@@ -19,6 +19,7 @@ from flexspline.pipeline.study.tolerance import Input
 FACTORS = (0.75, 0.5, 0.25, 0.0)
 """A tolerance times this; 0 is a perfect part."""
 SURFACE_POINTS = 2**13
+"""Of a Sobol sequence, a power of 2 as its balance needs; the surface costs nothing to evaluate."""
 LEAST_BLOCKS = 4
 """Sample blocks from which a distribution says something: eight independent designs."""
 CONSTANT = 1e-9

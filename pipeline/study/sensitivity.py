@@ -25,11 +25,15 @@ from flexspline.pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
 HELD_STEP = 1e-4
 """Of the dimension: the energy's difference is smooth, so only rounding limits the step."""
 WIDER = 10
+"""Times HELD_STEP, where the outline cannot follow so small a step."""
 SOLVED_STEP = 0.04
 """Of the dimension: K is known to half of K_TOLERANCE only, and its difference must stand above that."""
 K_TOLERANCE = 3e-4
+"""Half the bounds over K: with SOLVED_STEP the slope is then off by 1 to 2 % of K per dimension."""
 ENERGY_TOLERANCE = 1e-3
+"""Of the field that is held; the slope is a ratio of energies on one mesh and more accurate than they are."""
 NARROWER = 0.25
+"""Times the step, where a step cannot be built; TRIES of them end at a step of 0.06 %."""
 TRIES = 4
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 ASKED_AGAIN = 20
 """A sampler that suggests a design the study has already is asked again so many times."""
 DRAWN_AGAIN = 200
+"""Random designs tried; where lists leave one new design in 40, all of them are old once in 150 times."""
 
 
 @dataclass(frozen=True)

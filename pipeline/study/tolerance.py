@@ -32,6 +32,7 @@ CLEARANCE, PLAY = "gear.flank_clearance_um", "bearing.radial_clearance_um"
 REACH = 4.0
 """A normal input is cut off so many standard deviations away: 6e-5 of it is beyond."""
 LEAST_BASE = 8
+"""Rows of each base sample; a power of 2, as the Sobol sequence's balance needs."""
 TOTAL = "backlash_arcsec.total"
 
 

@@ -23,6 +23,7 @@ from flexspline.results.studio.guard import Guard
 from flexspline.results.studio.server import Studio, application
 
 LARGEST_PORT = 65535
+"""TCP has 16 bits for it."""
 _REASONS = {
     errno.EADDRINUSE: "another program does; --port 0 takes any free port",
     errno.EACCES: "ports below 1024 are the system's; --port 0 takes any free port",

@@ -22,6 +22,7 @@ PLACE = 2e-4
 COLOUR = 0.01
 """Of the colour scale, and of the largest displacement: two of 256 colours."""
 _ON_AXIS_MM = 1e-9
+"""Rounding of a radius that is 0."""
 
 
 def field_message(view: str, field: RevolvedField) -> bytes:
