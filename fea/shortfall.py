@@ -7,6 +7,7 @@ What was computed until then is given all the same; the clause travels with it (
 from __future__ import annotations
 
 from flexspline.fea.deadline import OutOfTimeError
+from flexspline.fea.solid.errors import MemoryShortError, MesherTimeError
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
 
@@ -43,7 +44,7 @@ def settled_peak(found: StressPeak) -> StressPeak:
 
 def next_mesh_failed(fault: Exception) -> str:
     """The mesh after the last good one could not be made or solved, or not in time."""
-    if isinstance(fault, OutOfTimeError):
+    if isinstance(fault, OutOfTimeError | MesherTimeError | MemoryShortError):
         return f"{NOT_FINISHED} {fault}"
     if isinstance(fault, MemoryError):
         return f"{NOT_FINISHED} not enough memory {fault}".rstrip()

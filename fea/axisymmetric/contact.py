@@ -15,7 +15,7 @@ from flexspline.fea.axisymmetric.lift_off import pushing
 from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
-from flexspline.fea.shortfall import next_mesh_failed
+from flexspline.fea.shortfall import next_mesh_failed, of_the_machine
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness
 from flexspline.geometry.errors import ComputationError
@@ -60,7 +60,8 @@ def contact_stiffness(
         except (ComputationError, MemoryError) as fault:
             if not levels:
                 raise
-            shortfall = next_mesh_failed(fault)
+            if not of_the_machine(shortfall):  # which a better machine may mend
+                shortfall = next_mesh_failed(fault)
             break
         ratios.append(resting / held)
         levels.append(MeshLevel(mesh.shortest_edge_mm, len(mesh.triangles), seat.unknowns, resting))

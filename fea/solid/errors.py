@@ -23,6 +23,10 @@ class MesherError(SolidError):
         super().__init__(f"{reason}; {advice}")
 
 
+class MesherTimeError(MesherError):
+    """The mesher met its time limit: a faster or idler machine may finish."""
+
+
 class MeshQualityError(SolidError):
     """The mesh does not describe the part: a patch, a volume or an element is wrong."""
 

@@ -20,7 +20,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from flexspline.fea.solid.errors import MesherError
+from flexspline.fea.solid.errors import MesherError, MesherTimeError
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def tetrahedralize(
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            raise MesherError(
+            raise MesherTimeError(
                 f"the mesher did not finish within {settings.time_limit_s:.0f} s"
                 f" at edge length {settings.edge_length:.3g} mm",
                 "try a larger solver.edge_length_mm, or remove very small fillets and steps",

@@ -67,11 +67,18 @@ class DrawingProcess:
 
         Raises
         ------
-        NotDrawnError : it raised, it took too long, or the process ended.
+        NotDrawnError : it raised, it took too long, the process ended, or its files cannot be written.
         """
         name = f"{write.__module__}:{write.__qualname__}"
         if name in self._gave_up:
             raise NotDrawnError(self._gave_up[name])
+        try:
+            return self._drawn(name, arguments)
+        except OSError as fault:  # a full disk, say
+            where = f"{fault.filename}: " if fault.filename else "the folder for temporary files: "
+            raise NotDrawnError(f"{where}{fault.strerror or fault}") from fault
+
+    def _drawn(self, name: str, arguments: tuple[Any, ...]) -> bytes:
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="flexspline-picture-")
         asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))

@@ -9,10 +9,10 @@ import pytest
 from example_cup import CUP
 
 from flexspline.fea.axisymmetric import lobes, stress, torsion
-from flexspline.fea.shortfall import ToleranceError, of_the_machine, settled
+from flexspline.fea.shortfall import ToleranceError, next_mesh_failed, of_the_machine, settled
 from flexspline.fea.solid import stiffness as solid
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.errors import MesherError
+from flexspline.fea.solid.errors import MemoryShortError, MesherError, MesherTimeError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
@@ -152,3 +152,17 @@ def test_what_needs_the_tolerance_refuses_less(exact: Stiffness, monkeypatch) ->
     monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
     with pytest.raises(ToleranceError, match="none is refined beyond 100"):
         settled(torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE))
+
+
+@pytest.mark.parametrize(
+    ("fault", "expected"),
+    [
+        (MesherTimeError("it did not finish within 300 s", "try a larger edge"), True),
+        (MemoryShortError(10**8, 1e12, 1e9), True),
+        (MemoryError(), True),
+        (MesherError("it ended with status 1", "try another edge"), False),
+    ],
+    ids=["time", "memory of a solver", "memory", "crash"],
+)
+def test_a_better_machine_may_mend_some_faults(fault: Exception, expected: bool) -> None:
+    assert of_the_machine(next_mesh_failed(fault)) is expected

@@ -47,6 +47,16 @@ def test_an_error_names_itself_and_ends_nothing() -> None:
         assert process.draw(failing_drawings.good, "after") == b"drawn: after"
 
 
+def test_a_full_disk_is_a_line(monkeypatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device", "/tmp/asked.npz")
+
+    with DrawingProcess() as process:
+        monkeypatch.setattr(Path, "write_bytes", full)
+        with pytest.raises(NotDrawnError, match="No space left"):
+            process.draw(failing_drawings.good, "a hat")
+
+
 def test_a_picture_that_takes_too_long_is_given_up() -> None:
     began = time.monotonic()
     with DrawingProcess(slowest_s=1.0) as process, pytest.raises(NotDrawnError, match="within 1 s"):
