@@ -17,6 +17,8 @@ DEDENDUM = 1.25
 """Of the standard basic rack (ISO 53), in modules."""
 WALL_RATIO = (0.005, 0.025)
 """Usual wall / inner diameter."""
+SMALLEST_CLEARANCE_um = 0.1
+"""Of flanks and bearings, but for none at all: below what a coordinate measuring machine resolves."""
 LENGTH_RATIO = (0.2, 1.4)
 """Usual length / inner diameter."""
 
@@ -31,6 +33,7 @@ def warnings(design: Design) -> tuple[str, ...]:
         _wave_generator_room,
         _bolts,
         _play_edge,
+        _micrometres,
     )
     return tuple(line for rule in rules for line in rule(design))
 
@@ -130,3 +133,12 @@ def _play_edge(design: Design) -> Iterator[str]:
             f"bearing.radial_clearance_um = {c:g} ± {s:g} comes within two deviations of c_max = "
             f"{limit:.4g} µm at {design.gear.pressure_angle_deg:g}°, where the involute model ends"
         )
+
+
+def _micrometres(design: Design) -> Iterator[str]:
+    for key, value in (
+        ("gear.flank_clearance_um", design.gear.flank_clearance_um),
+        ("bearing.radial_clearance_um", design.bearing.radial_clearance_um),
+    ):
+        if 0 < value < SMALLEST_CLEARANCE_um:
+            yield f"{key} = {value:g} is below {SMALLEST_CLEARANCE_um:g} µm: was it given in mm?"

@@ -11,6 +11,8 @@ from flexspline.geometry.errors import FlexsplineError
 
 DEEPEST_KEY = 50
 """Parts of a dotted key; the files of this program have four. `tomllib` takes time with the square of it."""
+_AT_LINE = re.compile(r"at line (\d+)")
+_COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
 
@@ -40,7 +42,14 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
     except RecursionError as fault:
         raise TomlError("is nested too deeply") from fault
     except ValueError as fault:  # also integers of more digits than Python converts
-        raise TomlError(f"is not valid TOML: {fault}") from fault
+        raise TomlError(f"is not valid TOML: {fault}{_decimal_comma(text, fault)}") from fault
+
+
+def _decimal_comma(text: str, fault: ValueError) -> str:
+    """What to write where the line at fault holds a number such as 38,4; else nothing."""
+    lines, at = text.split("\n"), _AT_LINE.search(str(fault))
+    number = _COMMA.search(lines[int(at[1]) - 1]) if at and int(at[1]) <= len(lines) else None
+    return f"; write {number[1]}.{number[2]} with a point" if number else ""
 
 
 def _deepest_key(text: str) -> int:

@@ -173,6 +173,7 @@ FILES = {
     "latin-1": ('# x\nname = "Zähne"'.encode("latin-1"), r"line 2, byte 13\); save it as UTF-8"),
     "syntax": (b"name = \n[flexspline", "not valid TOML"),
     "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
+    "decimal comma": (b'name = "a"\nlength_mm = 38,4  # long\n', "write 38.4 with a point"),
     "null byte": (b"name = \x00", "not valid TOML"),
     "deep nesting": (b"x = " + b"[" * 50_000, "TOML|nested"),
     "huge integer": (b"x = " + b"9" * 9000, "TOML"),
