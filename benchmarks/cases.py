@@ -35,7 +35,7 @@ class Case:
             from flexspline.geometry.load import design_from
 
             design = design_from(tomllib.loads(self.design_text()))
-            write_step(build_solid(design, "flexspline", sector_deg), path)
+            write_step(build_solid(design.part("flexspline"), sector_deg), path)
         return path
 
     def patches(self) -> str:

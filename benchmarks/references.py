@@ -51,9 +51,8 @@ def guaranteed(case: Case) -> tuple[float, float]:
     from flexspline.fea.axisymmetric.torsion import torsional_stiffness
     from flexspline.fea.types import Elastic
     from flexspline.geometry.load import design_from
-    from flexspline.geometry.meridian import meridian
 
     design = design_from(tomllib.loads(case.design_text()))
     material = Elastic.of(design.material.flexspline)
-    found = torsional_stiffness(meridian(design, "flexspline"), material, "mesh", BOUNDS)
+    found = torsional_stiffness(design.part("flexspline").meridian, material, "mesh", BOUNDS)
     return found.lower_Nm_per_rad, found.upper_Nm_per_rad

@@ -56,8 +56,10 @@ def wedge_mesh(far: float) -> TetMesh:
     from flexspline.geometry.load import design_from
 
     design = design_from(tomllib.loads(CASES[1].design_text()))
-    spec = replace(first_spec(design, "flexspline"), grading=Grading(NEAR_SHARE * far, far, 1.0))
-    mesh = swept_mesh(design, "flexspline", 30.0, spec)
+    spec = replace(
+        first_spec(design.part("flexspline")), grading=Grading(NEAR_SHARE * far, far, 1.0)
+    )
+    mesh = swept_mesh(design.part("flexspline"), 30.0, spec)
     assert mesh is not None
     return mesh
 

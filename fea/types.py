@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from flexspline.geometry.design import Material
+from flexspline.geometry.material import Material
 
 NMM_PER_NM = 1000.0
 

@@ -6,19 +6,21 @@ from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flexspline.geometry.design import Cup, Design
 from flexspline.geometry.errors import GeometryError
 from flexspline.geometry.kernel import load_kernel
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.outline import Meridian, Segment
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
 
 if TYPE_CHECKING:
     import cadquery as cq
 
 WHOLE = 360.0
+OVER_mm = 0.01
+"""How far a hole's tool reaches beyond a face, so that the cut has no coplanar cap: less than any gap."""
 
 
-def build_solid(design: Design, part: str, sector_deg: float = WHOLE) -> cq.Solid:
+def build_solid(part: Part, sector_deg: float = WHOLE) -> cq.Solid:
     """The part's solid [mm], or its piece between angle 0 and `sector_deg` about z.
 
     Raises
@@ -26,60 +28,47 @@ def build_solid(design: Design, part: str, sector_deg: float = WHOLE) -> cq.Soli
     GeometryError : the kernel cannot be loaded, or left no single valid solid.
     """
     load_kernel()
-    body: cq.Shape = _revolve(meridian(design, part), sector_deg)
-    tools = [*bolt_cylinders(design, part), *_keyway_boxes(design, part)]
+    body: cq.Shape = _revolve(part.meridian, sector_deg)
+    tools = [*_bolt_cylinders(part), *_keyway_boxes(part)]
     if tools:
         body = body.cut(*tools)
     solids = body.Solids()
     if len(solids) != 1 or not solids[0].isValid():
         raise GeometryError(
-            f"the CAD kernel made {len(solids)} solids of the {part}, expected one valid solid"
+            f"the CAD kernel made {len(solids)} solids of the {part.name}, expected one valid solid"
         )
     return solids[0]
 
 
-def bolt_cylinders(design: Design, part: str) -> list[cq.Solid]:
+def _bolt_cylinders(part: Part) -> list[cq.Solid]:
     """The bolt holes as solids, the first at angle 0."""
-    load_kernel()
     import cadquery as cq
 
-    bolts = (design.shaft if part == "shaft" else design.flexspline).bolts
-    if bolts is None:
+    if part.bolts is None:
         return []
-    below, top = bolt_depth(design, part)
+    blind = isinstance(part.shape, Shaft) and len(part.shape.segment) > 1
+    top = part.hole_depth + (0.0 if blind else OVER_mm)
     return [
         cq.Solid.makeCylinder(
-            bolts.hole_radius, top + below, cq.Vector(x, y, -below), cq.Vector(0, 0, 1)
+            part.bolts.hole_radius, top + OVER_mm, cq.Vector(x, y, -OVER_mm), cq.Vector(0, 0, 1)
         )
-        for x, y in bolts.centres
+        for x, y in part.bolts.centres
     ]
 
 
-def bolt_depth(design: Design, part: str) -> tuple[float, float]:
-    """How far a hole's tool starts below z = 0 and where it ends [mm]."""
-    over = 0.01  # beyond the face, so that the cut has no coplanar cap; less than any gap above
-    if part == "shaft":
-        segments = design.shaft.segment
-        first = segments[0].length_mm
-        return over, first + (over if len(segments) == 1 else 0.0)
-    f = design.flexspline
-    return over, (f.boss_thickness_mm if isinstance(f, Cup) else f.flange_thickness_mm) + over
-
-
-def _keyway_boxes(design: Design, part: str) -> list[cq.Solid]:
+def _keyway_boxes(part: Part) -> list[cq.Solid]:
     import cadquery as cq
 
-    key = design.shaft.keyway
-    if part != "shaft" or key is None:
+    slot = part.keyway
+    if slot is None or not isinstance(part.shape, Shaft):
         return []
-    floor = design.shaft.segment[-1].outer_diameter_mm / 2 - key.depth_mm
-    reach = max(s.outer_diameter_mm for s in design.shaft.segment)
+    reach = max(s.outer_diameter_mm for s in part.shape.segment)
     return [
         cq.Solid.makeBox(
             reach,
-            key.width_mm,
-            key.length_mm + 1.0,
-            cq.Vector(floor, -key.width_mm / 2, design.shaft.length - key.length_mm),
+            2 * slot.half_width,
+            slot.length + 1.0,
+            cq.Vector(slot.floor, -slot.half_width, slot.start),
         )
     ]
 

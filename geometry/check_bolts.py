@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from math import asin, ceil, pi, sin
 
 from flexspline.geometry.bounds import TINY, above, below, lengths
-from flexspline.geometry.design import SMALLEST_MM, Cup, Hat, Shaft
 from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.fields import SMALLEST_MM
+from flexspline.geometry.shapes import Cup, Hat, Shaft
 
 
 def bolt_faults(

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from math import hypot, inf, sqrt
 
 from flexspline.geometry.bounds import TINY, from_zero, lengths, upto
-from flexspline.geometry.design import Cup, Hat
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.shapes import Cup, Hat
 
 PREFIX = "flexspline."
 

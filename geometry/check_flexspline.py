@@ -19,9 +19,10 @@ from flexspline.geometry.bounds import (
 from flexspline.geometry.check_bolts import bolt_faults
 from flexspline.geometry.check_fillets import PREFIX, fault, fillet_faults
 from flexspline.geometry.culprits import culprits
-from flexspline.geometry.design import SMALLEST_MM, Cup, Hat
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.shapes import Cup, Hat
 
 
 def flexspline_faults(f: Cup | Hat, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:

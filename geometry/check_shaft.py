@@ -20,9 +20,10 @@ from flexspline.geometry.bounds import (
     upto,
 )
 from flexspline.geometry.check_bolts import bolt_faults
-from flexspline.geometry.design import SMALLEST_MM, Keyway, Shaft, ShaftSegment
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.shapes import Keyway, Shaft, ShaftSegment
 
 STEP_mm = 2 * SMALLEST_MM
 """Of a diameter: the CAD kernel sees half of it."""
@@ -42,8 +43,8 @@ def shaft_faults(s: Shaft) -> Iterator[DesignError]:
         ("segment[0].inner_diameter_mm", first.inner_diameter_mm),
         ("segment[0].outer_diameter_mm", first.outer_diameter_mm),
     )
-    if s.keyway and not segments:
-        yield from _keyway_faults(s, s.keyway)
+    if s.keyway and s.slot and not segments:
+        yield from _keyway_faults(s, s.keyway, s.slot.floor)
 
 
 def _segment_faults(s: Shaft) -> Iterator[DesignError]:
@@ -188,10 +189,9 @@ def _too_short(s: Shaft) -> DesignError:
     )
 
 
-def _keyway_faults(s: Shaft, key: Keyway) -> Iterator[DesignError]:
+def _keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:
     last = s.segment[-1]
     radius = last.outer_diameter_mm / 2
-    floor = radius - key.depth_mm
     if key.length_mm >= s.length - TINY:
         yield DesignError(
             "shaft.keyway.length_mm",

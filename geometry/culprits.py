@@ -9,9 +9,10 @@ from collections.abc import Iterator
 
 from flexspline.geometry.bounds import TINY, above, below, lengths
 from flexspline.geometry.check_fillets import fault
-from flexspline.geometry.design import SMALLEST_MM, Cup, Hat
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
+from flexspline.geometry.shapes import Cup, Hat
 
 ENOUGH = 2
 """Others that contradict a figure."""

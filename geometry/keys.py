@@ -9,6 +9,7 @@ from typing import Any
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
+from flexspline.geometry.part import Part
 
 STEP = re.compile(r"([A-Za-z_]\w*)(?:\[(\d+)\])?")
 HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
@@ -41,8 +42,8 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     return design_from(tables)
 
 
-def lengths(design: Design, part: str) -> dict[str, float]:
-    """Dotted keys of all lengths above 0 [mm] that the part's meridian has."""
+def lengths(part: Part) -> dict[str, float]:
+    """Dotted keys of all lengths above 0 [mm] that a part's meridian has."""
     found: dict[str, float] = {}
 
     def walk(prefix: str, value: Any) -> None:
@@ -56,7 +57,7 @@ def lengths(design: Design, part: str) -> dict[str, float]:
         elif prefix.endswith("_mm") and not prefix.endswith(HOLES) and value > 0:
             found[prefix] = float(value)
 
-    walk(part, _tables(design)[part])
+    walk(part.name, part.shape.model_dump(mode="json", exclude_none=True))
     return found
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import asin, pi, sqrt
 
-from flexspline.geometry.design import Cup, Design, Shaft
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.design import Design
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
 
 GRAMS_PER_MM3 = 1e-6
 """Of 1 kg/m³."""
@@ -30,42 +31,36 @@ class Masses:
 
 def masses(design: Design) -> Masses:
     """What both parts weigh."""
-    flexspline, shaft = design.material_of("flexspline"), design.material_of("shaft")
+    flexspline, shaft = design.parts
     return Masses(
-        part_mass_g(design, "flexspline"),
-        part_mass_g(design, "shaft"),
-        flexspline.density_kg_per_m3,
-        shaft.density_kg_per_m3,
-        flexspline.density_stated,
-        shaft.density_stated,
+        mass_g(flexspline),
+        mass_g(shaft),
+        flexspline.material.density_kg_per_m3,
+        shaft.material.density_kg_per_m3,
+        flexspline.material.density_stated,
+        shaft.material.density_stated,
     )
 
 
-def part_mass_g(design: Design, part: str) -> float:
-    """Mass [g] of ``"flexspline"`` or ``"shaft"`` of its material's density, teeth left out."""
-    volume = meridian(design, part).volume - _holes(design, part)
-    if part == "shaft":
-        volume -= _keyway(design.shaft)
-    return volume * design.material_of(part).density_kg_per_m3 * GRAMS_PER_MM3
+def mass_g(part: Part) -> float:
+    """Mass [g] of a part of its material's density, teeth left out."""
+    volume = part.meridian.volume - _holes(part)
+    if isinstance(part.shape, Shaft):
+        volume -= _keyway(part.shape)
+    return volume * part.material.density_kg_per_m3 * GRAMS_PER_MM3
 
 
-def _holes(design: Design, part: str) -> float:
-    f, shaft = design.flexspline, design.shaft
-    if part == "shaft":
-        bolts, depth = shaft.bolts, shaft.segment[0].length_mm
-    else:
-        bolts = f.bolts
-        depth = f.boss_thickness_mm if isinstance(f, Cup) else f.flange_thickness_mm
-    return bolts.count * pi * bolts.hole_radius**2 * depth if bolts else 0.0
+def _holes(part: Part) -> float:
+    bolts = part.bolts
+    return bolts.count * pi * bolts.hole_radius**2 * part.hole_depth if bolts else 0.0
 
 
 def _keyway(shaft: Shaft) -> float:
-    """Slot with a plane floor at the last radius less its depth, through all segments it reaches."""
-    key = shaft.keyway
-    if key is None:
+    """Slot with a plane floor, through all segments it reaches."""
+    slot = shaft.slot
+    if slot is None:
         return 0.0
-    floor = shaft.segment[-1].outer_diameter_mm / 2 - key.depth_mm
-    half, left, volume = key.width_mm / 2, key.length_mm, 0.0
+    floor, half, left, volume = slot.floor, slot.half_width, slot.length, 0.0
     for segment in reversed(shaft.segment):
         length = min(left, segment.length_mm)
         radius = segment.outer_diameter_mm / 2

@@ -10,8 +10,8 @@ from math import acos, tan
 
 import numpy as np
 
-from flexspline.geometry.design import Cup, Design, Hat, Shaft
 from flexspline.geometry.outline import SAME, Meridian, Point, Segment, distance
+from flexspline.geometry.shapes import Cup, Hat, Shaft
 
 
 @dataclass(frozen=True)
@@ -148,12 +148,11 @@ def shaft_meridian(s: Shaft) -> Meridian:
     return _close(corners, cuts)
 
 
-def meridian(design: Design, part: str) -> Meridian:
-    """Outline of ``"flexspline"`` or ``"shaft"``."""
-    if part == "shaft":
-        return shaft_meridian(design.shaft)
-    f = design.flexspline
-    return cup_meridian(f) if isinstance(f, Cup) else hat_meridian(f)
+def meridian_of(shape: Cup | Hat | Shaft) -> Meridian:
+    """Outline of any part."""
+    if isinstance(shape, Shaft):
+        return shaft_meridian(shape)
+    return cup_meridian(shape) if isinstance(shape, Cup) else hat_meridian(shape)
 
 
 def with_narrow_seat(outline: Meridian, share: float) -> Meridian:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from flexspline.geometry.check_fillets import corner_wall
-from flexspline.geometry.design import Cup, Design
+from flexspline.geometry.design import Design
+from flexspline.geometry.shapes import Cup
 
 ROOT_TOLERANCE = 0.15
 """Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""

@@ -8,8 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from flexspline.geometry.design import Design
-from flexspline.geometry.outline import Meridian, Segment
+from flexspline.geometry.outline import Segment
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
 
 SYMMETRY_START = "symmetry_start"
 SYMMETRY_END = "symmetry_end"
@@ -81,22 +82,20 @@ def sector_planes(sector_deg: float) -> list[Surface]:
     ]
 
 
-def part_surfaces(design: Design, part: str, outline: Meridian, sector_deg: float) -> list[Surface]:
+def part_surfaces(part: Part, sector_deg: float) -> list[Surface]:
     """Every surface that a face of the part may lie on; earlier ones win where two coincide."""
     found: list[Surface] = sector_planes(sector_deg)
-    found += [Swept(s) for s in outline.segments if not s.on_axis]
-    bolts = (design.shaft if part == "shaft" else design.flexspline).bolts
-    if bolts is not None:
-        found += [HoleWall(centre, bolts.hole_radius) for centre in bolts.centres]
-    if part == "shaft":
-        found.append(Plane((0, 0, design.shaft.segment[0].length_mm), (0, 0, 1)))
-        if design.shaft.keyway:
-            key = design.shaft.keyway
-            floor = design.shaft.segment[-1].outer_diameter_mm / 2 - key.depth_mm
-            found += [
-                Plane((floor, 0, 0), (1, 0, 0)),
-                Plane((0, key.width_mm / 2, 0), (0, 1, 0)),
-                Plane((0, -key.width_mm / 2, 0), (0, 1, 0)),
-                Plane((0, 0, design.shaft.length - key.length_mm), (0, 0, 1)),
-            ]
+    found += [Swept(s) for s in part.meridian.segments if not s.on_axis]
+    if part.bolts is not None:
+        found += [HoleWall(centre, part.bolts.hole_radius) for centre in part.bolts.centres]
+    if isinstance(part.shape, Shaft):  # its holes may be blind
+        found.append(Plane((0, 0, part.hole_depth), (0, 0, 1)))
+    if part.keyway is not None:
+        slot = part.keyway
+        found += [
+            Plane((slot.floor, 0, 0), (1, 0, 0)),
+            Plane((0, slot.half_width, 0), (0, 1, 0)),
+            Plane((0, -slot.half_width, 0), (0, 1, 0)),
+            Plane((0, 0, slot.start), (0, 0, 1)),
+        ]
     return found

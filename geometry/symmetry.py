@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from flexspline.geometry.design import Design
+from flexspline.geometry.part import Part
 
 LoadCase = Literal["torsion", "lobes", "ellipse"]
 ARBITRARY_DEG = 30.0
@@ -31,17 +31,17 @@ class Sector:
         return 360.0 / self.degrees
 
 
-def sector_of(design: Design, part: str, case: LoadCase) -> Sector:
+def sector_of(part: Part, case: LoadCase) -> Sector:
     """Sector for ``"torsion"`` (even torque), ``"lobes"`` or the wave generator's ``"ellipse"``.
 
     N equal holes under even torque leave 1/(2N): every plane through the axis and a hole, or midway
     between two, is one of antisymmetry. A keyway, with the first hole in its plane, leaves half.
     The two lobes leave a quarter if N is even (holes mirrored about 90°), else half.
     """
-    holes = (design.shaft if part == "shaft" else design.flexspline).bolt_count
+    holes = part.bolts.count if part.bolts else 0
     antisymmetric = case != "ellipse"
     if case == "torsion":
-        if part == "shaft" and design.shaft.keyway is not None:
+        if part.keyway is not None:
             return Sector(180.0, "1/2", antisymmetric)
         if holes == 0:
             return Sector(ARBITRARY_DEG, "1/12", antisymmetric)

@@ -16,9 +16,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from flexspline.geometry.cad import build_solid, partition_faces
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import GeometryError
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import HoleWall, Surface, part_surfaces
 
 if TYPE_CHECKING:
@@ -63,8 +62,7 @@ class TaggedSurface:
 
 
 def tagged_surface(
-    design: Design,
-    part: str,
+    part: Part,
     sector_deg: float,
     chord_error: float,
     edge_spacing: float,
@@ -78,9 +76,8 @@ def tagged_surface(
     ------
     GeometryError : no valid solid, a face on no known surface, or a surface that is not watertight.
     """
-    outline = meridian(design, part)
-    solid = build_solid(design, part, sector_deg)
-    surfaces = part_surfaces(design, part, outline, sector_deg)
+    solid = build_solid(part, sector_deg)
+    surfaces = part_surfaces(part, sector_deg)
     _mesh_faces(solid, chord_error)
     points: list[np.ndarray] = []
     triangles: list[np.ndarray] = []
@@ -104,8 +101,8 @@ def tagged_surface(
         (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     )
     faces, surface_of = faces[solid_faces], surface_of[solid_faces]
-    _check_watertight(vertices, faces, part)
-    cut_v, cut_t = _cuts(partition_faces(solid, outline, sector_deg, cut_reach), chord_error)
+    _check_watertight(vertices, faces, part.name)
+    cut_v, cut_t = _cuts(partition_faces(solid, part.meridian, sector_deg, cut_reach), chord_error)
     sharp, critical = _sharp_edges(solid, face_surface, surfaces, edge_spacing)
     return TaggedSurface(
         vertices=vertices,
@@ -186,12 +183,12 @@ def _merged(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np
     return vertices[first], inverse.ravel()[triangles]
 
 
-def _check_watertight(vertices: np.ndarray, triangles: np.ndarray, part: str) -> None:
+def _check_watertight(vertices: np.ndarray, triangles: np.ndarray, part_name: str) -> None:
     import trimesh
 
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
-        raise GeometryError(f"the tessellated surface of the {part} is not watertight")
+        raise GeometryError(f"the tessellated surface of the {part_name} is not watertight")
 
 
 def _cuts(faces: list[cq.Face], chord_error: float) -> tuple[np.ndarray, np.ndarray]:

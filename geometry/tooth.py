@@ -13,8 +13,9 @@ from math import acos, asin, cos, inf, pi, radians, sin, tan
 
 from flexspline.geometry.bounds import beside, span
 from flexspline.geometry.check_flexspline import thickest_ring
-from flexspline.geometry.design import SMALLEST_MM, Design
+from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.outline import SAME, Meridian, Point, Segment
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 

@@ -12,7 +12,6 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
@@ -23,7 +22,7 @@ from flexspline.pipeline.load_cases import (
     rim_answers,
     wave_generator_field,
 )
-from flexspline.pipeline.parts import DRIVEN, AnalysisContext, MeshedPart, PartModel, TwistedPart
+from flexspline.pipeline.parts import AnalysisContext, MeshedPart, PartModel, TwistedPart
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.pipeline.wave_generator import sharp_edges
 
@@ -205,27 +204,27 @@ def backlash_of(design: Design, found: Stiffnesses) -> Backlash:
     return backlash(design, found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad)
 
 
-def torque_field(part: PartModel) -> SolidField:
+def torque_field(model: PartModel) -> SolidField:
     """Displacement and stress under the design's torque T_L; the peak from the model that answers."""
-    design = part.context.design
+    design = model.context.design
     torque = design.load.torque_Nm
-    twisted = part.twisted()
-    with part.context.progress.stage(f"stress of the {part.name} under torque"):
+    twisted = model.twisted()
+    with model.context.progress.stage(f"stress of the {model.name} under torque"):
         solved = stress_field(
             twisted.meshed.mesh,
             twisted.displacement * (torque / twisted.stiffness.upper_Nm_per_rad),
-            part.material,
-            f"{part.name} under T_L = {torque:g} N·m",
-            sharp_edges(part, twisted.meshed),
+            model.material,
+            f"{model.name} under T_L = {torque:g} N·m",
+            sharp_edges(model, twisted.meshed),
         )
-        if not part.axisymmetric:
+        if not model.axisymmetric:
             return solved
         exact = torsion_stress(
-            meridian(design, part.name),
-            part.material,
-            DRIVEN[part.name],
+            model.part.meridian,
+            model.material,
+            model.part.driven,
             torque,
-            part.exclusion_mm,
+            model.part.exclusion_mm,
             STRESS_TOLERANCE,
             Deadline(STAGE_SECONDS),
         )

@@ -12,6 +12,7 @@ from typing import Literal
 from flexspline.fea.types import SolidField, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import CACHED_TYPES, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
@@ -31,7 +32,6 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
 from flexspline.pipeline.study.sensitivity import Slope, sensitivities
 
-PartName = Literal["flexspline", "shaft"]
 StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
 RIM_CASES: tuple[RimCase, ...] = ("lobes", "lobes_unsupported", "lobes_contact")
 
@@ -110,7 +110,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
         return wave_generator_field(context.part("flexspline"))
     if case not in ("flexspline_torque", "shaft_torque"):
         raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
-    return torque_field(context.part(case.removesuffix("_torque")))
+    return torque_field(context.part("shaft" if case == "shaft_torque" else "flexspline"))
 
 
 def backlash(design: Design, K_b: float | None = None, K_e: float | None = None) -> Backlash:

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from math import pi, sqrt
 
 from flexspline.fea.types import NMM_PER_NM, StressPeak
-from flexspline.geometry.design import Cup, Design
+from flexspline.geometry.design import Design
+from flexspline.geometry.part import PartName
+from flexspline.geometry.shapes import Cup
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
 
 NOT_SOLVED = (
@@ -59,14 +61,14 @@ def _limits(design: Design, K: float, peaks: Mapping[str, StressPeak]) -> Iterat
             yield LinearLimit(torque, f"the {PART_OF[name]}'s peak stress reaches {words}")
 
 
-def _limit(design: Design, part: str) -> tuple[float, str]:
-    stated = design.material_of(part).fatigue_limit_MPa
+def _limit(design: Design, part: PartName) -> tuple[float, str]:
+    stated = design.part(part).material.fatigue_limit_MPa
     if stated is not None and stated <= HIGHEST_STRENGTH_MPA:
         return stated, f"the fatigue limit of {stated:g} MPa"
     return HIGHEST_STRENGTH_MPA, f"{HIGHEST_STRENGTH_MPA:g} MPa, more than any metal of gears bears"
 
 
-def _nominal_mises(design: Design) -> Iterator[tuple[str, str, float]]:
+def _nominal_mises(design: Design) -> Iterator[tuple[PartName, str, float]]:
     """Part, place, and von Mises stress √3·τ there per torque [MPa per N·m], by equilibrium alone."""
     f = design.flexspline
     yield "flexspline", "the flexspline's tube", _tube(f.wall_radius, f.inner_radius)

@@ -20,22 +20,17 @@ from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_refinements, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic, Stiffness
-from flexspline.geometry.design import Cup, Design, Hat, Shaft
+from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.exclusion import exclusion_mm
 from flexspline.geometry.keys import without_holes
-from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.shapes import Cup, Hat
 from flexspline.pipeline.load_cases import STRESS_TOLERANCE
-from flexspline.pipeline.parts import DRIVEN
-from flexspline.pipeline.study.evaluate import with_equivalent_ring
+from flexspline.pipeline.study.evaluate import Shape, of_1_GPa, with_equivalent_ring
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
 RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]
 KEPT = 256
 """Solved parts remembered: enough to go back and forth with one slider."""
-
-Part = Cup | Hat | Shaft
 
 
 @dataclass(frozen=True)
@@ -56,10 +51,10 @@ class Bounded:
 def left_out(design: Design) -> tuple[str, ...]:
     """What the fast model does not see, in words; empty for bodies of revolution."""
     found = []
-    for part, name in ((design.flexspline, "flexspline"), (design.shaft, "shaft")):
-        if part.bolt_count:
-            found.append(f"{part.bolt_count} bolt holes of the {name}")
-    if design.shaft.keyway is not None:
+    for part in design.parts:
+        if part.bolts:
+            found.append(f"{part.bolts.count} bolt holes of the {part.name}")
+    if design.part("shaft").keyway is not None:
         found.append("the keyway")
     return tuple(found)
 
@@ -80,7 +75,7 @@ def torsion(design: Design) -> tuple[Bounded, Bounded]:
     ComputationError : the mesh failed or the tolerance was not met.
     """
     plain, tolerance = revolved(design), design.solver.tolerance_pct / 100
-    own, shaft = plain.material.flexspline, plain.shaft_material
+    own, shaft = plain.material.flexspline, plain.part("shaft").material
     K_b = _torsion(plain.flexspline, own.poissons_ratio, tolerance)
     K_e = _torsion(plain.shaft, shaft.poissons_ratio, tolerance)
     found = _scaled(K_b, own.youngs_modulus_GPa), _scaled(K_e, shaft.youngs_modulus_GPa)
@@ -105,9 +100,9 @@ def field(design: Design, view: View) -> RevolvedField:
     if view == "wave_generator":
         nu = design.material.flexspline.poissons_ratio
         return _on_wave_generator(design, _ellipse(design.flexspline, nu))
-    part: Part = design.shaft if view == "shaft_torque" else design.flexspline
-    own = design.shaft_material if view == "shaft_torque" else design.material.flexspline
-    unit = _twisted(part, own.poissons_ratio)
+    part = design.part("shaft" if view == "shaft_torque" else "flexspline")
+    own = part.material
+    unit = _twisted(part.shape, own.poissons_ratio)
     torque = design.load.torque_Nm
     return _loaded(unit, torque, torque / own.youngs_modulus_GPa)
 
@@ -136,17 +131,10 @@ def _loaded(unit: RevolvedField, stress: float, displacement: float) -> Revolved
     )
 
 
-def outline(part: Part) -> Meridian:
-    """A part's meridian."""
-    if isinstance(part, Shaft):
-        return shaft_meridian(part)
-    return cup_meridian(part) if isinstance(part, Cup) else hat_meridian(part)
-
-
 def profile(design: Design, view: View, chord_error: float) -> np.ndarray:
     """The meridian (n, 2) [mm] of the part in view, arcs as chords: its shape before any solve."""
-    part: Part = design.shaft if view == "shaft_torque" else design.flexspline
-    return outline(part).polygon(chord_error)
+    part = design.part("shaft" if view == "shaft_torque" else "flexspline")
+    return part.meridian.polygon(chord_error)
 
 
 def _scaled(of_1_GPa: Stiffness, E_GPa: float) -> Bounded:
@@ -158,27 +146,24 @@ def _scaled(of_1_GPa: Stiffness, E_GPa: float) -> Bounded:
     )
 
 
-def _unit(nu: float) -> Elastic:
-    return Elastic(1e3, nu)
-
-
-def _driven(part: Part) -> str:
-    return DRIVEN["shaft" if isinstance(part, Shaft) else "flexspline"]
+@lru_cache(maxsize=KEPT)
+def _torsion(shape: Shape, nu: float, tolerance: float) -> Stiffness:
+    part = of_1_GPa(shape, nu)
+    return torsional_stiffness(part.meridian, Elastic.of(part.material), part.driven, tolerance)
 
 
 @lru_cache(maxsize=KEPT)
-def _torsion(part: Part, nu: float, tolerance: float) -> Stiffness:
-    return torsional_stiffness(outline(part), _unit(nu), _driven(part), tolerance)
+def _lobes(shape: Shape, nu: float, tolerance: float, supported: bool) -> Stiffness:
+    part = of_1_GPa(shape, nu)
+    return lobe_stiffness(part.meridian, Elastic.of(part.material), supported, tolerance)
 
 
 @lru_cache(maxsize=KEPT)
-def _lobes(part: Part, nu: float, tolerance: float, supported: bool) -> Stiffness:
-    return lobe_stiffness(outline(part), _unit(nu), supported, tolerance)
-
-
-@lru_cache(maxsize=KEPT)
-def _contact(part: Part, nu: float, tolerance: float, supported: bool) -> Stiffness:
-    return contact_stiffness(outline(part), _unit(nu), _lobes(part, nu, tolerance, supported))
+def _contact(shape: Shape, nu: float, tolerance: float, supported: bool) -> Stiffness:
+    part = of_1_GPa(shape, nu)
+    return contact_stiffness(
+        part.meridian, Elastic.of(part.material), _lobes(shape, nu, tolerance, supported)
+    )
 
 
 class _Refining:
@@ -196,25 +181,31 @@ class _Refining:
 
 
 @lru_cache(maxsize=1)
-def _begun(part: Cup | Hat, nu: float) -> _Refining:
+def _begun(shape: Cup | Hat, nu: float) -> _Refining:
     """For w0 = 1 mm; only the newest, for it holds its model."""
-    apart = exclusion_mm(part)
-    meshes = ellipse_refinements(outline(part), _unit(nu), 1.0, apart, STRESS_TOLERANCE)
+    part = of_1_GPa(shape, nu)
+    apart = part.exclusion_mm
+    meshes = ellipse_refinements(
+        part.meridian, Elastic.of(part.material), 1.0, apart, STRESS_TOLERANCE
+    )
     return _Refining(meshes)
 
 
 @lru_cache(maxsize=KEPT // 8)
-def _ellipse(part: Cup | Hat, nu: float) -> RevolvedField:
+def _ellipse(shape: Cup | Hat, nu: float) -> RevolvedField:
     """For w0 = 1 mm; the field is kept, so fewer of them."""
     try:
-        return _begun(part, nu).last()
+        return _begun(shape, nu).last()
     except ComputationError:
         _begun.cache_clear()  # what ended in an error must not pass for the last mesh
         raise
 
 
 @lru_cache(maxsize=KEPT // 8)
-def _twisted(part: Part, nu: float) -> RevolvedField:
+def _twisted(shape: Shape, nu: float) -> RevolvedField:
     """For 1 N·m; the field is kept, so fewer of them."""
-    apart = exclusion_mm(part)
-    return torsion_stress(outline(part), _unit(nu), _driven(part), 1.0, apart, STRESS_TOLERANCE)
+    part = of_1_GPa(shape, nu)
+    apart = part.exclusion_mm
+    return torsion_stress(
+        part.meridian, Elastic.of(part.material), part.driven, 1.0, apart, STRESS_TOLERANCE
+    )

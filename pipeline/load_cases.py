@@ -12,7 +12,7 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.types import SolidField, Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.meridian import meridian, with_narrow_seat
+from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.parts import PartModel, is_lasting
@@ -94,7 +94,7 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
-    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.exclusion_mm
+    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
         narrow = with_narrow_seat(outline, NARROW_SEAT)
@@ -120,7 +120,7 @@ def _by_harmonics(
 
     def timed() -> T:
         with context.progress.stage(f"{HARMONICS[figure]} by Fourier harmonics"):
-            return make(meridian(context.design, "flexspline"), Deadline(STAGE_SECONDS))
+            return make(flexspline.part.meridian, Deadline(STAGE_SECONDS))
 
     inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
     return context.cache.get("harmonics", inputs, timed, is_lasting)[0]
@@ -149,7 +149,7 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
 
 def _revolved_peak(flexspline: PartModel) -> StressPeak:
     design = flexspline.context.design
-    w0, apart = design.gear.centre_distance_mm, flexspline.exclusion_mm
+    w0, apart = design.gear.centre_distance_mm, flexspline.part.exclusion_mm
     return _by_harmonics(
         flexspline,
         "wave_generator_peak",

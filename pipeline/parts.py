@@ -21,15 +21,13 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Elastic, Stiffness, StressPeak, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.exclusion import exclusion_mm
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.symmetry import Sector, sector_of
 from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.drawn_teeth import of_toothed, ring_of, with_plain_ring
 from flexspline.pipeline.progress import Progress
 
-DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 RIM_ELEMENTS = 40_000
 """About 180 000 unknowns and 5 s for each of the two lobe cases."""
 EDGE_POINTS = 8
@@ -70,12 +68,12 @@ class AnalysisContext:
         """The plain ring that stands for drawn teeth; None where none are drawn."""
         return ring_of(self.design, self.cache, self.progress)
 
-    def part(self, name: str) -> PartModel:
+    def part(self, name: PartName) -> PartModel:
         """Its model; a flexspline's teeth enter it as the equivalent plain ring."""
         if name == "shaft" or self.ring is None:
-            return PartModel(self, name)
+            return PartModel(self, self.design.part(name))
         plain = replace(self, design=with_plain_ring(self.design, self.ring))
-        return PartModel(plain, name, toothed=True)
+        return PartModel(plain, plain.design.part(name), toothed=True)
 
 
 def is_lasting(found: Stiffness | StressPeak) -> bool:
@@ -91,33 +89,30 @@ class PartModel:
     """
 
     context: AnalysisContext
-    name: str
+    part: Part
     toothed: bool = False
 
     @property
+    def name(self) -> PartName:
+        return self.part.name
+
+    @property
     def material(self) -> Elastic:
-        design = self.context.design
-        own = design.shaft_material if self.name == "shaft" else design.material.flexspline
-        return Elastic.of(own)
+        return Elastic.of(self.part.material)
 
     @property
     def sector(self) -> Sector:
-        return sector_of(self.context.design, self.name, "torsion")
+        return sector_of(self.part, "torsion")
 
     @property
-    def is_revolved(self) -> bool:
-        """Whether the part is a body of revolution."""
-        design = self.context.design
-        if self.name == "shaft":
-            return not design.shaft.bolt_count and design.shaft.keyway is None
-        return not design.flexspline.bolt_count
+    def first_spec(self) -> MeshSpec:
+        """Of its first, coarse mesh."""
+        return first_spec(self.part, self.context.design.solver.edge_length_mm)
 
     @property
     def geometry_key(self) -> Mapping[str, Any]:
         """What the part's shape depends on, and nothing else; its teeth are in the ring by now."""
-        design = self.context.design
-        own = design.shaft if self.name == "shaft" else design.flexspline
-        shape = own.model_dump(mode="json", exclude={"teeth", "tooth_flank"})
+        shape = self.part.shape.model_dump(mode="json", exclude={"teeth", "tooth_flank"})
         return {"part": self.name, "shape": shape}
 
     @property
@@ -132,38 +127,32 @@ class PartModel:
     @property
     def torsion_key(self) -> Mapping[str, Any]:
         """What the solid solution depends on."""
-        return {**self.revolved_key, "spec": asdict(first_spec(self.context.design, self.name))}
-
-    @property
-    def exclusion_mm(self) -> float:
-        """The stress rule's distance from sharp edges and patch edges."""
-        design = self.context.design
-        return exclusion_mm(design.shaft if self.name == "shaft" else design.flexspline)
+        return {**self.revolved_key, "spec": asdict(self.first_spec)}
 
     @property
     def _edge_spacing(self) -> float:
-        return self.exclusion_mm / EDGE_POINTS
+        return self.part.exclusion_mm / EDGE_POINTS
 
     @cached_property
     def _surface(self) -> TaggedSurface:
         with self.context.progress.stage(f"CAD of the {self.name}"):
             return surface_to_mesh(
-                self.context.design, self.name, self.sector.degrees, self._edge_spacing
+                self.part, self.first_spec, self.sector.degrees, self._edge_spacing
             )
 
     def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
         """The sector's mesh swept from the meridian; None for a part that only a mesher can mesh."""
-        design, degrees = self.context.design, self.sector.degrees
-        mesh = swept_mesh(design, self.name, degrees, spec, finer)
+        degrees = self.sector.degrees
+        mesh = swept_mesh(self.part, degrees, spec, finer)
         if mesh is None:
             return None
-        return MeshedPart(mesh, swept_edges(design, self.name, degrees, self._edge_spacing))
+        return MeshedPart(mesh, swept_edges(self.part, degrees, self._edge_spacing))
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """The sector's mesh to a specification: swept where that works, else by fTetWild."""
 
         def make() -> MeshedPart:
-            if can_be_swept(self.context.design, self.name):
+            if can_be_swept(self.part):
                 with self.context.progress.stage(f"mesh of the {self.name}"):
                     swept = self.swept(spec)
                 if swept is not None:
@@ -192,31 +181,32 @@ class PartModel:
         DesignError : that model is asked for and the part has holes or a keyway.
         """
         wanted = self.context.design.solver.model
-        if wanted == "axisymmetric" and not self.is_revolved:
+        if wanted == "axisymmetric" and not self.part.is_revolved:
             raise DesignError(
                 "solver.model",
                 wanted,
                 f"the {self.name} has bolt holes or a keyway and is no body of revolution;"
                 ' "solid" or "auto" works',
             )
-        return self.is_revolved and wanted != "solid"
+        return self.part.is_revolved and wanted != "solid"
 
     def _axisymmetric_stiffness(self) -> Stiffness:
-        design = self.context.design
-        tolerance = design.solver.tolerance_pct / 100
+        tolerance = self.context.design.solver.tolerance_pct / 100
 
         def make() -> Stiffness:
             with self.context.progress.stage(f"axisymmetric bounds of the {self.name}"):
-                outline = meridian(design, self.name)
                 return torsional_stiffness(
-                    outline, self.material, DRIVEN[self.name], tolerance, Deadline(STAGE_SECONDS)
+                    self.part.meridian,
+                    self.material,
+                    self.part.driven,
+                    tolerance,
+                    Deadline(STAGE_SECONDS),
                 )
 
         return self.context.cache.get("axisymmetric", self.revolved_key, make, is_lasting)[0]
 
     def twisted(self) -> TwistedPart:
         """The solid model turned by 1 rad, refined until the tolerance is met."""
-        design = self.context.design
 
         def make() -> TwistedPart:
             with self.context.progress.stage(f"torsion of the {self.name}"):
@@ -229,16 +219,16 @@ class PartModel:
 
                 found = solid_stiffness(
                     mesher,
-                    first_spec(design, self.name),
+                    self.first_spec,
                     self.material,
-                    DRIVEN[self.name],
-                    design.solver.tolerance_pct / 100,
+                    self.part.driven,
+                    self.context.design.solver.tolerance_pct / 100,
                     self.sector.label,
                     lambda text: self.context.progress.note(f"  {self.name}: {text}"),
                 )
             sharp = next(iter(edges.values()))
             meshed = [MeshedPart(mesh, sharp) for mesh in found.meshes]
-            times = sector_of(design, self.name, "ellipse").degrees / self.sector.degrees
+            times = sector_of(self.part, "ellipse").degrees / self.sector.degrees
             sizes = [len(m.mesh.cells) * times for m in meshed]
             rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
             return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
@@ -36,7 +35,7 @@ def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
     """
     context = flexspline.context
     tolerance = context.design.solver.tolerance_pct / 100
-    sector = sector_of(context.design, "flexspline", "lobes")
+    sector = sector_of(flexspline.part, "lobes")
 
     def make() -> Stiffness:
         with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
@@ -62,7 +61,7 @@ def _meshes(
     ------
     SolidError : the next one would be too large, or fails a check.
     """
-    own = range(MESHES if can_be_swept(flexspline.context.design, "flexspline") else 0)
+    own = range(MESHES if can_be_swept(flexspline.part) else 0)
     if supported or not own:
         yield _of_torsion(flexspline, sector, supported)
     for number in own:
@@ -85,7 +84,7 @@ def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
     design = flexspline.context.design
     f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
-    swept = flexspline.swept(first_spec(design, "flexspline"), finer)
+    swept = flexspline.swept(flexspline.first_spec, finer)
     if swept is None:
         raise SolidError("the swept mesh fails a check")
     size = round(len(swept.mesh.cells) * sector.degrees / swept.mesh.sector_deg)

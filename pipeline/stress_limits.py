@@ -6,12 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from flexspline.fea.types import StressPeak
-from flexspline.geometry.design import Design, Material
+from flexspline.geometry.design import Design
+from flexspline.geometry.material import Material
+from flexspline.geometry.part import PartName
 
 HIGHEST_STRENGTH_MPA = 2000.0
 """Spring wire, maraging steel and metallic glass yield at about this; nothing that a flexspline is made of is
 linear elastic beyond."""
-PART_OF = {
+PART_OF: Mapping[str, PartName] = {
     "wave_generator_peak": "flexspline",
     "torque_peak": "flexspline",
     "shaft_torque_peak": "shaft",
@@ -72,7 +74,7 @@ def limits_passed(design: Design, peaks: Mapping[str, StressPeak]) -> Iterator[P
     for name, peak in peaks.items():
         if peak.at_excluded_border and name != "wave_generator_peak":
             continue
-        limit = design.material_of(PART_OF[name]).fatigue_limit_MPa
+        limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
         if limit is not None and peak.mises_MPa > limit:
             own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
             yield PassedLimit(name, peak, limit, f"material.{own}.fatigue_limit_MPa")

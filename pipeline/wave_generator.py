@@ -8,7 +8,6 @@ from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.cases import Model, ellipse
-from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.swept import can_be_swept
@@ -16,7 +15,6 @@ from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import SolidField
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.parts import MeshedPart, PartModel
 
@@ -64,13 +62,14 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
 def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     """Where (r, z) the stress is largest without the holes; None where no mesh can use or find it."""
-    design = flexspline.context.design
-    if not can_be_swept(design, flexspline.name):
+    part, w0 = flexspline.part, flexspline.context.design.gear.centre_distance_mm
+    if not can_be_swept(part):
         return None
-    outline, w0 = meridian(design, flexspline.name), design.gear.centre_distance_mm
-    apart = flexspline.exclusion_mm
     try:
-        return ellipse_stress(outline, flexspline.material, w0, apart, PLACE_TOLERANCE).peak_rz
+        found = ellipse_stress(
+            part.meridian, flexspline.material, w0, part.exclusion_mm, PLACE_TOLERANCE
+        )
+        return found.peak_rz
     except ComputationError:
         return None
 
@@ -85,13 +84,13 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
     None where a check fails or the mesh would be larger than MOST_ELEMENTS at its coarsest.
     """
     design = flexspline.context.design
-    spec = first_spec(design, flexspline.name)
+    spec = flexspline.first_spec
     far = spec.grading.far
     if design.solver.edge_length_mm is None:
         far *= ELSEWHERE
     even = replace(spec, grading=replace(spec.grading, near=far, far=far))
     edge = EDGE_WALLS * design.flexspline.wall_thickness_mm
-    times = sector_of(design, flexspline.name, "ellipse").degrees / flexspline.sector.degrees
+    times = sector_of(flexspline.part, "ellipse").degrees / flexspline.sector.degrees
     with flexspline.context.progress.stage("mesh for the wave generator"):
         for coarser in COARSER:
             finer = Finer(coarser * LARGEST_STEP, places, _reach_mm(flexspline), coarser * edge)
@@ -106,8 +105,8 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
 
 def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
     """The ellipse on a sector's mesh reflected to a quarter or half, and its peak that counts."""
-    design, progress = flexspline.context.design, flexspline.context.progress
-    sector = sector_of(design, flexspline.name, "ellipse")
+    progress = flexspline.context.progress
+    sector = sector_of(flexspline.part, "ellipse")
     with progress.stage("wave generator"):
         whole = unfolded(meshed.mesh, sector.degrees)
         progress.note(f"  {len(whole.cells)} elements, {sector.label} of the part")
@@ -120,6 +119,6 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
         )
 
 
-def sharp_edges(part: PartModel, meshed: MeshedPart) -> SharpEdges:
+def sharp_edges(model: PartModel, meshed: MeshedPart) -> SharpEdges:
     """The stress rule's edges and its distance."""
-    return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, part.exclusion_mm)
+    return SharpEdges(meshed.sharp_edges, meshed.mesh.sector_deg, model.part.exclusion_mm)

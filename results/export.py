@@ -14,7 +14,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.load_cases import wave_generator_field
-from flexspline.pipeline.parts import DRIVEN, AnalysisContext
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.atomic import write_bytes
 from flexspline.results.renders.whole import Parity, whole_part
@@ -29,12 +29,12 @@ def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
     Every file appears whole or not at all.
     """
     done: list[Path] = []
-    for name in ("flexspline", "shaft"):
-        with context.progress.stage(f"CAD of the whole {name}"):
-            solid = build_solid(context.design, name)
-            done.append(_whole(folder / f"{name}.step", partial(write_step, solid)))
+    for part in context.design.parts:
+        with context.progress.stage(f"CAD of the whole {part.name}"):
+            solid = build_solid(part)
+            done.append(_whole(folder / f"{part.name}.step", partial(write_step, solid)))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
-            done.append(_whole(folder / f"{name}.stl", stl))
+            done.append(_whole(folder / f"{part.name}.stl", stl))
     flexspline, shaft = context.part("flexspline"), context.part("shaft")
     fields: tuple[tuple[str, SolidField, Parity], ...] = (
         ("flexspline_torque", torque_field(flexspline), "antisymmetric"),
@@ -50,18 +50,18 @@ def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
 def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:
     """Both whole parts as STEP [mm]; nothing is solved."""
     done = []
-    for name in ("flexspline", "shaft"):
-        with progress.stage(f"CAD of the whole {name}"):
-            step = partial(write_step, build_solid(design, name))
-            done.append(_whole(folder / f"{name}.step", step))
+    for part in design.parts:
+        with progress.stage(f"CAD of the whole {part.name}"):
+            step = partial(write_step, build_solid(part))
+            done.append(_whole(folder / f"{part.name}.step", step))
     return done
 
 
 def write_decks(context: AnalysisContext, folder: Path) -> list[Path]:
     """The torsion case of both parts as CalculiX/Abaqus decks, on the meshes that gave K."""
     done = []
-    for name, driven in DRIVEN.items():
-        part = context.part(name)
+    for part in (context.part("flexspline"), context.part("shaft")):
+        name, driven = part.name, part.part.driven
         twisted = part.twisted()
         with context.progress.stage(f"deck of the {name}"):
             on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad

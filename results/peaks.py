@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexspline.fea.types import StressPeak
-from flexspline.geometry.design import Material
+from flexspline.geometry.material import Material
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.quantities import grouped, quantity
 

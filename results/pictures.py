@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.backlash import angle_rad
 from flexspline.pipeline.cache import Cache
@@ -34,7 +35,7 @@ from flexspline.results.renders.stress_picture import (
 )
 
 ARCSEC_PER_RAD = 180 / np.pi * 3600
-TITLES = {"flexspline": "Flexspline", "shaft": "Output shaft"}
+TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 ELLIPSE = "wave_generator"
 DRAWING = 5
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
@@ -135,7 +136,7 @@ def _here(write: Callable[..., None], *arguments: Any) -> bytes:
         return path.read_bytes()
 
 
-def _stress_inputs(context: AnalysisContext, part: str) -> Mapping[str, Any]:
+def _stress_inputs(context: AnalysisContext, part: PartName) -> Mapping[str, Any]:
     return {**context.part(part).torsion_key, "torque_Nm": context.design.load.torque_Nm}
 
 
@@ -170,7 +171,7 @@ def _views(
     fields, load = result.fields, result.design.load
     for name in names:
         key: dict[str, Any] = {"turning": TURNING}
-        part = name.removesuffix("_torque")
+        part: PartName = "shaft" if name == "shaft_torque" else "flexspline"
         if name == ELLIPSE:
             ellipse = name, fields[name], result.design.gear.centre_distance_mm
             make = partial(process.draw, write_turning_ellipse, *ellipse)

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from flexspline.geometry.design import Cup
 from flexspline.geometry.load import load_design
+from flexspline.geometry.shapes import Cup
 
 
 def _revolved() -> Cup:

@@ -13,8 +13,8 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
-from flexspline.geometry.design import Design
 from flexspline.geometry.outline import SAME, Meridian, Segment
+from flexspline.geometry.part import Part
 
 INTERFACE = "interface"
 HOLE = "hole"
@@ -128,13 +128,13 @@ class Column:
         return found
 
 
-def column_of(design: Design, part: str, outline: Meridian) -> Column | None:
+def column_of(part: Part) -> Column | None:
     """The column around the bolt circle; None where the meridian is no plain rectangle there.
 
     That is where a step or an arc of it lies over the holes, where it has steps to both sides of them,
     or where their land is too narrow.
     """
-    bolts = (design.shaft if part == "shaft" else design.flexspline).bolts
+    outline, bolts = part.meridian, part.bolts
     if bolts is None:
         return None
     circle, hole = float(np.hypot(*bolts.centres[0])), bolts.hole_radius
@@ -159,19 +159,11 @@ def column_of(design: Design, part: str, outline: Meridian) -> Column | None:
         return None
     if land < max(NARROW_OF_RADIUS * hole, NARROW_OF_HEIGHT * (z[1] - z[0])):
         return None
-    depth = _hole_depth(design, part)
-    return Column(inner, outer, interface, z[0], z[1], min(depth, z[1]), circle, hole)
+    depth = min(part.hole_depth, z[1])
+    return Column(inner, outer, interface, z[0], z[1], depth, circle, hole)
 
 
 def _radii(outline: Meridian) -> np.ndarray:
     """Radii of the outline's vertices, and along its arcs."""
     found = [s.at(np.linspace(0, 1, 2 if s.centre is None else 9))[:, 0] for s in outline.segments]
     return np.concatenate(found)
-
-
-def _hole_depth(design: Design, part: str) -> float:
-    """z down to which the bolt holes go: the first segment, the boss or the flange."""
-    if part == "shaft":
-        return design.shaft.segment[0].length_mm
-    f = design.flexspline
-    return f.boss_thickness_mm if f.kind == "cup" else f.flange_thickness_mm

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.sizing import Grading, refuse_beyond
-from flexspline.geometry.design import Design
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.tagged import TaggedSurface, tagged_surface
 
 CHORD_PER_ENVELOPE = 1.5
@@ -19,30 +20,29 @@ FINEST_SHARE = 20
 layer of long elements, not a part full of short ones."""
 
 
-def first_spec(design: Design, part: str) -> MeshSpec:
-    """The first, coarse mesh; `solver.edge_length_mm` fixes its largest edge.
+def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
+    """The first, coarse mesh; `edge_length_mm`, the design's `solver.edge_length_mm`, fixes its largest edge.
 
     Raises
     ------
     SolidError : that edge asks for more points on a radian of the part's outside than any mesh may have.
     """
-    if part == "shaft":
-        segments = design.shaft.segment
+    if isinstance(part.shape, Shaft):
+        segments = part.shape.segment
         wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
         outer = max(s.outer_diameter_mm for s in segments) / 2
         on_axis = any(s.inner_diameter_mm == 0 for s in segments)
-        far = min(max(0.45 * wall, outer / FINEST_SHARE), design.shaft.length / 8, outer / 3)
+        far = min(max(0.45 * wall, outer / FINEST_SHARE), part.length / 8, outer / 3)
         near, envelope = 0.4 * far, far / 100
     else:
-        f = design.flexspline
+        f = part.shape
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
         on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
-        far = min(max(5 * wall, outer / FINEST_SHARE), f.length_mm / 6, outer / 3)
+        far = min(max(5 * wall, outer / FINEST_SHARE), part.length / 6, outer / 3)
         near, envelope = min(wall, far / 2, outer / 50), wall / 20
-    if design.solver.edge_length_mm is not None:
-        far = design.solver.edge_length_mm
-        length = design.shaft.length if part == "shaft" else design.flexspline.length_mm
-        refuse_beyond(outer * length / far**2, far)  # before CAD makes chords as fine
+    if edge_length_mm is not None:
+        far = edge_length_mm
+        refuse_beyond(outer * part.length / far**2, far)  # before CAD makes chords as fine
         near = min(near, far)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(
@@ -55,16 +55,15 @@ def first_spec(design: Design, part: str) -> MeshSpec:
 
 
 def surface_to_mesh(
-    design: Design, part: str, sector_deg: float, edge_spacing: float
+    part: Part, first: MeshSpec, sector_deg: float, edge_spacing: float
 ) -> TaggedSurface:
-    """The part's sector as `first_spec` and meshes refined from it need it: chords, and cuts' reach.
+    """The part's sector as its `first_spec` and meshes refined from it need it: chords, and cuts' reach.
 
     Points along its edges are `edge_spacing` [mm] apart.
 
     Raises
     ------
-    GeometryError : as `tagged_surface`. SolidError : as `first_spec`.
+    GeometryError : as `tagged_surface`.
     """
-    spec = first_spec(design, part)
-    chord_error, reach = CHORD_PER_ENVELOPE * spec.envelope, CUT_EDGES * spec.grading.near
-    return tagged_surface(design, part, sector_deg, chord_error, edge_spacing, reach)
+    chord_error, reach = CHORD_PER_ENVELOPE * first.envelope, CUT_EDGES * first.grading.near
+    return tagged_surface(part, sector_deg, chord_error, edge_spacing, reach)

@@ -29,9 +29,8 @@ from flexspline.fea.solid.swept_sizing import (
     refuse_beyond_memory,
 )
 from flexspline.fea.types import TetMesh
-from flexspline.geometry.design import Design
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.outline import Meridian
+from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
@@ -43,7 +42,7 @@ TOLERANCE = 1e-3
 
 
 def swept_mesh(
-    design: Design, part: str, sector_deg: float, spec: MeshSpec, finer: Finer | None = None
+    part: Part, sector_deg: float, spec: MeshSpec, finer: Finer | None = None
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
@@ -55,23 +54,19 @@ def swept_mesh(
     ------
     SolidError : the mesh would be too large.
     """
-    if not can_be_swept(design, part):
+    if not can_be_swept(part):
         return None
-    outline = meridian(design, part)
-    column = column_of(design, part, outline)
+    column = column_of(part)
     try:
-        polar, tets = _prisms(outline, column, radians(sector_deg), spec.grading, finer)
-        return _curved(design, part, outline, column, sector_deg, polar, tets)
+        polar, tets = _prisms(part.meridian, column, radians(sector_deg), spec.grading, finer)
+        return _curved(part, column, sector_deg, polar, tets)
     except (MeshQualityError, MeshingError):
         return None
 
 
-def can_be_swept(design: Design, part: str) -> bool:
+def can_be_swept(part: Part) -> bool:
     """Whether the part is a body of revolution, or one with holes in a plain column."""
-    outline = meridian(design, part)
-    holes = (design.shaft if part == "shaft" else design.flexspline).bolts is not None
-    keyed = part == "shaft" and design.shaft.keyway is not None
-    return not keyed and (not holes or column_of(design, part, outline) is not None)
+    return part.keyway is None and (part.bolts is None or column_of(part) is not None)
 
 
 def _prisms(
@@ -106,13 +101,12 @@ def _prisms(
 
 
 def _curved(
-    design: Design, part: str, outline: Meridian, column: Column | None, sector_deg: float,
-    polar: np.ndarray, tets: np.ndarray,
-) -> TetMesh:  # fmt: skip
+    part: Part, column: Column | None, sector_deg: float, polar: np.ndarray, tets: np.ndarray
+) -> TetMesh:
     """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
     corners = _cartesian(polar)
     faces = boundary_faces(tets)
-    surfaces = part_surfaces(design, part, outline, sector_deg)
+    surfaces = part_surfaces(part, sector_deg)
     facet_surface = _surface_of(corners, faces, surfaces)
     edges, cells, facets = with_middles(corners, tets, faces)
     nodes = np.vstack([corners, _cartesian(_middles(polar[edges]))])
@@ -123,7 +117,7 @@ def _curved(
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[facet_surface]
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
-    _check(mesh, outline, column)
+    _check(mesh, part.meridian, column)
     return mesh
 
 
@@ -178,13 +172,12 @@ def _cartesian(polar: np.ndarray) -> np.ndarray:
     return np.column_stack([r * np.cos(phi), r * np.sin(phi), z])
 
 
-def swept_edges(design: Design, part: str, sector_deg: float, spacing: float) -> np.ndarray:
+def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
 
     The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
     """
-    outline = meridian(design, part)
-    column = column_of(design, part, outline)
+    outline, column = part.meridian, column_of(part)
     sector = radians(sector_deg)
     found = []
     for r, z in {*outline.sharp_corners, *outline.patch_edges}:

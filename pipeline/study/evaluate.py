@@ -21,18 +21,18 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.shortfall import settled_peak
 from flexspline.fea.types import Elastic, Stiffness, StressPeak
-from flexspline.geometry.design import Cup, Design, Hat, Shaft
+from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
-from flexspline.geometry.exclusion import exclusion_mm
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
-from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.material import Material
+from flexspline.geometry.part import Part, PartName
+from flexspline.geometry.shapes import Cup, Hat, Shaft
 from flexspline.pipeline.backlash import StiffnessValueError, backlash
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.parts import DRIVEN, AnalysisContext
+from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.figures import SIZES, Solve
@@ -103,11 +103,11 @@ def figures_of(
         w0 = plain.gear.centre_distance_mm
         found |= _peak("wave_generator_peak", _ellipse(f, nu).times(w0 * E))
     if "torque" in solves:
-        torque, shaft_nu = design.load.torque_Nm, plain.shaft_material.poissons_ratio
+        torque, shaft_nu = design.load.torque_Nm, plain.part("shaft").material.poissons_ratio
         found |= _peak("torque_peak", _twisted(f, nu).times(torque))
         found |= _peak("shaft_torque_peak", _twisted(plain.shaft, shaft_nu).times(torque))
     if "torsion" in solves:
-        shaft = plain.shaft_material
+        shaft = plain.part("shaft").material
         found |= _stiffness("K_b", _torsion(f, nu), E)
         found |= _stiffness(
             "K_e", _torsion(plain.shaft, shaft.poissons_ratio), shaft.youngs_modulus_GPa
@@ -121,12 +121,12 @@ def figures_of(
     return found | dict(zip(SIZES, sizes, strict=True))
 
 
-def revolved_torsion(design: Design, name: str) -> tuple[float, float, float]:
+def revolved_torsion(design: Design, name: PartName) -> tuple[float, float, float]:
     """K and its bounds [N·m/rad] of a part without its holes."""
     plain = without_holes(with_equivalent_ring(design))
-    part = plain.shaft if name == "shaft" else plain.flexspline
-    own = plain.shaft_material if name == "shaft" else plain.material.flexspline
-    K, low, high = (k * own.youngs_modulus_GPa for k in _torsion(part, own.poissons_ratio))
+    part = plain.part(name)
+    E, nu = part.material.youngs_modulus_GPa, part.material.poissons_ratio
+    K, low, high = (k * E for k in _torsion(part.shape, nu))
     return K, low, high
 
 
@@ -173,21 +173,12 @@ def _stiffness(name: str, of_1_GPa: tuple[float, float, float], E_GPa: float) ->
     return {f"{name}_Nm_per_rad": K, f"{bounds}[0]": low, f"{bounds}[1]": high}
 
 
-Part = Cup | Hat | Shaft
+Shape = Cup | Hat | Shaft
 
 
-def _name(part: Part) -> str:
-    return "shaft" if isinstance(part, Shaft) else "flexspline"
-
-
-def _outline(part: Part) -> Meridian:
-    if isinstance(part, Shaft):
-        return shaft_meridian(part)
-    return cup_meridian(part) if isinstance(part, Cup) else hat_meridian(part)
-
-
-def _unit(nu: float) -> Elastic:
-    return Elastic(1e3, nu)
+def of_1_GPa(shape: Shape, nu: float) -> Part:
+    """A part of that shape and Poisson's ratio."""
+    return Part(shape, Material(name="1 GPa", youngs_modulus_GPa=1.0, poissons_ratio=nu))
 
 
 def _remembered(solve: Callable[..., Any]) -> Callable[..., Any]:
@@ -195,38 +186,46 @@ def _remembered(solve: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @_remembered
-def _torsion(part: Part, nu: float) -> tuple[float, float, float]:
-    found = torsional_stiffness(_outline(part), _unit(nu), DRIVEN[_name(part)], TORSION_TOLERANCE)
+def _torsion(shape: Shape, nu: float) -> tuple[float, float, float]:
+    part = of_1_GPa(shape, nu)
+    found = torsional_stiffness(
+        part.meridian, Elastic.of(part.material), part.driven, TORSION_TOLERANCE
+    )
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
 @_remembered
-def _lobe_stiffness(part: Part, nu: float, supported: bool) -> Stiffness:
-    return lobe_stiffness(_outline(part), _unit(nu), supported, LOBE_TOLERANCE)
+def _lobe_stiffness(shape: Shape, nu: float, supported: bool) -> Stiffness:
+    part = of_1_GPa(shape, nu)
+    return lobe_stiffness(part.meridian, Elastic.of(part.material), supported, LOBE_TOLERANCE)
 
 
-def _lobes(part: Part, nu: float, supported: bool) -> tuple[float, float, float]:
-    found = _lobe_stiffness(part, nu, supported)
+def _lobes(shape: Shape, nu: float, supported: bool) -> tuple[float, float, float]:
+    found = _lobe_stiffness(shape, nu, supported)
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
 @_remembered
-def _contact(part: Part, nu: float) -> tuple[float, float, float]:
-    found = contact_stiffness(_outline(part), _unit(nu), _lobe_stiffness(part, nu, True))
+def _contact(shape: Shape, nu: float) -> tuple[float, float, float]:
+    part = of_1_GPa(shape, nu)
+    held = _lobe_stiffness(shape, nu, True)
+    found = contact_stiffness(part.meridian, Elastic.of(part.material), held)
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
 @_remembered
-def _ellipse(part: Cup | Hat, nu: float) -> StressPeak:
+def _ellipse(shape: Shape, nu: float) -> StressPeak:
     """Per mm of w0 and GPa of E."""
-    apart = exclusion_mm(part)
-    found = ellipse_stress(_outline(part), _unit(nu), 1.0, apart, STRESS_TOLERANCE)
+    part = of_1_GPa(shape, nu)
+    material, apart = Elastic.of(part.material), part.exclusion_mm
+    found = ellipse_stress(part.meridian, material, 1.0, apart, STRESS_TOLERANCE)
     return settled_peak(found.peak)
 
 
 @_remembered
-def _twisted(part: Part, nu: float) -> StressPeak:
+def _twisted(shape: Shape, nu: float) -> StressPeak:
     """Per N·m."""
-    driven, apart = DRIVEN[_name(part)], exclusion_mm(part)
-    found = torsion_stress(_outline(part), _unit(nu), driven, 1.0, apart, STRESS_TOLERANCE)
+    part = of_1_GPa(shape, nu)
+    material, apart = Elastic.of(part.material), part.exclusion_mm
+    found = torsion_stress(part.meridian, material, part.driven, 1.0, apart, STRESS_TOLERANCE)
     return settled_peak(found.peak)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
+from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
@@ -21,7 +22,7 @@ from flexspline.pipeline.storage import cache_folder
 
 DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""
-PART_OF = {"K_b": "flexspline", "K_e": "shaft"}
+PART_OF: Mapping[str, PartName] = {"K_b": "flexspline", "K_e": "shaft"}
 
 
 @dataclass(frozen=True)
@@ -38,9 +39,7 @@ Holes = Mapping[str, Factor]
 
 def pierced(design: Design) -> tuple[str, ...]:
     """ "K_b" and "K_e", as far as that part has bolt holes or a keyway."""
-    shaft = design.shaft
-    has = {"K_b": design.flexspline.bolts, "K_e": shaft.bolts or shaft.keyway}
-    return tuple(name for name, holes in has.items() if holes)
+    return tuple(k for k, name in PART_OF.items() if not design.part(name).is_revolved)
 
 
 def of_holes(keys: Iterable[str]) -> tuple[str, ...]:
@@ -65,7 +64,7 @@ def with_holes(found: Mapping[str, float], design: Design, holes: Holes) -> dict
 
 def holes_of(
     design: Design,
-    torsion: Callable[[Design, str], tuple[float, float, float]],
+    torsion: Callable[[Design, PartName], tuple[float, float, float]],
     say: Callable[[str], None],
 ) -> Holes:
     """The factors of a nominal design; `torsion` gives K and bounds of a part without its holes.

@@ -17,9 +17,9 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import lengths, with_values, without_holes
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.outline import Meridian
+from flexspline.geometry.part import Part, PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.parts import DRIVEN
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
 
 HELD_STEP = 1e-4
@@ -52,7 +52,7 @@ class Slope:
     """
 
     key: str
-    part: str
+    part: PartName
     value_mm: float
     held: float | None
     solved: float | None
@@ -89,24 +89,24 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     """
     plain = without_holes(with_equivalent_ring(design))
     found: list[Slope] = []
-    for part in ("flexspline", "shaft"):
-        own = plain.shaft_material if part == "shaft" else plain.material.flexspline
-        material = Elastic.of(own)
-        outline = meridian(plain, part)
-        solved = twist(outline, material, DRIVEN[part], ENERGY_TOLERANCE)
+    for part in plain.parts:
+        material = Elastic.of(part.material)
+        solved = twist(part.meridian, material, part.driven, ENERGY_TOLERANCE)
 
-        def K(values: dict[str, float], part: str = part, material: Elastic = material) -> float:
-            shape = meridian(with_values(plain, values), part)
-            bounds = torsional_stiffness(shape, material, DRIVEN[part], K_TOLERANCE)
+        def outline(values: dict[str, float], name: PartName) -> Meridian:
+            return with_values(plain, values).part(name).meridian
+
+        def K(v: dict[str, float], part: Part = part, material: Elastic = material) -> float:
+            bounds = torsional_stiffness(outline(v, part.name), material, part.driven, K_TOLERANCE)
             return settled(bounds).K_Nm_per_rad
 
         here = K({})
         slopes = []
-        for key, p in lengths(plain, part).items():
+        for key, p in lengths(part).items():
             say(f"dK/dp of {key}")
 
-            def moved(v: dict[str, float], part: str = part, solved: Twist = solved) -> float:
-                return moved_stiffness(solved, meridian(with_values(plain, v), part))
+            def moved(v: dict[str, float], part: Part = part, solved: Twist = solved) -> float:
+                return moved_stiffness(solved, outline(v, part.name))
 
             held, why = None, ""
             try:
@@ -120,7 +120,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
             best = held if held is not None else (again or 0.0)
             windup = -2 * design.load.torque_Nm / here**2 * best * ARCSEC_PER_RAD
             why = why or no_room
-            slopes.append(Slope(key, part, p, held, again, error, here, windup, why))
+            slopes.append(Slope(key, part.name, p, held, again, error, here, windup, why))
         found += sorted(slopes, key=lambda s: -abs(s.elasticity))
     return tuple(found)
 

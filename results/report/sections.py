@@ -63,7 +63,7 @@ def run_document(content: ReportContent) -> Document:
 
 def _letters(content: ReportContent) -> int:
     design = content.design
-    names = [design.name, design.material.flexspline.name, design.shaft_material.name]
+    names = [design.name, design.material.flexspline.name, design.part("shaft").material.name]
     return sum(map(len, [*names, *content.warnings, *(content.stage_seconds or {})]))
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from flexspline.fea.types import Stiffness
-from flexspline.geometry.design import Cup, Design, Hat, Material
+from flexspline.geometry.design import Design
+from flexspline.geometry.material import Material
+from flexspline.geometry.shapes import Cup, Hat
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
 from flexspline.results.peaks import border_note, limit_note
@@ -159,7 +161,7 @@ def _stress_rows(content: ReportContent) -> list[Row]:
             if peak.at_excluded_border:
                 said.append(border_note(peak.exclusion_mm, peak.mises_at_twice_MPa))
             if not (passed and peak.at_excluded_border):
-                said.append(limit_note(peak, content.design.material_of(part)))
+                said.append(limit_note(peak, content.design.part(part).material))
             if entry is wave and content.half_seat_peak is not None:
                 half = entry.with_unit(content.half_seat_peak.mises_MPa)
                 said.append(f"seat as wide as the ring; {half} on one half as wide")
@@ -195,7 +197,7 @@ def _holes(count: int) -> str:
 
 
 def _materials(design: Design) -> list[list[str]]:
-    flexspline, shaft = design.material.flexspline, design.shaft_material
+    flexspline, shaft = design.material.flexspline, design.part("shaft").material
     if flexspline == shaft:
         return [["Material, both parts", _material(flexspline)]]
     return [

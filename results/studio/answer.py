@@ -110,9 +110,9 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
     peak = peak_of(name, figures)
     if mark := marked(figures, key):
         row |= {"more": mark, "limit": BORDER}
-    share = share_of_limit(peak, design.material_of(PART_OF[name]))
+    share = share_of_limit(peak, design.part(PART_OF[name]).material)
     if share is not None:
-        limit = design.material_of(PART_OF[name]).fatigue_limit_MPa
+        limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
         row["limit"] = f"{100 * share:.3g} % of {limit:g}"
     row["over"] = any(limits_passed(design, {name: peak}))
     half = f"{name}_half_seat_mises_MPa"

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.study.labels import entry
 from flexspline.results.style import ACCENT, INK, MUTED, RULE, STEEL, new_figure, save_png, styled
@@ -85,7 +84,7 @@ def _axes(figure: Figure, left: float, bottom: float, wide: float, tall: float) 
 def _outline(design: Design) -> np.ndarray:
     """Points (n, 2) around the flexspline's section, (r, z) in mm."""
     t = np.linspace(0, 1, 17)[:-1]
-    return np.concatenate([s.at(t) for s in meridian(design, "flexspline").segments])
+    return np.concatenate([s.at(t) for s in design.part("flexspline").meridian.segments])
 
 
 def _places(design: Design, window: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

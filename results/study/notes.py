@@ -43,7 +43,7 @@ def _mass(design: Design) -> str:
     """Which density weighs the parts, and who says so."""
     said = []
     for part in ("flexspline", "shaft"):
-        material = design.material_of(part)
+        material = design.part(part).material
         source = "as stated" if material.density_stated else "steel's, since the file states none"
         said.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")
     if said[0] == said[1]:

@@ -153,9 +153,11 @@ def test_header_says_what_a_reader_needs() -> None:
 
 def wedge(part: str) -> tuple[TetMesh, Elastic]:
     design = load_design(CUP)
-    spec = first_spec(design, part)
-    degrees = sector_of(design, part, "torsion").degrees
-    surface = surface_to_mesh(design, part, degrees, edge_spacing=0.1)
+    spec = first_spec(design.part(part))
+    degrees = sector_of(design.part(part), "torsion").degrees
+    surface = surface_to_mesh(
+        design.part(part), first_spec(design.part(part)), degrees, edge_spacing=0.1
+    )
     return mesh_surface(surface, spec), Elastic.of(design.material.flexspline)
 
 

@@ -20,7 +20,6 @@ from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_planes
 from flexspline.geometry.symmetry import sector_of
 from flexspline.geometry.tagged import TaggedSurface
@@ -35,15 +34,17 @@ def design(holes: int, **changes) -> Design:
 
 
 def surface_of(given: Design, part: str) -> TaggedSurface:
-    degrees = sector_of(given, part, "torsion").degrees
-    return surface_to_mesh(given, part, degrees, edge_spacing=0.1)
+    degrees = sector_of(given.part(part), "torsion").degrees
+    return surface_to_mesh(
+        given.part(part), first_spec(given.part(part)), degrees, edge_spacing=0.1
+    )
 
 
 @pytest.fixture(scope="module")
 def shaft() -> tuple[TaggedSurface, TetMesh]:
     given = design(6)
     surface = surface_of(given, "shaft")
-    return surface, mesh_surface(surface, first_spec(given, "shaft"))
+    return surface, mesh_surface(surface, first_spec(given.part("shaft")))
 
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -92,8 +93,8 @@ def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
         bore_diameter_mm=0.0, boss_thickness_mm=5.3, inner_fillet_mm=0.9, outer_fillet_mm=1.2,
     )  # fmt: skip
     surface = surface_of(given, "flexspline")
-    mesh = mesh_surface(surface, first_spec(given, "flexspline"))
-    whole = meridian(given, "flexspline")
+    mesh = mesh_surface(surface, first_spec(given.part("flexspline")))
+    whole = given.part("flexspline").meridian
     share = mesh.sector_deg / 360
     # a crack took 1.5 %
     volume = element_volumes(mesh.nodes, mesh.cells).sum()
@@ -113,7 +114,7 @@ def test_the_mounts_rim_is_in_the_mesh() -> None:
         ring_width_mm=6.0,
     )  # fmt: skip
     surface = surface_of(given, "flexspline")
-    first = first_spec(given, "flexspline")
+    first = first_spec(given.part("flexspline"))
     grading = Grading(0.36 * first.grading.near, 0.8 * first.grading.far, 0.56)
     mesh = mesh_surface(surface, replace(first, grading=grading, envelope=grading.near / 6))
     mount = mesh.on("mount")
@@ -182,11 +183,11 @@ def test_few_holes_in_the_boss_hardly_matter(holes: int) -> None:
     given = design(holes)
     surface = surface_of(given, "flexspline")
     steel = Elastic.of(given.material.flexspline)
-    spec = first_spec(given, "flexspline")
-    sector = sector_of(given, "flexspline", "torsion")
+    spec = first_spec(given.part("flexspline"))
+    sector = sector_of(given.part("flexspline"), "torsion")
     found = solid_stiffness(
         lambda s: mesh_surface(surface, s), spec, steel, "mesh", 0.02, sector.label, print
     ).stiffness
-    bare = torsional_stiffness(meridian(design(0), "flexspline"), steel, "mesh", 1e-3)
+    bare = torsional_stiffness(design(0).part("flexspline").meridian, steel, "mesh", 1e-3)
     assert found.lower_Nm_per_rad < bare.upper_Nm_per_rad
     assert found.K_Nm_per_rad == pytest.approx(bare.K_Nm_per_rad, rel=0.005)

@@ -111,11 +111,11 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
     """The cup as a solid; its mesher makes so many meshes, of at most `most` that are allowed."""
     monkeypatch.setattr(solid, "MAX_LEVELS", most)
     design = load_design("examples/xb1-40.toml").model_copy(update={"flexspline": CUP})
-    sector = sector_of(design, "flexspline", "torsion")
+    sector = sector_of(design.part("flexspline"), "torsion")
     said: list[str] = []
 
     def mesher(spec: MeshSpec) -> TetMesh:
-        made = swept_mesh(design, "flexspline", sector.degrees, spec, None)
+        made = swept_mesh(design.part("flexspline"), sector.degrees, spec, None)
         assert made is not None
         return made
 
@@ -125,7 +125,13 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
         return mesher(spec)
 
     found = solid_stiffness(
-        limited, first_spec(design, "flexspline"), STEEL, "mesh", 1e-5, sector.label, said.append
+        limited,
+        first_spec(design.part("flexspline")),
+        STEEL,
+        "mesh",
+        1e-5,
+        sector.label,
+        said.append,
     )
     assert len(found.meshes) == len(found.stiffness.levels)
     assert len(found.solved.displacement) == len(found.meshes[-1].nodes)

@@ -27,7 +27,6 @@ from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 from flexspline.geometry.symmetry import sector_of
 from flexspline.geometry.tagged import tagged_surface
@@ -108,10 +107,10 @@ def design_of(file: str, part: str, changes: dict[str, Any]) -> Design:
 
 
 def swept(design: Design, part: str, finer: float = 1.0) -> TetMesh:
-    spec = first_spec(design, part)
+    spec = first_spec(design.part(part))
     g = spec.grading
     spec = replace(spec, grading=Grading(g.near * finer, g.far * max(finer, 0.8), g.growth))
-    mesh = swept_mesh(design, part, sector_of(design, part, "torsion").degrees, spec)
+    mesh = swept_mesh(design.part(part), sector_of(design.part(part), "torsion").degrees, spec)
     assert mesh is not None
     return mesh
 
@@ -134,8 +133,8 @@ def test_surface_is_closed(made: tuple[Design, str, TetMesh]) -> None:
 
 def test_volume_is_pappus_less_the_holes(made: tuple[Design, str, TetMesh]) -> None:
     design, part, mesh = made
-    outline = meridian(design, part)
-    column = column_of(design, part, outline)
+    outline = design.part(part).meridian
+    column = column_of(design.part(part))
     volume = outline.volume * mesh.sector_deg / 360
     if column is not None:
         volume -= pi / 2 * column.hole_radius**2 * (column.depth - column.low)
@@ -146,7 +145,7 @@ def test_volume_is_pappus_less_the_holes(made: tuple[Design, str, TetMesh]) -> N
 
 def test_patches_have_the_cad_areas(made: tuple[Design, str, TetMesh]) -> None:
     design, part, mesh = made
-    surface = tagged_surface(design, part, mesh.sector_deg, 0.05, edge_spacing=0.1)
+    surface = tagged_surface(design.part(part), mesh.sector_deg, 0.05, edge_spacing=0.1)
     there = {mesh.patches[i] for i in np.unique(mesh.facet_patch)}
     assert set(surface.patch_areas) == there - {""}
     for patch, area in surface.patch_areas.items():
@@ -168,8 +167,8 @@ def test_symmetry_planes_are_planes(made: tuple[Design, str, TetMesh]) -> None:
 def test_sharp_edges_are_the_cads(made: tuple[Design, str, TetMesh]) -> None:
     design, part, mesh = made
     spacing = 0.1
-    ours = swept_edges(design, part, mesh.sector_deg, spacing)
-    cad = tagged_surface(design, part, mesh.sector_deg, 0.05, spacing).sharp_edges
+    ours = swept_edges(design.part(part), mesh.sector_deg, spacing)
+    cad = tagged_surface(design.part(part), mesh.sector_deg, 0.05, spacing).sharp_edges
     for one, other in ((ours, cad), (cad, ours)):
         assert cKDTree(one).query(other)[0].max() < spacing  # both are points along the same curves
 
@@ -215,22 +214,24 @@ def test_what_cannot_be_swept_is_left_to_the_mesher(
     file: str, part: str, changes: dict[str, Any]
 ) -> None:
     design = design_of(file, part, changes)
-    sector = sector_of(design, part, "torsion").degrees
-    assert swept_mesh(design, part, sector, first_spec(design, part)) is None
+    sector = sector_of(design.part(part), "torsion").degrees
+    assert swept_mesh(design.part(part), sector, first_spec(design.part(part))) is None
 
 
 def test_mesh_that_fails_a_check_is_left_to_the_mesher(monkeypatch: pytest.MonkeyPatch) -> None:
     """No mesh is exact to a tolerance of 0: the check must say so, and nothing must pass it."""
     design = design_of("xb1-40.toml", "flexspline", {})
     monkeypatch.setattr("flexspline.fea.solid.swept.TOLERANCE", 0.0)
-    assert swept_mesh(design, "flexspline", 30.0, first_spec(design, "flexspline")) is None
+    assert (
+        swept_mesh(design.part("flexspline"), 30.0, first_spec(design.part("flexspline"))) is None
+    )
 
 
 def test_mesh_beyond_memory_is_refused_before_it_is_built() -> None:
     design = design_of("xb1-40.toml", "flexspline", {})
-    spec = replace(first_spec(design, "flexspline"), grading=Grading(0.1, 0.1))
+    spec = replace(first_spec(design.part("flexspline")), grading=Grading(0.1, 0.1))
     with pytest.raises(SolidError, match="at most 500000"):
-        swept_mesh(design, "flexspline", 30.0, spec)
+        swept_mesh(design.part("flexspline"), 30.0, spec)
 
 
 def test_every_tetrahedron_is_positive(made: tuple[Design, str, TetMesh]) -> None:
@@ -242,8 +243,8 @@ def test_every_tetrahedron_is_positive(made: tuple[Design, str, TetMesh]) -> Non
 def test_stiffness_comes_from_above_to_the_guaranteed_one(name: str) -> None:
     file, part, changes = PARTS[name]
     design = design_of(file, part, changes)
-    material = Elastic.of(design.shaft_material if part == "shaft" else design.material.flexspline)
-    exact = torsional_stiffness(meridian(design, part), material, DRIVEN[part], 2e-4)
+    material = Elastic.of(design.part(part).material)
+    exact = torsional_stiffness(design.part(part).meridian, material, DRIVEN[part], 2e-4)
     found = [
         torsion(Model.of(swept(design, part, finer), material), DRIVEN[part]).K_energy
         for finer in (1.0, 0.3, 0.1)
@@ -258,15 +259,15 @@ def test_estimated_bounds_hold_the_guaranteed_stiffness() -> None:
     for name in WITHOUT_HOLES:
         file, part, changes = PARTS[name]
         design = design_of(file, part, changes)
-        own = design.shaft_material if part == "shaft" else design.material.flexspline
-        material, sector = Elastic.of(own), sector_of(design, part, "torsion").degrees
+        own = design.part(part).material
+        material, sector = Elastic.of(own), sector_of(design.part(part), "torsion").degrees
 
         def mesher(spec, design=design, part=part, sector=sector) -> TetMesh:
-            return swept_mesh(design, part, sector, spec)
+            return swept_mesh(design.part(part), sector, spec)
 
-        first = first_spec(design, part)
+        first = first_spec(design.part(part))
         found = solid_stiffness(mesher, first, material, DRIVEN[part], 0.005, "", print).stiffness
-        exact = torsional_stiffness(meridian(design, part), material, DRIVEN[part], 2e-4)
+        exact = torsional_stiffness(design.part(part).meridian, material, DRIVEN[part], 2e-4)
         assert found.lower_Nm_per_rad < exact.K_Nm_per_rad < found.upper_Nm_per_rad
         error = found.upper_Nm_per_rad - exact.K_Nm_per_rad
         half = (found.upper_Nm_per_rad - found.lower_Nm_per_rad) / 2
@@ -276,8 +277,10 @@ def test_estimated_bounds_hold_the_guaranteed_stiffness() -> None:
 def test_six_holes_are_as_stiff_as_on_the_meshers_mesh() -> None:
     design = design_of("xb1-40.toml", "flexspline", {})
     material = Elastic.of(design.material.flexspline)
-    first = first_spec(design, "flexspline")
-    surface = surface_to_mesh(design, "flexspline", 30.0, edge_spacing=0.1)
+    first = first_spec(design.part("flexspline"))
+    surface = surface_to_mesh(
+        design.part("flexspline"), first_spec(design.part("flexspline")), 30.0, edge_spacing=0.1
+    )
     fine = replace(first, grading=Grading(0.14, 1.7, 1.0))
     K = []
     for mesh in (swept(design, "flexspline", 0.3), mesh_surface(surface, fine)):

@@ -31,8 +31,8 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 def cup(far: float, sector: float) -> TetMesh:
     """The six-hole cup, swept: elements up to ten times as long as thick."""
     design = design_from(tomllib.loads(EXAMPLE.read_text(encoding="utf-8")))
-    spec = replace(first_spec(design, "flexspline"), grading=Grading(0.4 * far, far, 1.0))
-    mesh = swept_mesh(design, "flexspline", 30.0, spec)
+    spec = replace(first_spec(design.part("flexspline")), grading=Grading(0.4 * far, far, 1.0))
+    mesh = swept_mesh(design.part("flexspline"), 30.0, spec)
     assert mesh is not None
     return unfolded(mesh, sector)
 

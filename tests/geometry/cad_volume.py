@@ -7,8 +7,8 @@ from math import pi
 import pytest
 
 from flexspline.geometry.cad import build_solid
-from flexspline.geometry.design import Cup, Design
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.design import Design
+from flexspline.geometry.shapes import Cup
 
 VOLUME = 1e-7
 """Relative: the kernel integrates volumes to about 1e-8."""
@@ -22,8 +22,8 @@ def assert_volume(design: Design, part: str) -> None:
         assert owner.bolt_hole_diameter_mm is not None
         hole = pi / 4 * owner.bolt_hole_diameter_mm**2
         holes = owner.bolt_count * hole * hole_depth(design, part)
-    expected = meridian(design, part).volume - holes
-    assert build_solid(design, part).Volume() == pytest.approx(expected, rel=VOLUME)
+    expected = design.part(part).meridian.volume - holes
+    assert build_solid(design.part(part)).Volume() == pytest.approx(expected, rel=VOLUME)
 
 
 def hole_depth(design: Design, part: str) -> float:

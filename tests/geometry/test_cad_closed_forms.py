@@ -51,7 +51,7 @@ def test_cup_volume() -> None:
         - fillet_volume(rw, 1.0, -1)  # takes the outside corner
         - 6 * pi / 4 * 2.5**2 * 3
     )
-    solid = build_solid(load_design(EXAMPLES / "xb1-40.toml"), "flexspline")
+    solid = build_solid(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
     assert solid.Volume() == pytest.approx(expected, rel=KERNEL)
 
 
@@ -68,7 +68,7 @@ def test_hat_volume() -> None:
         - fillet_volume(ri, 1.5, +1)
         - 12 * pi / 4 * 3.4**2 * 4
     )
-    solid = build_solid(load_design(EXAMPLES / "hat-25.toml"), "flexspline")
+    solid = build_solid(load_design(EXAMPLES / "hat-25.toml").part("flexspline"))
     assert solid.Volume() == pytest.approx(expected, rel=KERNEL)
 
 
@@ -93,24 +93,24 @@ def test_keyway_volume(length: float) -> None:
     key = {"shaft.keyway.length_mm": repr(length)}
     plain = shaft_of([(4.0, 20.0, 6.0), (12.0, 18.0, 6.0), (20.0, 16.0, 6.0)])
     keyed = changed_design("keyed-shaft", key)
-    cut = build_solid(plain, "shaft").Volume() - build_solid(keyed, "shaft").Volume()
+    cut = build_solid(plain.part("shaft")).Volume() - build_solid(keyed.part("shaft")).Volume()
     # 1e-5 of the slot: two volumes twenty times its size, each to KERNEL, are subtracted
     assert cut == pytest.approx(expected, rel=1e-5)
 
 
 def test_patch_areas() -> None:
     cup = load_design(EXAMPLES / "xb1-40.toml")
-    areas = tagged_surface(cup, "flexspline", 360.0, 0.02, 1.0).patch_areas
+    areas = tagged_surface(cup.part("flexspline"), 360.0, 0.02, 1.0).patch_areas
     assert areas["mount"] == pytest.approx(pi * (81 - 16) - 6 * pi / 4 * 2.5**2, rel=KERNEL)
     assert areas["mesh"] == pytest.approx(2 * pi * 19.75 * 8, rel=KERNEL)
     assert areas["seat"] == pytest.approx(2 * pi * 19.2 * 8, rel=KERNEL)
     hat = load_design(EXAMPLES / "hat-25.toml")
-    areas = tagged_surface(hat, "flexspline", 360.0, 0.02, 1.0).patch_areas
+    areas = tagged_surface(hat.part("flexspline"), 360.0, 0.02, 1.0).patch_areas
     assert areas["mount"] == pytest.approx(pi * (48**2 - 39**2) - 12 * pi / 4 * 3.4**2, rel=KERNEL)
     assert areas["mesh"] == pytest.approx(2 * pi * 29.625 * 11, rel=KERNEL)
     assert areas["seat"] == pytest.approx(2 * pi * 28.8 * 11, rel=KERNEL)
     shaft = load_design(EXAMPLES / "keyed-shaft.toml")
-    areas = tagged_surface(shaft, "shaft", 360.0, 0.02, 1.0).patch_areas
+    areas = tagged_surface(shaft.part("shaft"), 360.0, 0.02, 1.0).patch_areas
     mouth = 2 * asin(2.5 / 8) * 8 * 16  # the key's mouth lies wholly within the grip of 18
     assert areas["grip"] == pytest.approx(2 * pi * 8 * 18 - mouth, rel=KERNEL)
     assert areas["mount"] == pytest.approx(pi * (100 - 9), rel=KERNEL)
@@ -118,14 +118,14 @@ def test_patch_areas() -> None:
 
 def test_grip_of_a_solid_shaft_leaves_its_end_face_out() -> None:
     solid = shaft_of([(4.0, 20.0, 0.0), (20.0, 16.0, 0.0)])
-    areas = tagged_surface(solid, "shaft", 360.0, 0.02, 1.0).patch_areas
+    areas = tagged_surface(solid.part("shaft"), 360.0, 0.02, 1.0).patch_areas
     assert areas["grip"] == pytest.approx(2 * pi * 8 * 5, rel=KERNEL)
 
 
 def test_grip_over_three_segments_leaves_faces_and_fillets_out() -> None:
     steps = [(4.0, 20.0, 6.0), (5.0, 17.0, 4.0), (6.0, 21.0, 15.0), (7.0, 18.0, 0.0)]
     areas = tagged_surface(
-        shaft_of(steps, "grip_length_mm = 15.0"), "shaft", 360.0, 0.02, 1.0
+        shaft_of(steps, "grip_length_mm = 15.0").part("shaft"), 360.0, 0.02, 1.0
     ).patch_areas
     # from z = 7: of 17 up to the fillet below 21, all of 21, of 18 from its fillet on
     expected = pi * (17 * 1.5 + 21 * 6 + 18 * 6.5)
@@ -147,7 +147,7 @@ def test_step_and_stl_keep_the_volume(
     import cadquery as cq
     import trimesh
 
-    solid = build_solid(load_design(EXAMPLES / f"{example}.toml"), part)
+    solid = build_solid(load_design(EXAMPLES / f"{example}.toml").part(part))
     write_step(solid, tmp_path / "part.step")
     again = cq.importers.importStep(str(tmp_path / "part.step")).val()
     # STEP writes 15 digits, the surfaces are the same

@@ -30,7 +30,7 @@ def test_mass_is_the_solids_volume_times_each_parts_density(example: str) -> Non
     )
     found = masses(design)
     grams = {
-        part: build_solid(design, part).Volume() * density * 1e-6  # mm³ of kg/m³
+        part: build_solid(design.part(part)).Volume() * density * 1e-6  # mm³ of kg/m³
         for part, density in (("flexspline", TITANIUM), ("shaft", ALUMINIUM))
     }
     assert found.flexspline_g == pytest.approx(grams["flexspline"], rel=VOLUME)

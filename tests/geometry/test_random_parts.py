@@ -11,7 +11,6 @@ from random_parts import Segments, cups, hats, shafts
 from flexspline.geometry.cad import build_solid
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.tagged import tagged_surface
 
 SHORT = settings(max_examples=15, deadline=None, derandomize=True)
@@ -37,17 +36,17 @@ def shaft_builds(segments: Segments, text: str, fillet: float) -> None:
     except DesignError:
         assume(False)
     if design.shaft.keyway:
-        assert build_solid(design, "shaft").Volume() < meridian(design, "shaft").volume
-        assert tagged_surface(design, "shaft", 360.0, 0.05, 1.0).patch_areas["grip"] > 0
+        assert build_solid(design.part("shaft")).Volume() < design.part("shaft").meridian.volume
+        assert tagged_surface(design.part("shaft"), 360.0, 0.05, 1.0).patch_areas["grip"] > 0
     else:
         assert_volume(design, "shaft")
         assert_patches(design, "shaft", ("grip", "mount"))
 
 
 def assert_patches(design: Design, part: str, patches: tuple[str, ...]) -> None:
-    areas = tagged_surface(design, part, 360.0, 0.05, 1.0).patch_areas
+    areas = tagged_surface(design.part(part), 360.0, 0.05, 1.0).patch_areas
     for patch in patches:
-        assert areas[patch] == pytest.approx(meridian(design, part).patch_area(patch), rel=AREA)
+        assert areas[patch] == pytest.approx(design.part(part).meridian.patch_area(patch), rel=AREA)
 
 
 @given(cups())

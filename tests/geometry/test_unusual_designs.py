@@ -11,7 +11,6 @@ from changed_design import changed_design, changed_text, shaft_of
 from flexspline.geometry.cad import build_solid
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian
 
 FLEXSPLINES = {
     "no holes": ("xb1-40", {"bolt_count": "0"}),
@@ -80,7 +79,7 @@ def test_unusual_shaft(design: Design) -> None:
 def test_keyway_into_the_flange_builds_one_solid() -> None:
     key = "[keyway]\nwidth_mm = 5.0\ndepth_mm = 3.0\nlength_mm = 26.0"
     design = shaft_of([(4.0, 20.0, 6.0), (24.0, 16.0, 6.0)], f"{HOLES}\n{key}")
-    assert build_solid(design, "shaft").Volume() < meridian(design, "shaft").volume
+    assert build_solid(design.part("shaft")).Volume() < design.part("shaft").meridian.volume
 
 
 def test_small_displacement_model_has_no_play_limit() -> None:

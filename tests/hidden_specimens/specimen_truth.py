@@ -18,7 +18,6 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from, read_toml
-from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -87,7 +86,7 @@ def compliance(name: str, seed: int, kind: Kind, off_mm: float = 0.0) -> np.ndar
             )
         design = design_from(tables)
         material = Elastic.of(design.material.flexspline)
-        outline = meridian(design, "flexspline")
+        outline = design.part("flexspline").meridian
         if kind == "lobes":
             found.append(1 / lobe_stiffness(outline, material, True, 5e-3).K_Nm_per_rad)
         else:

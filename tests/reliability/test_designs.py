@@ -111,7 +111,7 @@ def solid_designs(sort: str) -> Iterator[tuple[int, dict]]:
             design = design_from(tomllib.loads(toml(tables)))
         except DesignError:
             continue
-        swept = all(can_be_swept(design, part) for part in ("flexspline", "shaft"))
+        swept = all(can_be_swept(design.part(part)) for part in ("flexspline", "shaft"))
         if swept == (sort == "swept"):
             yield seed, tables
 

@@ -33,8 +33,8 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.load import load_design
 
 design, far = load_design(sys.argv[1]), float(sys.argv[2])
-spec = replace(first_spec(design, "flexspline"), grading=Grading(0.4 * far, far, 1.0))
-mesh = swept_mesh(design, "flexspline", 30.0, spec)
+spec = replace(first_spec(design.part("flexspline")), grading=Grading(0.4 * far, far, 1.0))
+mesh = swept_mesh(design.part("flexspline"), 30.0, spec)
 peak = lambda: 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 before = peak()
 try:

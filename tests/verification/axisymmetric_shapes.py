@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from flexspline.geometry.design import Cup, Hat, Shaft, ShaftSegment
 from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian, Segment
+from flexspline.geometry.shapes import Cup, Hat, Shaft, ShaftSegment
 
 
 def outline(*corners: tuple[float, float, str | None]) -> Meridian:

@@ -20,7 +20,6 @@ from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.symmetry import sector_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -101,17 +100,19 @@ class Pair:
 
 def mesher(design: Design, part: str, kind: str) -> Callable[[MeshSpec], TetMesh]:
     """The program's own choice ("chosen": swept where the part allows it), or always "fTetWild"."""
-    degrees = sector_of(design, part, "torsion").degrees
-    first = first_spec(design, part)
-    if kind == "chosen" and swept_mesh(design, part, degrees, first) is not None:
+    degrees = sector_of(design.part(part), "torsion").degrees
+    first = first_spec(design.part(part))
+    if kind == "chosen" and swept_mesh(design.part(part), degrees, first) is not None:
 
         def swept(spec: MeshSpec) -> TetMesh:
-            mesh = swept_mesh(design, part, degrees, spec)
+            mesh = swept_mesh(design.part(part), degrees, spec)
             assert mesh is not None
             return mesh
 
         return swept
-    surface = surface_to_mesh(design, part, degrees, edge_spacing=0.1)
+    surface = surface_to_mesh(
+        design.part(part), first_spec(design.part(part)), degrees, edge_spacing=0.1
+    )
     return lambda spec: mesh_surface(surface, spec)
 
 
@@ -122,8 +123,8 @@ def solved(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> Pai
     design = hole_free(file, part, changes)
     material = Elastic.of(design.material.flexspline)
     found = solid_stiffness(
-        mesher(design, part, kind), first_spec(design, part), material, DRIVEN[part], tolerance,
+        mesher(design, part, kind), first_spec(design.part(part)), material, DRIVEN[part], tolerance,
         "1/12", print,
     ).stiffness  # fmt: skip
-    exact = torsional_stiffness(meridian(design, part), material, DRIVEN[part], REFERENCE)
+    exact = torsional_stiffness(design.part(part).meridian, material, DRIVEN[part], REFERENCE)
     return Pair(found, exact)

@@ -25,7 +25,6 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.tagged import tagged_surface
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
@@ -50,15 +49,15 @@ def design() -> Design:
 
 @cache
 def quarter() -> Model:
-    surface = tagged_surface(design(), "flexspline", 90.0, 0.03, edge_spacing=0.1)
-    spec = replace(first_spec(design(), "flexspline"), grading=Grading(0.3, 1.2, 1.0))
+    surface = tagged_surface(design().part("flexspline"), 90.0, 0.03, edge_spacing=0.1)
+    spec = replace(first_spec(design().part("flexspline")), grading=Grading(0.3, 1.2, 1.0))
     return Model.of(mesh_surface(surface, spec), Elastic.of(design().material.flexspline))
 
 
 @pytest.mark.parametrize("supported", [True, False])
 def test_lobe_stiffness(supported, record):
     model = quarter()
-    outline = meridian(design(), "flexspline")
+    outline = design().part("flexspline").meridian
     exact = lobe_stiffness(outline, model.material, supported, 0.002)
     solved = lobes(model, supported)
     error = energy_error(model.mesh, solved.displacement, model.material).relative
@@ -71,7 +70,7 @@ def test_lobe_stiffness(supported, record):
 
 def test_ellipse_displacement_and_peak(record):
     model = quarter()
-    outline = meridian(design(), "flexspline")
+    outline = design().part("flexspline").meridian
     exact = ellipse_stress(outline, model.material, W0, WALL, 0.005)
     u = ellipse(model, W0).displacement
     nodes = model.mesh.nodes

@@ -16,9 +16,9 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.axisymmetric.torsion_fields import bracket
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import NMM_PER_NM, Elastic
-from flexspline.geometry.design import Shaft, ShaftSegment
 from flexspline.geometry.meridian import cup_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian
+from flexspline.geometry.shapes import Shaft, ShaftSegment
 
 STEEL = Elastic(200e3, 0.3)
 ROUNDING = 1e-9

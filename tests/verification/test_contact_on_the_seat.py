@@ -26,7 +26,6 @@ from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.load import design_from
-from flexspline.geometry.meridian import meridian
 from flexspline.geometry.outline import Meridian
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
@@ -35,7 +34,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
 def outline(**changes: float) -> Meridian:
     data = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
     data["flexspline"] |= changes
-    return meridian(design_from(data), "flexspline")
+    return design_from(data).part("flexspline").meridian
 
 
 STEEL = Elastic(206e3, 0.3)

@@ -13,7 +13,6 @@ import pytest
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
@@ -35,7 +34,7 @@ def test_the_free_rim_meets_its_tolerance_and_is_right(file: str, tmp_path: Path
     context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
     part = context.part("flexspline")
     found = solid_lobes(part, supported=False)
-    outline = meridian(without_holes(design), "flexspline")
+    outline = without_holes(design).part("flexspline").meridian
     whole = lobe_stiffness(outline, part.material, False, 0.002)
     record(
         f"K_b of {file.removesuffix('.toml')} with its holes, lobes, nothing on the seat",

@@ -13,7 +13,6 @@ import pytest
 from hole_free import hole_free
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
@@ -37,7 +36,7 @@ def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
     design = hole_free(file, "flexspline", changes)
     part = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
     w0, wall = design.gear.centre_distance_mm, design.flexspline.wall_thickness_mm
-    exact = ellipse_stress(meridian(design, "flexspline"), part.material, w0, wall, 0.005)
+    exact = ellipse_stress(design.part("flexspline").meridian, part.material, w0, wall, 0.005)
     peak = solid_ellipse(part).peak
     figures = (exact.peak.mises_MPa, peak.mises_MPa, "MPa")
     record(f"{case.capitalize()} on the ellipse, peak of the solid model", "meridian", *figures)

@@ -12,10 +12,9 @@ from hole_free import EXAMPLES
 from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_stress
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
-from flexspline.geometry.exclusion import exclusion_mm
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian, with_narrow_seat
+from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.pipeline.load_cases import NARROW_SEAT, SEAT_TOLERANCE
 
 PAGE = Path(__file__).parents[2] / "docs" / "theory.md"
@@ -23,17 +22,17 @@ RING = "flexspline.ring_width_mm"
 
 
 def on_a_seat(design: Design, share: float) -> RevolvedField:
-    outline = meridian(design, "flexspline")
+    outline = design.part("flexspline").meridian
     if share < 1:
         outline = with_narrow_seat(outline, share)
     material = Elastic.of(design.material.flexspline)
-    w0, apart = design.gear.centre_distance_mm, exclusion_mm(design.flexspline)
+    w0, apart = design.gear.centre_distance_mm, design.part("flexspline").exclusion_mm
     return ellipse_stress(outline, material, w0, apart, SEAT_TOLERANCE)
 
 
 @pytest.mark.parametrize("example", ["xb1-40", "hat-25"])
 def test_a_narrow_seat_leaves_the_body_as_it_was(example: str) -> None:
-    whole = meridian(load_design(EXAMPLES / f"{example}.toml"), "flexspline")
+    whole = load_design(EXAMPLES / f"{example}.toml").part("flexspline").meridian
     half = with_narrow_seat(whole, 0.5)
     assert half.volume == pytest.approx(whole.volume, rel=1e-12)
     assert half.patch_area("seat") == pytest.approx(whole.patch_area("seat") / 2, rel=1e-12)

@@ -49,7 +49,7 @@ def test_wedge_is_the_full_model(record) -> None:
     """
     design = design_from(tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8")))
     material = Elastic.of(design.material.flexspline)
-    coarse = replace(first_spec(design, "flexspline"), grading=Grading(1.0, 4.0))
+    coarse = replace(first_spec(design.part("flexspline")), grading=Grading(1.0, 4.0))
     wedge = mesher(design, "flexspline", "chosen")(coarse)
     whole = unfolded(wedge, 360.0)
     assert len(whole.cells) == 12 * len(wedge.cells)
@@ -63,10 +63,10 @@ def test_wedge_agrees_with_the_full_model_meshed_apart(record) -> None:
     """The same by fTetWild, with a mesh of its own for each (within 0.3 %)."""
     design = design_from(tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8")))
     material = Elastic.of(design.material.flexspline)
-    first = first_spec(design, "flexspline")
+    first = first_spec(design.part("flexspline"))
     K = {}
     for degrees, unrolled in ((30.0, first.unrolled_radius), (360.0, 0.0)):
-        surface = tagged_surface(design, "flexspline", degrees, 0.03, edge_spacing=0.1)
+        surface = tagged_surface(design.part("flexspline"), degrees, 0.03, edge_spacing=0.1)
         spec = replace(first, unrolled_radius=unrolled, grading=Grading(0.4, 2.0, 1.0))
         mesh = mesh_surface(surface, spec)
         solved = torsion(Model.of(mesh, material), "mesh")

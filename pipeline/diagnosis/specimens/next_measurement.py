@@ -56,9 +56,9 @@ def _separating(
     """The dimension whose change drives the two nearest rivals furthest apart."""
     fits = (decision.chosen, *decision.rivals)
     bench.context.progress.note("the specimen that would tell the rivals apart")
-    found: list[tuple[float, str, float]] = []
+    found: list[tuple[float, str, float, float]] = []
     for name in PARTS[part]:
-        for key, nominal in lengths(design, name).items():
+        for key, nominal in lengths(design.part(name)).items():
             for factor in () if key.endswith(ANOTHER_GEAR) else FACTORS:
                 value = round(nominal * factor, 3)
                 try:
@@ -66,7 +66,7 @@ def _separating(
                     apart = _apart(fits, _compliances(fits, bench, other, part)) / noise
                 except (DesignError, ComputationError):
                     continue
-                found.append((apart, key, value))
+                found.append((apart, key, value, nominal))
     titles = " from ".join(
         [
             causes_title(decision.found[0].id),
@@ -75,10 +75,10 @@ def _separating(
     )
     if not found:
         return NextMeasurement("fixture", f"another fixture, to tell {titles}", 0.0)
-    apart, key, value = max(found)
+    apart, key, value, nominal = max(found)
     return NextMeasurement(
         key,
-        f"a specimen with {key} = {value:g} instead of {lengths(design, key.split('.')[0])[key]:g}: the "
+        f"a specimen with {key} = {value:g} instead of {nominal:g}: the "
         f"predicted stiffnesses nearest to each other then differ by {apart:.1f} times the noise; it tells "
         f"{titles}",
         apart,

@@ -8,7 +8,7 @@ relative changes: a hole changes the stiffness, hardly how it depends on a wall.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import log
 
@@ -21,11 +21,11 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values, without_holes
-from flexspline.geometry.meridian import meridian
+from flexspline.geometry.part import PartName
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
-from flexspline.pipeline.parts import DRIVEN, AnalysisContext
+from flexspline.pipeline.parts import AnalysisContext
 
 FE_TOLERANCE = 1e-3
 """Of the hole-free model: a step below changes K by more than ten times as much."""
@@ -38,7 +38,11 @@ FEELS = 0.02
 MOST_SOLVED = 24
 """Specimens whose sensitivities are solved; of more, the others' follow by a plane over the logarithms of
 their dimensions, which leaves some percent of a slope."""
-PARTS = {"flexspline": ("flexspline",), "shaft": ("shaft",), "series": ("flexspline", "shaft")}
+PARTS: Mapping[str, tuple[PartName, ...]] = {
+    "flexspline": ("flexspline",),
+    "shaft": ("shaft",),
+    "series": ("flexspline", "shaft"),
+}
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class Sensitivity:
     """
 
     key: str
-    part: str
+    part: PartName
     nominal_mm: np.ndarray
     tolerance_mm: float
     slope: np.ndarray
@@ -112,33 +116,31 @@ class Bench:
     K_e: float
     full: bool
 
-    def compliance(self, design: Design, part: str) -> float:
+    def compliance(self, design: Design, part: PartName) -> float:
         """Of one part of a design [rad per N·m], load case as in the sum."""
         nominal = self.K_b if part == "flexspline" else self.K_e
         mine, other = self._model(design, part), self._model(self.context.design, part)
         return mine / other / nominal
 
-    def _model(self, design: Design, part: str) -> float:
+    def _model(self, design: Design, part: PartName) -> float:
         lobed = part == "flexspline" and design.solver.load_case == "lobes"
         if self.full and not lobed:
             return 1 / replace(self.context, design=design).part(part).stiffness().K_Nm_per_rad
         return self.plain(design, part, lobed)
 
-    def plain(self, design: Design, part: str, lobed: bool = False) -> float:
+    def plain(self, design: Design, part: PartName, lobed: bool = False) -> float:
         """Compliance [rad per N·m] of the part without holes."""
         solid = replace(self.context, design=design).part(part).context.design
-        bare = without_holes(solid)
-        own = bare.shaft_material if part == "shaft" else bare.material.flexspline
-        material = Elastic.of(own)
-        shape = (bare.shaft if part == "shaft" else bare.flexspline).model_dump(mode="json")
+        own = without_holes(solid).part(part)
+        material, shape = Elastic.of(own.material), own.shape.model_dump(mode="json")
         tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
 
         def make() -> float:
-            outline = meridian(bare, part)
+            outline = own.meridian
             if lobed:
                 found = lobe_stiffness(outline, material, True, tolerance)
             else:
-                found = torsional_stiffness(outline, material, DRIVEN[part], tolerance)
+                found = torsional_stiffness(outline, material, own.driven, tolerance)
             return 1 / settled(found).K_Nm_per_rad
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
@@ -176,7 +178,7 @@ def compliances(
     """
     known: dict[tuple[str, str], float] = {}
 
-    def once(what: str, design: Design, part: str) -> float:
+    def once(what: str, design: Design, part: PartName) -> float:
         key = (what, design.model_dump_json() + part)
         if key not in known:
             lobed = what == "lobes"
@@ -188,7 +190,7 @@ def compliances(
         return known[key]
 
     n = len(designs)
-    own = {p: np.zeros(n) for p in ("flexspline", "shaft")}
+    own = {p: np.zeros(n) for p in PARTS["series"]}
     zone = np.zeros(n)
     base = 1.0 if bench.context.design.solver.load_case == "lobes" else 0.0
     for i, (design, part) in enumerate(zip(designs, parts, strict=True)):
@@ -213,14 +215,14 @@ def _sensitivities(
     bench: Bench,
     designs: Sequence[Design],
     has: np.ndarray,
-    part: str,
+    part: PartName,
     keys: Collection[str] | None,
 ) -> list[Sensitivity]:
     """Of every length of the part that all specimens with the part have."""
     mine = [d for d, h in zip(designs, has, strict=True) if h]
     if not mine:
         return []
-    each = [lengths(d, part) for d in mine]
+    each = [lengths(d.part(part)) for d in mine]
     found = []
     for key in each[0]:
         if not all(key in e for e in each) or (keys is not None and key not in keys):
@@ -281,7 +283,7 @@ def refined(bench: Bench, fe: Compliances, key: str, off_mm: float) -> Complianc
 
 
 def _log_slope(
-    bench: Bench, design: Design, part: str, key: str, nominal: float, tolerance: float
+    bench: Bench, design: Design, part: PartName, key: str, nominal: float, tolerance: float
 ) -> tuple[float, float]:
     """Slope and curvature of ln C over ln d; one-sided where the geometry has no room."""
     step = min(max(tolerance, SMALLEST_STEP * nominal), LARGEST_STEP * nominal)

@@ -93,8 +93,8 @@ def test_keys_are_read_and_replaced() -> None:
     )
     assert value_at(changed, "shaft.segment[1].length_mm") == 25.0
     assert value_at(changed, "shaft.segment[7].length_mm") is None
-    assert "flexspline.bolt_hole_diameter_mm" not in lengths(DESIGN, "flexspline")
-    assert lengths(DESIGN, "shaft")["shaft.segment[0].outer_diameter_mm"] == 20.0
+    assert "flexspline.bolt_hole_diameter_mm" not in lengths(DESIGN.part("flexspline"))
+    assert lengths(DESIGN.part("shaft"))["shaft.segment[0].outer_diameter_mm"] == 20.0
     assert not without_holes(DESIGN).flexspline.bolt_count
 
 

@@ -17,7 +17,6 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
-from flexspline.geometry.meridian import meridian
 from flexspline.pipeline.study.sensitivity import _held, sensitivities
 
 
@@ -44,8 +43,8 @@ def test_the_windup_falls_where_the_stiffness_rises() -> None:
 def shaft() -> tuple[Design, Twist]:
     """The example's shaft without holes, whose bore is one line, turned."""
     plain = without_holes(load_design(EXAMPLES / "xb1-40.toml"))
-    material = Elastic.of(plain.shaft_material)
-    return plain, twist(meridian(plain, "shaft"), material, "grip", 1e-3)
+    material = Elastic.of(plain.part("shaft").material)
+    return plain, twist(plain.part("shaft").meridian, material, "grip", 1e-3)
 
 
 BORES = "shaft.segment[0].inner_diameter_mm", "shaft.segment[1].inner_diameter_mm"
@@ -54,7 +53,7 @@ BORES = "shaft.segment[0].inner_diameter_mm", "shaft.segment[1].inner_diameter_m
 def test_a_layer_adds_what_a_mesh_that_follows_adds(shaft: tuple[Design, Twist]) -> None:
     """Both bores at once keep the corners: volume and surface give one derivative."""
     design, solved = shaft
-    wider = meridian(with_values(design, dict.fromkeys(BORES, 6.01)), "shaft")
+    wider = with_values(design, dict.fromkeys(BORES, 6.01)).part("shaft").meridian
     followed = moved_stiffness(solved, wider) - solved.K_Nm_per_rad
     # the surface takes the strain of an energy that is known to 1e-3, thus to its root, 3 %
     assert layer_stiffness(solved, wider) == pytest.approx(followed, rel=0.03)
@@ -64,7 +63,9 @@ def test_layers_of_each_bore_add_up(shaft: tuple[Design, Twist]) -> None:
     """Each alone is a step; edges cut by the step's place count by points, of which each has 16."""
     design, solved = shaft
     one, two, both = (
-        layer_stiffness(solved, meridian(with_values(design, dict.fromkeys(keys, 6.01)), "shaft"))
+        layer_stiffness(
+            solved, with_values(design, dict.fromkeys(keys, 6.01)).part("shaft").meridian
+        )
         for keys in (BORES[:1], BORES[1:], BORES)
     )
     assert one + two == pytest.approx(both, rel=0.02)
@@ -74,7 +75,7 @@ def test_a_surface_that_is_turned_has_no_layer(shaft: tuple[Design, Twist]) -> N
     design, solved = shaft
     thicker = with_values(design, {"shaft.segment[1].outer_diameter_mm": 18.01})
     with pytest.raises(HeldSurfaceError) as caught:
-        layer_stiffness(solved, meridian(thicker, "shaft"))
+        layer_stiffness(solved, thicker.part("shaft").meridian)
     assert caught.value.patch == "grip"
     assert caught.value.by_mm == pytest.approx(0.005)
 

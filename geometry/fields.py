@@ -1,0 +1,45 @@
+"""Types of the design file's fields: frozen strict tables, and numbers with their ranges."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from flexspline.geometry import ranges
+
+SMALLEST_MM = ranges.LENGTH_mm.low
+
+
+def _zero_or_visible(value: float) -> float:
+    if 0 < value < SMALLEST_MM:
+        raise ValueError(f"must be 0 or at least {SMALLEST_MM}")
+    return value
+
+
+def within(range_: ranges.Range, description: str | None = None) -> Any:
+    """A field's limits."""
+    return Field(ge=range_.low, le=range_.high, allow_inf_nan=False, description=description)
+
+
+Length = Annotated[float, within(ranges.LENGTH_mm, "mm")]
+LengthOrZero = Annotated[
+    float,
+    Field(
+        ge=0,
+        le=ranges.LENGTH_mm.high,
+        allow_inf_nan=False,
+        description="mm",
+        json_schema_extra={"anyOf": [{"const": 0}, {"minimum": SMALLEST_MM}]},
+    ),
+    AfterValidator(_zero_or_visible),
+]
+Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False, description="%")]
+Micrometre = Annotated[float, within(ranges.CLEARANCE_um, "µm")]
+BoltCount = Annotated[int, Field(ge=0, le=200)]
+
+
+class Table(BaseModel):
+    """A table of the design file: unknown keys and other types are refused, values never change."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)

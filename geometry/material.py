@@ -1,0 +1,34 @@
+"""What a part is made of."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from flexspline.geometry import ranges
+from flexspline.geometry.fields import Table, within
+
+STEEL_KG_PER_M3 = 7850.0
+"""Density where the file states none: that of steel."""
+
+
+class Material(Table):
+    """Isotropic linear elastic material."""
+
+    name: str = Field(min_length=1, max_length=200, description="for the report")
+    youngs_modulus_GPa: Annotated[float, within(ranges.YOUNGS_MODULUS_GPa)] = Field(
+        description="GPa, E"
+    )
+    poissons_ratio: Annotated[float, within(ranges.POISSONS_RATIO)] = Field(description="1, ν")
+    fatigue_limit_MPa: Annotated[float, within(ranges.FATIGUE_LIMIT_MPa)] | None = Field(
+        default=None, description="MPa, optional, compared with stress"
+    )
+    density_kg_per_m3: Annotated[float, within(ranges.DENSITY_kg_per_m3)] = Field(
+        default=STEEL_KG_PER_M3, description="kg/m³, for the mass alone; absent: steel's 7850"
+    )
+
+    @property
+    def density_stated(self) -> bool:
+        """Whether the file gives the density; else it is taken for steel's."""
+        return "density_kg_per_m3" in self.model_fields_set

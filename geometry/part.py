@@ -1,0 +1,80 @@
+"""One part of a gear, the flexspline or the shaft: its shape, its material, and what follows from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from flexspline.geometry.material import Material
+from flexspline.geometry.meridian import meridian_of
+from flexspline.geometry.outline import Meridian
+from flexspline.geometry.shapes import BoltCircle, Cup, Hat, Shaft, Slot
+
+PartName = Literal["flexspline", "shaft"]
+SHARE_OF_RADIUS = 1 / 20
+"""Of the shaft's least outer radius, in the stress rule. A shaft's wall is often most of its radius; one
+such wall from every edge would leave out its fillets, which count in full. What a rigid grip adds at its
+edge has died out by a small share of the radius: at 1/20 the peaks of the examples' shafts lie in their
+fillets, at 1/45 at the grip."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """The flexspline or the shaft."""
+
+    shape: Cup | Hat | Shaft
+    material: Material
+
+    @property
+    def name(self) -> PartName:
+        """Its table in the design file."""
+        return "shaft" if isinstance(self.shape, Shaft) else "flexspline"
+
+    @property
+    def driven(self) -> str:
+        """The patch that the torque turns; the patch `mount` is held."""
+        return "grip" if isinstance(self.shape, Shaft) else "mesh"
+
+    @cached_property
+    def meridian(self) -> Meridian:
+        """The outline in the (r, z) half plane, holes and keyway left out."""
+        return meridian_of(self.shape)
+
+    @property
+    def length(self) -> float:
+        """Along the axis [mm]."""
+        return self.shape.length
+
+    @property
+    def bolts(self) -> BoltCircle | None:
+        """The bolt holes, from z = 0 to `hole_depth`; None where there are none."""
+        return self.shape.bolts
+
+    @property
+    def hole_depth(self) -> float:
+        """z at which the bolt holes end [mm]."""
+        return self.shape.hole_depth
+
+    @property
+    def keyway(self) -> Slot | None:
+        """The slot of a shaft's keyway."""
+        return self.shape.slot if isinstance(self.shape, Shaft) else None
+
+    @property
+    def is_revolved(self) -> bool:
+        """Whether the part is a body of revolution: no bolt holes, no keyway."""
+        return self.bolts is None and self.keyway is None
+
+    @property
+    def exclusion_mm(self) -> float:
+        """Points nearer than this to a sharp edge or a patch edge count for no peak stress [mm].
+
+        One wall thickness: the flexspline's `wall_thickness_mm`; the shaft's thinnest wall, and at most
+        SHARE_OF_RADIUS of its least outer radius.
+        """
+        if not isinstance(self.shape, Shaft):
+            return self.shape.wall_thickness_mm
+        walls = [(s.outer_diameter_mm - s.inner_diameter_mm) / 2 for s in self.shape.segment]
+        radius = min(s.outer_diameter_mm for s in self.shape.segment) / 2
+        return min(*walls, SHARE_OF_RADIUS * radius)

@@ -1,0 +1,58 @@
+"""What follows from a part's shape and material; the stress rule's distance is each part's own."""
+
+from __future__ import annotations
+
+import pytest
+from changed_design import EXAMPLES, changed_design, shaft_of
+
+from flexspline.geometry.keys import without_holes
+from flexspline.geometry.load import load_design
+
+
+def test_a_flexsplines_is_its_wall() -> None:
+    design = changed_design("xb1-40", {"flexspline.wall_thickness_mm": "0.45"})
+    assert design.part("flexspline").exclusion_mm == 0.45
+
+
+@pytest.mark.parametrize("wall", ["0.25", "0.45", "0.55"])
+def test_a_shafts_does_not_move_with_the_flexsplines_wall(wall: str) -> None:
+    plain = load_design(EXAMPLES / "xb1-40.toml")
+    changed = changed_design("xb1-40", {"flexspline.wall_thickness_mm": wall})
+    assert changed.part("shaft").exclusion_mm == plain.part("shaft").exclusion_mm
+
+
+def test_a_thin_shafts_is_its_thinnest_wall_and_a_thick_ones_a_share_of_its_radius() -> None:
+    # segments as (length, outer, inner): walls of 4 and 0.3 mm, least outer radius 10 mm
+    thin = shaft_of([(10.0, 24.0, 16.0), (10.0, 20.0, 19.4)], fillet=0.1)
+    assert thin.part("shaft").exclusion_mm == pytest.approx(0.3)
+    thick = shaft_of([(10.0, 24.0, 0.0), (10.0, 20.0, 0.0)])
+    assert thick.part("shaft").exclusion_mm == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("example", ["xb1-40", "hat-25"])
+def test_a_part_is_turned_at_a_patch_of_its_meridian_and_held_at_mount(example: str) -> None:
+    for part in load_design(EXAMPLES / f"{example}.toml").parts:
+        assert {part.driven, "mount"} <= {s.patch for s in part.meridian.segments}
+
+
+def test_holes_end_with_boss_flange_or_first_segment() -> None:
+    cup, hat = (load_design(EXAMPLES / f"{name}.toml") for name in ("xb1-40", "hat-25"))
+    assert cup.part("flexspline").hole_depth == cup.flexspline.boss_thickness_mm
+    assert hat.part("flexspline").hole_depth == hat.flexspline.flange_thickness_mm
+    assert cup.part("shaft").hole_depth == cup.shaft.segment[0].length_mm
+
+
+def test_holes_or_a_keyway_keep_a_part_from_being_a_body_of_revolution() -> None:
+    design = load_design(EXAMPLES / "xb1-40.toml")
+    assert not any(part.is_revolved for part in design.parts)
+    bare = without_holes(design)
+    assert all(part.is_revolved for part in bare.parts)
+    keyway = {"width_mm": 2.0, "depth_mm": 1.0, "length_mm": 5.0}
+    assert not bare.changed({"shaft.keyway": keyway}).part("shaft").is_revolved
+
+
+def test_a_shaft_without_a_material_has_the_flexsplines() -> None:
+    design = load_design(EXAMPLES / "xb1-40.toml")
+    materials = design.material.model_copy(update={"shaft": None})
+    alone = design.model_copy(update={"material": materials})
+    assert alone.part("shaft").material == design.material.flexspline
