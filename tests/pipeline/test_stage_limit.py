@@ -11,7 +11,7 @@ from flexspline.fea.axisymmetric import lobes
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import rim
+from flexspline.pipeline import load_cases
 from flexspline.pipeline.analysis import CACHED_TYPES, Stiffnesses, stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
@@ -38,7 +38,7 @@ def slow_lobes(monkeypatch) -> None:
         return solve(*given)
 
     monkeypatch.setattr(lobes, "solve_lobes", slow)
-    monkeypatch.setattr(rim, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]]))
+    monkeypatch.setattr(load_cases, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]]))
 
 
 def test_every_figure_is_given_and_the_wide_ones_are_said(tmp_path, slow_lobes) -> None:
@@ -66,7 +66,7 @@ def test_the_next_run_tries_again(tmp_path, slow_lobes, monkeypatch) -> None:
 
 
 def test_no_time_at_all_leaves_the_figures_out(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(rim, "STAGE_SECONDS", 0.0)
+    monkeypatch.setattr(load_cases, "STAGE_SECONDS", 0.0)
     found = answers(tmp_path)
     assert found.K_b is not None
     assert {

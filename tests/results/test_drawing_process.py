@@ -18,7 +18,7 @@ from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 
 @pytest.fixture(autouse=True)
 def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1] / "helpers"))
 
 
 def test_what_is_written_comes_back_and_arrays_keep_their_bits() -> None:

@@ -39,7 +39,7 @@ def diagnosed(folder: str) -> list:
     design = PAGE.parents[1] / "examples" / "xb1-40.toml"
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, folder, str(design)],
-        capture_output=True, text=True, check=False, cwd=Path(__file__).parent,
+        capture_output=True, text=True, check=False, cwd=Path(__file__).parents[2] / "helpers",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

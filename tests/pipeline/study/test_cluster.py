@@ -55,7 +55,7 @@ def test_a_scheduler_that_does_not_answer_is_wrong_input(
 def test_a_running_scheduler_takes_the_study(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2] / "helpers"))
     from distributed import LocalCluster
 
     study = study_of(GRID)

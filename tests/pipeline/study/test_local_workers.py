@@ -16,8 +16,6 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerStartError
 
-HERE = Path(__file__).parent
-
 
 class TwoWords(Exception):
     """Pickles, and cannot be made again from its one message."""

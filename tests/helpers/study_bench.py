@@ -12,7 +12,7 @@ from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.load import Study, study_from
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
 
 GRID = f"""

@@ -8,7 +8,7 @@ from pathlib import Path
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 
-CUP = Path(__file__).parents[1] / "examples" / "xb1-40.toml"
+CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 
 
 def toothed(flank: str, **changes: float) -> Design:

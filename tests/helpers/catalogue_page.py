@@ -9,7 +9,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.catalogue.compare import CatalogueFinding, compare
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 DATA = ROOT / "examples" / "catalogue"
 PAGE = ROOT / "docs" / "catalogue.md"
 

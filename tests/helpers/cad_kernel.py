@@ -21,6 +21,6 @@ def why_no_cad() -> str:
     """The reason, "" where it does."""
     out = subprocess.run(
         [sys.executable, "-c", _LOAD],
-        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False,
+        cwd=Path(__file__).parents[2], capture_output=True, text=True, check=False,
     )  # fmt: skip
     return "" if out.returncode == 0 else out.stderr.strip().splitlines()[-1]

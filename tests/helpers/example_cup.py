@@ -7,7 +7,7 @@ from flexspline.geometry.shapes import Cup
 
 
 def _revolved() -> Cup:
-    cup = load_design(Path(__file__).parents[1] / "examples" / "xb1-40.toml").flexspline
+    cup = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").flexspline
     assert isinstance(cup, Cup)
     return cup.model_copy(update={"bolt_count": 0})
 

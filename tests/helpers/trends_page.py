@@ -1,4 +1,4 @@
-"""The source's table of trends against studies of it: `python tests/pipeline/study/trends_page.py`
+"""The source's table of trends against studies of it: `python tests/helpers/trends_page.py`
 writes docs/trends.md."""
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.run import run_study, trial_store_of
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "trends.md"
 EXACT = 1e-9
 """Closed forms: rounding only."""
@@ -180,7 +180,7 @@ def page() -> str:
         "",
         "Each row is a study in `examples/studies/trends-*.toml` of the XB1-40 cup (fast model, bolt",
         "holes and keyway left out). Values in arcsec, K_b in kN·m/rad. Power: the exponent n of",
-        "term ∝ xⁿ, end to end. Written by `python tests/pipeline/study/trends_page.py`.",
+        "term ∝ xⁿ, end to end. Written by `python tests/helpers/trends_page.py`.",
     ]  # fmt: skip
     for name, (title, unit, claims) in ROWS.items():
         s = sweep(name)

@@ -7,7 +7,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 _DRAW = """
 from flexspline.geometry.errors import ComputationError
 from flexspline.results.renders.opengl import choose_opengl
