@@ -38,7 +38,9 @@ def slow_lobes(monkeypatch) -> None:
         return solve(*given)
 
     monkeypatch.setattr(lobes, "solve_lobes", slow)
-    monkeypatch.setattr(load_cases, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]]))
+    monkeypatch.setattr(
+        load_cases, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]])
+    )
 
 
 def test_every_figure_is_given_and_the_wide_ones_are_said(tmp_path, slow_lobes) -> None:
