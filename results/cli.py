@@ -171,16 +171,27 @@ def export(
     deck: Annotated[
         bool, typer.Option("--deck", help="Also the torsion case as CalculiX/Abaqus decks (.inp).")
     ] = False,
+    formats: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help="Also the whole parts' meshes with named patches: msh, med, bdf, inp, vtu, xdmf;"
+            " several with commas between, or the option again.",
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """STEP and STL of both parts, and the solved fields as VTU."""
     with answered(design):
+        from flexspline.results.mesh_files import chosen_formats
+
+        chosen = chosen_formats(formats or ())
         job = begin(design, out)
-        from flexspline.results.export import write_decks, write_exports
+        from flexspline.results.export import write_exports
         from flexspline.results.records import as_json, heading
 
-        files = write_exports(job.context, job.folder)
-        files += write_decks(job.context, job.folder) if deck else []
+        files = write_exports(job.context, job.folder, chosen, deck)
         record = {**heading(job.design), "files": [str(f) for f in files]}
         show(as_json(record) if json else "\n".join(record["files"]), json)
 

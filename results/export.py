@@ -1,9 +1,9 @@
-"""STEP, STL and VTU files of a design."""
+"""STEP, STL, VTU and mesh files of a design."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -14,19 +14,24 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.load_cases import wave_generator_field
-from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.results.atomic import write_bytes
+from flexspline.results.mesh_files import PatchedMesh, write_mesh
 from flexspline.results.renders.whole import Parity, whole_part
 
 STL_CHORD_ERROR_MM = 0.01
 """Below what a printer or a viewer resolves."""
 
 
-def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
+def write_exports(
+    context: AnalysisContext, folder: Path, formats: Sequence[str] = (), deck: bool = False
+) -> list[Path]:
     """Whole parts as STEP and STL [mm]; solved fields as VTU: displacement [mm], von Mises [MPa].
 
-    Every file appears whole or not at all.
+    `formats` (`results.mesh_files`): also the meshes that gave K, of the whole parts. `deck`: also the
+    torsion case as CalculiX/Abaqus decks. CAD comes first, and each file as soon as it can be written, whole
+    or not at all.
     """
     done: list[Path] = []
     for part in context.design.parts:
@@ -35,16 +40,14 @@ def write_exports(context: AnalysisContext, folder: Path) -> list[Path]:
             done.append(_whole(folder / f"{part.name}.step", partial(write_step, solid)))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
             done.append(_whole(folder / f"{part.name}.stl", stl))
-    flexspline, shaft = context.part("flexspline"), context.part("shaft")
-    fields: tuple[tuple[str, SolidField, Parity], ...] = (
-        ("flexspline_torque", torque_field(flexspline), "antisymmetric"),
-        ("shaft_torque", torque_field(shaft), "antisymmetric"),
-        ("wave_generator", wave_generator_field(flexspline), "symmetric"),
-    )
-    for name, field, parity in fields:
-        with context.progress.stage(f"VTU {name}"):
-            done.append(_whole(folder / f"{name}.vtu", partial(_write_vtu, field, parity)))
-    return done
+    for model in (context.part("flexspline"), context.part("shaft")):
+        done += _write_meshes(model, folder, formats)
+        done += [_write_deck(model, folder)] if deck else []
+        torque = folder / f"{model.name}_torque.vtu"
+        done.append(_write_field(model, torque, torque_field, "antisymmetric"))
+    flexspline = context.part("flexspline")
+    wave_generator = folder / "wave_generator.vtu"
+    return [*done, _write_field(flexspline, wave_generator, wave_generator_field, "symmetric")]
 
 
 def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:
@@ -57,23 +60,32 @@ def write_step_files(design: Design, folder: Path, progress: Progress) -> list[P
     return done
 
 
-def write_decks(context: AnalysisContext, folder: Path) -> list[Path]:
-    """The torsion case of both parts as CalculiX/Abaqus decks, on the meshes that gave K."""
+def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list[Path]:
+    if not formats:
+        return []
+    mesh = PatchedMesh.of(part.name, part.twisted().meshed.mesh)
     done = []
-    for part in (context.part("flexspline"), context.part("shaft")):
-        name, driven = part.name, part.part.driven
-        twisted = part.twisted()
-        with context.progress.stage(f"deck of the {name}"):
-            on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad
-            title = f"{context.design.name}: {name} under torsion"
-            text = torsion_deck(twisted.meshed.mesh, part.material, driven, on_this_mesh, title)
-            done.append(folder / f"{name}_torsion.inp")
-            write_bytes(done[-1], text.encode())
+    for suffix in formats:
+        with part.context.progress.stage(f"{suffix} of the {part.name}"):
+            done.append(_whole(folder / f"{part.name}.{suffix}", partial(write_mesh, mesh)))
     return done
 
 
+def _write_deck(part: PartModel, folder: Path) -> Path:
+    """The torsion case as a CalculiX/Abaqus deck, on the sector's mesh that gave K."""
+    twisted = part.twisted()
+    path = folder / f"{part.name}_torsion.inp"
+    with part.context.progress.stage(f"deck of the {part.name}"):
+        on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad
+        title = f"{part.context.design.name}: {part.name} under torsion"
+        mesh, driven = twisted.meshed.mesh, part.part.driven
+        text = torsion_deck(mesh, part.material, driven, on_this_mesh, title)
+        write_bytes(path, text.encode())
+    return path
+
+
 ENDINGS = {".step": b"END-ISO-10303-21;", ".vtu": b"</VTKFile>"}
-"""How whole files end: their writers say nothing of a full disk."""
+"""How whole files end: CAD's writers say nothing of a full disk."""
 STL_HEAD_BYTES, STL_TRIANGLE_BYTES = 84, 50
 """Of the binary format."""
 
@@ -103,15 +115,17 @@ def _is_whole(data: bytes, suffix: str) -> bool:
     if suffix == ".stl":
         triangles = int.from_bytes(data[80:84], "little")
         return len(data) == STL_HEAD_BYTES + STL_TRIANGLE_BYTES * triangles > STL_HEAD_BYTES
-    return data.rstrip().endswith(ENDINGS[suffix])
+    return bool(data) and data.rstrip().endswith(ENDINGS.get(suffix, b""))
 
 
-def _write_vtu(field: SolidField, parity: Parity, path: Path) -> None:
-    """The whole part, the sector reflected and turned, as quadratic tetrahedra."""
-    import pyvista as pv
+def _write_field(
+    part: PartModel, path: Path, solve: Callable[[PartModel], SolidField], parity: Parity
+) -> Path:
+    """A field of the whole part, the sector reflected and turned, as quadratic tetrahedra."""
+    import meshio
 
-    whole = whole_part(field.mesh, field.displacement, field.mises, parity)
-    grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: whole.cells}, whole.nodes)
-    grid.point_data["displacement_mm"] = whole.displacement
-    grid.point_data["von_mises_MPa"] = whole.mises
-    grid.save(path)
+    field = solve(part)
+    with part.context.progress.stage(f"VTU {path.stem}"):
+        whole = whole_part(field.mesh, field.displacement, field.mises, parity)
+        data = {"displacement_mm": whole.displacement, "von_mises_MPa": whole.mises}
+        return _whole(path, meshio.Mesh(whole.nodes, [("tetra10", whole.cells)], data).write)

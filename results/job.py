@@ -20,10 +20,22 @@ if TYPE_CHECKING:
     from flexspline.results.report.attached import Attachment
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
+
+
+def _folder(word: str) -> Path:
+    """As pathlib reads it, which would take an empty word for the current folder."""
+    if not word:
+        raise typer.BadParameter("names no folder; . is the current one")
+    return Path(word)
+
+
 Out = Annotated[
     Path | None,
     typer.Option(
-        "--out", metavar="DIR", help="Where files go; default beside the input, NAME.out/"
+        "--out",
+        metavar="DIR",
+        parser=_folder,
+        help="Where files go; default beside the input, NAME.out/",
     ),
 ]
 MeasuredFile = Annotated[

@@ -121,12 +121,18 @@ def test_damaged_cache_entries_are_discarded_and_said(finished, tmp_path: Path) 
 @pytest.mark.cad
 def test_export_writes_cad_and_fields(finished, tmp_path: Path) -> None:
     _, cache, _ = finished
-    done = flexspline("export", CUP, "--out", tmp_path, "--json", cache=cache)
-    names = {Path(f).name for f in json.loads(done.stdout)["files"]}
-    assert names == {
-        "flexspline.step", "flexspline.stl", "shaft.step", "shaft.stl",
-        "flexspline_torque.vtu", "shaft_torque.vtu", "wave_generator.vtu",
-    }  # fmt: skip
+    done = flexspline(
+        "export", CUP, "--out", tmp_path, "--format", "msh,vtu", "--deck", "--json", cache=cache
+    )
+    names = [Path(f).name for f in json.loads(done.stdout)["files"]]
+    fields = {"flexspline_torque.vtu", "shaft_torque.vtu", "wave_generator.vtu"}
+    asked = {"flexspline.msh", "shaft.msh", "flexspline.vtu", "shaft.vtu"}
+    decks = {"flexspline_torsion.inp", "shaft_torsion.inp"}
+    assert names[:4] == ["flexspline.step", "flexspline.stl", "shaft.step", "shaft.stl"]
+    assert set(names[4:]) == fields | asked | decks
+    # CAD is written before anything is solved, and each later file before the next is solved
+    written = [(tmp_path / name).stat().st_mtime_ns for name in names]
+    assert written == sorted(written)
     import pyvista as pv
 
     grid = pv.read(tmp_path / "wave_generator.vtu")
