@@ -29,6 +29,9 @@ NEED_H5PY = ("med", "xdmf")
 NASTRAN_DIGITS = 11
 """Of the largest coordinate: what meshio's 16 characters hold beside a sign and an exponent."""
 
+ABAQUS_FLOAT = ".12e"
+"""CalculiX reads 20 characters of a number."""
+
 
 @dataclass(frozen=True)
 class PatchedMesh:
@@ -153,7 +156,7 @@ def _abaqus(mesh: PatchedMesh, path: Path) -> None:
         point_sets={name.upper(): mesh.nodes_on(i) for i, name in enumerate(mesh.patches)},
     )
     text = io.StringIO()
-    made.write(text, file_format="abaqus")
+    made.write(text, file_format="abaqus", float_fmt=ABAQUS_FLOAT)
     # of the many kinds of ten nodes meshio takes the last that it knows, which CalculiX does not
     path.write_text(text.getvalue().replace("TYPE=C3D10MH", "TYPE=C3D10"), encoding="ascii")
 

@@ -163,6 +163,8 @@ def test_backlash_with_given_stiffness_needs_no_fea(tmp_path: Path) -> None:
         (["backlash", CUP, "--Kb", "-1"], "--Kb"),
         (["backlash", CUP, "--Kb", "nan"], "--Kb"),
         (["init", "bowl"], "bowl"),
+        (["stiffness", CUP, "--out", ""], "names no folder"),
+        (["export", CUP, "--format", "dxf"], "msh, med, bdf, inp, vtu, xdmf"),
         (["stiffness", CUP, "--out", CUP], "--out"),
     ],
 )
