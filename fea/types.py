@@ -142,6 +142,15 @@ class MeshLevel:
     K_check_Nm_per_rad: float | None = None
     residual: float | None = None
 
+    def times(self, factor: float) -> MeshLevel:
+        """As `Stiffness.times`."""
+        check = self.K_check_Nm_per_rad
+        return replace(
+            self,
+            K_Nm_per_rad=self.K_Nm_per_rad * factor,
+            K_check_Nm_per_rad=None if check is None else check * factor,
+        )
+
 
 @dataclass(frozen=True)
 class Stiffness:
@@ -178,6 +187,16 @@ class Stiffness:
     def half_width(self) -> float:
         """Half the distance of the bounds over K."""
         return (self.upper_Nm_per_rad - self.lower_Nm_per_rad) / (2 * self.K_Nm_per_rad)
+
+    def times(self, factor: float) -> Stiffness:
+        """Of a body whose Young's modulus is so many times as large."""
+        return replace(
+            self,
+            K_Nm_per_rad=self.K_Nm_per_rad * factor,
+            lower_Nm_per_rad=self.lower_Nm_per_rad * factor,
+            upper_Nm_per_rad=self.upper_Nm_per_rad * factor,
+            levels=tuple(level.times(factor) for level in self.levels),
+        )
 
 
 def shortest_edge_mm(points: np.ndarray, cells: np.ndarray) -> float:

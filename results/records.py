@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from flexspline.pipeline.backlash import Backlash
     from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
     from flexspline.pipeline.linear_limit import LinearLimit
-    from flexspline.pipeline.live import Bounded
 
 Record = dict[str, Any]
 
@@ -60,7 +59,7 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
     return record
 
 
-def bounded_record(name: str, stiffness: Stiffness | Bounded) -> Record:
+def bounded_record(name: str, stiffness: Stiffness) -> Record:
     """One stiffness, its bounds, and what they are."""
     return {
         f"{name}_Nm_per_rad": stiffness.K_Nm_per_rad,

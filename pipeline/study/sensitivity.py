@@ -11,16 +11,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
-from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.shortfall import settled
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.keys import lengths, with_values, without_holes
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.keys import lengths, with_values
 from flexspline.geometry.part import Part, PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.study.evaluate import OUR_ERRORS, with_equivalent_ring
+from flexspline.pipeline.revolved import revolved, torsion
+from flexspline.pipeline.study.evaluate import OUR_ERRORS
 
 HELD_STEP = 1e-4
 """Of the dimension: the energy's difference is smooth, so only rounding limits the step."""
@@ -87,18 +86,18 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     ------
     DesignError, ComputationError
     """
-    plain = without_holes(with_equivalent_ring(design))
+    plain = revolved(design)
     found: list[Slope] = []
+
+    def changed(values: dict[str, float], name: PartName) -> Part:
+        return with_values(plain, values).part(name)
+
     for part in plain.parts:
         material = Elastic.of(part.material)
         solved = twist(part.meridian, material, part.driven, ENERGY_TOLERANCE)
 
-        def outline(values: dict[str, float], name: PartName) -> Meridian:
-            return with_values(plain, values).part(name).meridian
-
-        def K(v: dict[str, float], part: Part = part, material: Elastic = material) -> float:
-            bounds = torsional_stiffness(outline(v, part.name), material, part.driven, K_TOLERANCE)
-            return settled(bounds).K_Nm_per_rad
+        def K(v: dict[str, float], name: PartName = part.name) -> float:
+            return settled(torsion(changed(v, name), K_TOLERANCE)).K_Nm_per_rad
 
         here = K({})
         slopes = []
@@ -106,7 +105,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
             say(f"dK/dp of {key}")
 
             def moved(v: dict[str, float], part: Part = part, solved: Twist = solved) -> float:
-                return moved_stiffness(solved, outline(v, part.name))
+                return moved_stiffness(solved, changed(v, part.name).meridian)
 
             held, why = None, ""
             try:

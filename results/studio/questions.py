@@ -15,10 +15,10 @@ from flexspline.pipeline.live import (
     field,
     first_field,
     profile,
-    revolved,
     rim,
     torsion,
 )
+from flexspline.pipeline.revolved import revolved
 from flexspline.results.records import bounded_record, peak_record
 from flexspline.results.studio.shape import field_message, profile_message
 from flexspline.results.studio.worker import Fault

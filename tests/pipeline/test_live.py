@@ -14,8 +14,9 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.pipeline import live
 from flexspline.pipeline.load_cases import STRESS_TOLERANCE
+from flexspline.pipeline.revolved import revolved
 
-CUP = live.revolved(design_from(tomllib.loads(template("cup"))))
+CUP = revolved(design_from(tomllib.loads(template("cup"))))
 
 
 def walled(wall_mm: float) -> Design:

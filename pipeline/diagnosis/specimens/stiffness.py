@@ -14,8 +14,6 @@ from math import log
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
-from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.shortfall import settled
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
@@ -26,6 +24,7 @@ from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.revolved import lobes, torsion
 
 FE_TOLERANCE = 1e-3
 """Of the hole-free model: a step below changes K by more than ten times as much."""
@@ -136,11 +135,7 @@ class Bench:
         tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
 
         def make() -> float:
-            outline = own.meridian
-            if lobed:
-                found = lobe_stiffness(outline, material, True, tolerance)
-            else:
-                found = torsional_stiffness(outline, material, own.driven, tolerance)
+            found = lobes(own, True, tolerance) if lobed else torsion(own, tolerance)
             return 1 / settled(found).K_Nm_per_rad
 
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,

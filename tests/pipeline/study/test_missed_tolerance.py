@@ -10,8 +10,12 @@ import pytest
 from flexspline.pipeline.study.evaluate import Task, evaluate
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
-VALUES = {"flexspline.wall_thickness_mm": 0.4321, "flexspline.ring_thickness_mm": 0.5432}
-"""A part of its own: solved parts are remembered."""
+VALUES = {
+    "flexspline.wall_thickness_mm": 0.4321,
+    "flexspline.ring_thickness_mm": 0.5432,
+    "shaft.segment[1].outer_diameter_mm": 17.123,
+}
+"""Parts of their own: solved parts are remembered."""
 
 
 @pytest.fixture

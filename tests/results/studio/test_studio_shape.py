@@ -10,7 +10,8 @@ import pytest
 
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline.live import View, field, revolved
+from flexspline.pipeline.live import View, field
+from flexspline.pipeline.revolved import revolved
 from flexspline.results.studio.shape import field_message
 from flexspline.results.studio.thin import thinned
 
