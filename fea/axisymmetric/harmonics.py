@@ -15,26 +15,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import csr_matrix
+from skfem import LinearForm, condense
 
 from flexspline.fea.axisymmetric.couplings import (
     AXIAL,
     RADIAL,
     TANGENTIAL,
     Couplings,
-    Layout,
-    layout_of,
 )
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.space import Space, isoparametric, relative_residual, solved
+from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual, solved
 from flexspline.fea.types import Elastic
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME
 
 DEGREE = 6
 """Of quadrature: r|∇N|² has degree 3 on straight triangles; the rest serves N²/r and curves."""
+CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
+"""Nodes of the reference triangle in P2 order (2, 6)."""
+INWARD = 1e-6
+"""Fields at nodes are seen this far inside, where u/r is defined even on the axis."""
+PRESSURE = LinearForm(lambda v, w: v * w.x[0])
+PRESSURE_DEGREE = 3
+"""Of shape function times radius on a straight edge."""
 LOST_ENERGY_LIMIT = 1e-6
 """Largest |u·(Ku - f)| over u·Ku. A floppy body's ‖Ku - f‖/‖f‖ is large by rounding alone (1e-7 for an
 unsupported thin cup), so the residual is judged by the energy it carries: there 1e-11."""
@@ -116,44 +123,28 @@ class HarmonicModel:
 
     @cached_property
     def space(self) -> Space:
-        return isoparametric(self.mesh, DEGREE)
+        return curved(self.mesh, DEGREE)
+
+    @cached_property
+    def nodal_basis(self) -> Any:
+        """The same fields seen at the six nodes of each triangle."""
+        return at_points(self.space, 1 / 3 + (1 - INWARD) * (CORNERS_AND_MIDDLES - 1 / 3))
 
     @cached_property
     def couplings(self) -> Couplings:
         """What all harmonics of this mesh are made of."""
         return Couplings(self.space, self.material)
 
-    @cached_property
-    def _layouts(self) -> dict[tuple[int, ...] | tuple[tuple[int, ...], bytes], Layout]:
-        """Of the harmonics' components, and of what is free among them."""
-        return {}
-
-    def _layout(self, wave: Wave) -> Layout:
-        key = wave.components
-        if key not in self._layouts:
-            self._layouts[key] = layout_of(self.couplings.pattern, key, self.space.count)
-        return self._layouts[key]
-
-    def _blocks(self, wave: Wave) -> np.ndarray:
-        return wave.around * self.couplings.blocks(wave.n, wave.components)
-
-    def stiffness(self, wave: Wave) -> csc_matrix:
+    def stiffness(self, wave: Wave) -> csr_matrix:
         """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.
 
         Components that the harmonic does not have are left empty.
         """
-        return self._layout(wave).matrix(self._blocks(wave))
-
-    def supported(self, wave: Wave, free: np.ndarray) -> csc_matrix:
-        """Rows and columns of the stiffness matrix that belong to free unknowns (mask)."""
-        key = wave.components, free.tobytes()
-        if key not in self._layouts:
-            self._layouts[key] = self._layout(wave).among(free)
-        return self._layouts[key].matrix(self._blocks(wave))
+        return wave.around * self.couplings.stiffness(wave.n, wave.components)
 
     def on(self, patch: str) -> np.ndarray:
         """P2 numbers on a patch."""
-        return self.space.on(self.mesh, self.mesh.segments_of(patch))
+        return self.space.on(patch)
 
     def held(self, patch: str) -> list[Fixed]:
         """All components 0 on a patch."""
@@ -168,16 +159,14 @@ class HarmonicModel:
             If the solve loses energy: the body is not held.
         """
         free, u = self.prescribed(wave, fixed)
-        inside = self.supported(wave, free)
-        matrix = self.stiffness(wave) if u.any() else None  # of use where something is moved
-        right = (load if matrix is None else load - matrix @ u)[free]
+        matrix = self.stiffness(wave)
+        inside, right = condense(matrix, load, x=u, I=np.flatnonzero(free), expand=False)
         try:
             u[free] = solved(inside, right)
         except RuntimeError as fault:  # SuperLU's word for an exactly singular matrix
             raise HarmonicError(f"harmonic {wave.n}: {fault}; is the body held?") from fault
-        inner = inside @ u[free]
-        twice_energy = float(u[free] @ inner if matrix is None else u @ (matrix @ u))
-        lost = abs(float(u[free] @ (inner - right)))
+        twice_energy = float(u @ (matrix @ u))
+        lost = abs(float(u[free] @ (inside @ u[free] - right)))
         if not lost < LOST_ENERGY_LIMIT * twice_energy:
             raise HarmonicError(
                 f"harmonic {wave.n}: {lost / max(twice_energy, 1e-300):.1e} of the energy is lost in "
@@ -201,16 +190,17 @@ class HarmonicModel:
 
     def pressed(self, patch: str, component: int, wave: Wave) -> np.ndarray:
         """Nodal forces (3·count,) [N] of a traction of amplitude 1 MPa on a straight patch."""
-        s = self.space
-        load = np.zeros(3 * s.count)
-        mine = np.isin(self.mesh.edge_segment, self.mesh.segments_of(patch))
-        rim = s.rim[mine]
-        ends = s.places[rim[:, :2]]
-        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        x, w = np.polynomial.legendre.leggauss(3)  # shape × radius has degree 3
-        t = (x + 1) / 2
-        shape = np.stack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)])
-        r = ends[:, :1, 0] + t * (ends[:, 1:, 0] - ends[:, :1, 0])
-        forces = wave.around * np.einsum("q,iq,kq,k->ki", w / 2, shape, r, length)
-        np.add.at(load, 3 * rim + component, forces)
-        return load
+        load = np.zeros((self.space.count, 3))
+        load[:, component] = wave.around * self._pressure(patch)
+        return load.ravel()
+
+    def _pressure(self, patch: str) -> np.ndarray:
+        """∫ shape function · r ds on a patch, (count,) [mm²]."""
+        if patch not in self._pressures:
+            facets = self.space.basis.boundary(patch, intorder=PRESSURE_DEGREE)
+            self._pressures[patch] = PRESSURE.assemble(facets)
+        return self._pressures[patch]
+
+    @cached_property
+    def _pressures(self) -> dict[str, np.ndarray]:
+        return {}

@@ -10,8 +10,8 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.points import VALUE, reference
 from flexspline.fea.axisymmetric.recovery import mises_parts
+from flexspline.fea.axisymmetric.space import shape_functions
 from flexspline.fea.stress_rule import Largest
 from flexspline.geometry.errors import ComputationError
 
@@ -135,7 +135,7 @@ def _lattice_values() -> np.ndarray:
     """Shape functions (6, q) on the lattice."""
     i, j = np.meshgrid(np.arange(STEPS + 1), np.arange(STEPS + 1), indexing="ij")
     inside = i + j <= STEPS
-    return reference(np.stack([i[inside], j[inside]]) / STEPS).functions[VALUE]
+    return shape_functions(np.stack([i[inside], j[inside]]) / STEPS)
 
 
 def _counting(

@@ -7,23 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from typing import Any
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.couplings import TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel, Wave
-from flexspline.fea.axisymmetric.points import Points, Reference, mapped, reference
+from flexspline.fea.axisymmetric.space import interpolated
 from flexspline.fea.types import Elastic
 
 RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
 DIRECT = (RR, THETA_THETA, ZZ)
 Parts = Mapping[int, np.ndarray]
 """Stresses by their number, those that are not 0: the first four vary as cos nφ, the others as sin nφ."""
-CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
-"""Nodes of the reference triangle in P2 order (2, 6)."""
-INWARD = 1e-6
-"""Stresses at nodes are taken this far inside, where u/r is defined even on the axis."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +42,8 @@ class Recovered:
 def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Recovered:
     """Smooth the stresses of solved amplitudes (3·count,)."""
     s, material = model.space, model.material
-    local = displacement.reshape(-1, 3).T[:, s.dofs]
-    raw = stress(wave, material, s.points, local)
-    at_nodes = stress(wave, material, mapped(s.places.T[:, s.dofs], _at_nodes()), local)
+    raw = stress(wave, material, s.basis, displacement)
+    at_nodes = stress(wave, material, model.nodal_basis, displacement)
     weight = (s.weights * s.r).sum(axis=1)
     nodes, share = s.dofs.ravel(), np.repeat(weight, 6)
     sums = {k: np.bincount(nodes, share * part.ravel(), s.count) for k, part in at_nodes.items()}
@@ -57,7 +51,7 @@ def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Rec
     nodal = np.zeros((s.count, 6))
     for k, total in sums.items():
         nodal[:, k] = total / shares
-    misfit = {k: s.points.at(nodal[s.dofs, k]) - part for k, part in raw.items()}
+    misfit = {k: s.values(nodal[:, k]) - part for k, part in raw.items()}
     volume = wave.around * s.weights * s.r
     return Recovered(
         nodal,
@@ -67,19 +61,13 @@ def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Rec
     )
 
 
-@cache
-def _at_nodes() -> Reference:
-    return reference(1 / 3 + (1 - INWARD) * (CORNERS_AND_MIDDLES - 1 / 3))
-
-
-def stress(wave: Wave, material: Elastic, points: Points, local: np.ndarray) -> Parts:
-    """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3, m, 6) [mm]."""
-    lam, mu, n, r = material.lam, material.mu, wave.n, points.rz[0]
+def stress(wave: Wave, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
+    """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
+    lam, mu, n = material.lam, material.mu, wave.n
+    r = np.asarray(basis.global_coordinates())[0]
+    (u, v, w), ((u_r, v_r, w_r), (u_z, v_z, w_z)) = interpolated(basis, displacement)
     if wave.torsion:
-        v, (v_r, v_z) = points.at(local[TANGENTIAL]), points.gradient(local[TANGENTIAL])
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
-    u, v, w = points.at(local)
-    (u_r, v_r, w_r), (u_z, v_z, w_z) = points.gradient(local)
     around = (u + n * v) / r
     mean = lam * (u_r + around + w_z)
     found = {

@@ -1,136 +1,192 @@
-"""Quadratic (P2) fields on a meridian mesh: numbering, quadrature, sparse sums, solve."""
+"""Quadratic (P2) fields of scikit-fem on a meridian mesh, with named boundaries, and direct solves.
+
+Unknowns are numbered as scikit-fem does: the mesh's vertices first, then the middles of its edges.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from scipy.sparse.linalg import SuperLU, splu
+from skfem import Basis, BilinearForm, ElementTriP2, MeshTri, MeshTri2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
-from flexspline.fea.axisymmetric.points import Points, mapped, quadrature, straight
 
 
 @dataclass(frozen=True)
 class Space:
-    """P2 on given vertex positions; vertices are numbered first, then the middles of edges.
+    """A P2 basis, and the numbers on the outline.
 
     Attributes
     ----------
-    dofs : (m, 6) numbers of each triangle's corners, rising, and of the middles of 01, 12, 02.
-    count : how many there are.
-    places : (count, 2) their points (r, z) [mm].
-    points : the quadrature points in each triangle.
-    weights : (m, q) quadrature weights times area [mm²].
-    rim : (k, 3) numbers on each boundary edge: start, end, middle.
+    basis : scikit-fem's, at its quadrature points; its mesh's boundaries have names.
+    rim : (k, 3) numbers on each boundary edge of the meridian mesh: start, end, middle.
+    numbers : sorted numbers on each named boundary, its ends included.
     """
 
-    dofs: np.ndarray
-    count: int
-    places: np.ndarray
-    points: Points
-    weights: np.ndarray
+    basis: Any
     rim: np.ndarray
+    numbers: Mapping[str, np.ndarray]
+
+    @property
+    def count(self) -> int:
+        """How many numbers there are."""
+        return int(self.basis.N)
+
+    @cached_property
+    def dofs(self) -> np.ndarray:
+        """Numbers (m, 6) of each triangle's corners, rising, and of the middles of 01, 12, 02."""
+        return np.ascontiguousarray(self.basis.element_dofs.T)
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Points (count, 2) of the numbers, (r, z) [mm]."""
+        return np.ascontiguousarray(self.basis.doflocs.T)
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Quadrature weights (m, q) times area [mm²]."""
+        return self.basis.dx
 
     @property
     def r(self) -> np.ndarray:
         """Radius of the quadrature points (m, q) [mm]."""
-        return self.points.rz[0]
+        return np.asarray(self.basis.global_coordinates())[0]
 
-    def on(self, mesh: MeridianMesh, segments: np.ndarray) -> np.ndarray:
-        """Sorted numbers on the given segments of the outline, their ends included."""
-        return np.unique(self.rim[np.isin(mesh.edge_segment, segments)])
+    def on(self, boundary: str) -> np.ndarray:
+        """Sorted numbers on a named boundary, its ends included."""
+        return self.numbers[boundary]
 
-    def gradient(self, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """∂/∂r and ∂/∂z (m, q) of a field given by its numbers (count,), at the quadrature points."""
-        return self.points.gradient(field[self.dofs])
-
-    def shape_slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """∂/∂r and ∂/∂z of the shape functions at the quadrature points, each (m, 6, q) [1/mm]."""
-        (_, a), (_, b) = self.points.derivative(0)
-        (_, c), (_, d) = self.points.derivative(1)
-        xi, eta = self.points.reference.functions[:2]
-        return (
-            a[:, None] * xi + b[:, None] * eta,
-            c[:, None] * xi + d[:, None] * eta,
-        )
-
-    def dirichlet_matrices(self, weight: np.ndarray) -> np.ndarray:
-        """∫ weight ∇u·∇v of each triangle, (m, 36); weight (m, q) at the quadrature points."""
-        return self.points.dirichlet(weight * self.weights)
+    def values(self, field: np.ndarray) -> np.ndarray:
+        """A field (count,) at the quadrature points (m, q), where no gradient is asked for."""
+        return field[self.dofs] @ shape_functions(self.basis.X)
 
 
-def isoparametric(mesh: MeridianMesh, degree: int) -> Space:
+def curved(mesh: MeridianMesh, degree: int) -> Space:
     """P2 with fillets followed by curved edges: edge middles on the arc, geometry as the fields.
+
+    Patches are boundaries by their names; `degree` is the quadrature's.
 
     Raises
     ------
     MeshingError
         If a curved edge folds its triangle.
     """
-    dofs, rim, places = _numbered(mesh, mesh.points)
-    places[rim[:, 2]] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
-    seen, weights = quadrature(degree)
-    points = mapped(places.T[:, dofs], seen)
+    straight_edges = _linear_mesh(mesh, mesh.points)
+    facets = _outline_facets(straight_edges, mesh)
+    middles = straight_edges.p[:, straight_edges.facets].mean(axis=1)
+    middles[:, facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment).T
+    named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
+    quadratic = MeshTri2(np.hstack([straight_edges.p, middles]), straight_edges.t)
+    quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
+    basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
+    jacobian = basis.mapping.detDF(basis.X)
     # corners stand in any sense, so either sign may come, but one per triangle
-    folded = (points.jacobian * points.jacobian[:, :1] <= 0).any(axis=1)
+    folded = (jacobian * jacobian[:, :1] <= 0).any(axis=1)
     if folded.any():
         raise MeshingError(f"{int(folded.sum())} curved triangles fold over")
-    return Space(dofs, len(places), places, points, np.abs(points.jacobian) * weights, rim)
+    return _space(basis, mesh, facets)
 
 
-def quadratic(mesh: MeridianMesh, vertices: np.ndarray, degree: int) -> Space:
-    """P2 on the mesh's straight triangles, vertices at (n, 2), quadrature of a polynomial degree."""
-    dofs, rim, places = _numbered(mesh, vertices)
-    seen, weights = quadrature(degree)
-    points = straight(places.T[:, dofs], seen)
-    return Space(dofs, len(places), places, points, np.abs(points.jacobian) * weights, rim)
+def straight(
+    mesh: MeridianMesh, vertices: np.ndarray, degree: int, boundaries: Mapping[str, np.ndarray]
+) -> Space:
+    """P2 on the mesh's straight triangles, vertices at (n, 2), quadrature of a polynomial degree.
+
+    `boundaries` gives the segments of the outline that each name stands for.
+    """
+    linear = _linear_mesh(mesh, vertices)
+    facets = _outline_facets(linear, mesh)
+    linear = linear.with_boundaries(_named(boundaries, mesh, facets))
+    return _space(Basis(linear, ElementTriP2(), intorder=degree), mesh, facets)
 
 
-def _numbered(
-    mesh: MeridianMesh, vertices: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`dofs`, `rim` and `places` of `Space`, every middle halfway between its ends."""
-    n = len(vertices)
+def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
+    """A `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
+    old = space.basis
+    mesh = MeshTri(np.ascontiguousarray(vertices.T), old.mesh.t)
+    basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
+    return Space(basis, space.rim, space.numbers)
+
+
+def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
     triangles = np.sort(mesh.triangles, axis=1)
-    sides = triangles[:, [0, 1, 0]] * n + triangles[:, [1, 2, 2]]
-    keys, of = np.unique(sides, return_inverse=True)
-    low, high = np.sort(mesh.edges, axis=1).T
-    middle = n + np.searchsorted(keys, low * n + high)
-    halfway = (vertices[keys // n] + vertices[keys % n]) / 2
+    return MeshTri(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
+
+
+def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
+    """scikit-fem's number (k,) of each boundary edge of the meridian."""
+    n = len(meridian.points)
+    low, high = np.sort(meridian.edges, axis=1).T
+    first, second = mesh.facets.astype(np.int64)
+    return np.searchsorted(first * n + second, low * n + high)
+
+
+def _named(
+    segments: Mapping[str, np.ndarray], mesh: MeridianMesh, facets: np.ndarray
+) -> dict[str, np.ndarray]:
+    return {name: facets[np.isin(mesh.edge_segment, mine)] for name, mine in segments.items()}
+
+
+def _space(basis: Any, mesh: MeridianMesh, facets: np.ndarray) -> Space:
+    rim = np.column_stack([mesh.edges, basis.facet_dofs[0, facets]])
+    numbers = {name: basis.get_dofs(name).flatten() for name in basis.mesh.boundaries}
+    return Space(basis, rim, numbers)
+
+
+def at_points(space: Space, at: np.ndarray) -> Any:
+    """The basis at other points (2, q) of each reference triangle, to look at fields there."""
+    basis = space.basis
+    weights = np.full(at.shape[1], 0.5 / at.shape[1])
+    return Basis(
+        basis.mesh, basis.elem, mapping=basis.mapping, quadrature=(at, weights), dofs=basis.dofs,
+        disable_doflocs=True,
+    )  # fmt: skip
+
+
+def interpolated(basis: Any, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """As `basis.interpolate` of U, V, W (3·count,) at once: values (3, m, q), gradients (2, 3, m, q)."""
+    local = u.reshape(-1, 3)[basis.element_dofs]
+    values = np.stack([np.asarray(function) for (function,) in basis.basis])
+    gradients = np.stack([function.grad for (function,) in basis.basis])
     return (
-        np.column_stack([triangles, n + of.reshape(-1, 3)]),
-        np.column_stack([mesh.edges, middle]),
-        np.concatenate([vertices, halfway]),
+        np.einsum("imc,imq->cmq", local, values),
+        np.einsum("imc,idmq->dcmq", local, gradients),
     )
 
 
-def summed(matrices: np.ndarray, numbers: np.ndarray, size: int) -> csc_matrix:
-    """Global sparse matrix from element matrices, k² numbers each; rows numbered -1 are left out."""
-    k = numbers.shape[1]
-    rows = np.repeat(numbers, k, axis=1).ravel()
-    columns = np.tile(numbers, (1, k)).ravel()
-    kept = (rows >= 0) & (columns >= 0)
-    entries = (matrices.ravel()[kept], (rows[kept], columns[kept]))
-    return csc_matrix(entries, shape=(size, size))
+def shape_functions(at: np.ndarray) -> np.ndarray:
+    """P2 shape functions (6, q) at points (2, q) of the reference triangle."""
+    element = ElementTriP2()
+    return np.stack([element.lbasis(at, i)[0] for i in range(6)])
 
 
-def solved(matrix: csc_matrix, load: np.ndarray) -> np.ndarray:
+def assembled(form: BilinearForm, basis: Any, **fields: np.ndarray) -> csr_matrix:
+    """As `form.assemble`, but entries that happen to be 0 stay: one basis, one sparsity pattern."""
+    entries = form.elemental(basis, **fields)
+    return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()
+
+
+def solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
     """Direct solve of a symmetric positive definite system."""
     return factorised(matrix).solve(load)
 
 
-def factorised(matrix: csc_matrix) -> SuperLU:
+def factorised(matrix: csr_matrix) -> SuperLU:
     """Of a symmetric positive definite matrix."""
     return splu(
-        matrix,
+        csc_matrix(matrix.T),  # the same matrix, and by columns already
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
 
 
-def relative_residual(matrix: csc_matrix, x: np.ndarray, load: np.ndarray) -> float:
+def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
     """‖Ax - b‖/‖b‖."""
     return float(np.linalg.norm(matrix @ x - load) / np.linalg.norm(load))

@@ -108,8 +108,7 @@ def ellipse_stress(
     ------
     MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
     """
-    *_, last = ellipse_refinements(outline, material, w0_mm, exclusion_mm, tolerance, deadline)
-    return last
+    return _last(_ellipse(outline, material, w0_mm, exclusion_mm, tolerance, deadline))
 
 
 def ellipse_refinements(
@@ -121,7 +120,18 @@ def ellipse_refinements(
     deadline: Deadline = NO_DEADLINE,
 ) -> Iterator[RevolvedField]:
     """What `ellipse_stress` finds on each of its meshes; the last one is the answer."""
+    for found in _ellipse(outline, material, w0_mm, exclusion_mm, tolerance, deadline):
+        yield found.field()
 
+
+def _ellipse(
+    outline: Meridian,
+    material: Elastic,
+    w0_mm: float,
+    exclusion_mm: float,
+    tolerance: float,
+    deadline: Deadline,
+) -> Iterator[_Refined]:
     def solve(model: HarmonicModel) -> Amplitudes:
         fixed = [Fixed(model.on("seat"), RADIAL, w0_mm), *model.held("mount")]
         return model.solve(Wave(2), fixed, np.zeros(3 * model.space.count))
@@ -153,8 +163,48 @@ def torsion_stress(
         )
 
     wave = Wave(0, torsion=True)
-    *_, last = _refinements(outline, material, wave, solve, exclusion_mm, tolerance, deadline)
-    return last
+    return _last(_refinements(outline, material, wave, solve, exclusion_mm, tolerance, deadline))
+
+
+@dataclass(frozen=True)
+class _Refined:
+    """What one mesh gave; its field is made only where it is asked for."""
+
+    model: HarmonicModel
+    wave: Wave
+    solved: Amplitudes
+    found: Recovered
+    peak: Peak
+    change: float
+    exclusion_mm: float
+    levels: tuple[StressLevel, ...]
+    shortfall: str
+
+    def field(self) -> RevolvedField:
+        """The field, its peak judged: does it go on rising into the excluded zone?"""
+        wave, peak, space = self.wave, self.peak, self.model.space
+        phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
+        r, z = peak.rz
+        at = (r * cos(phi), r * sin(phi), z)
+        found = judged(peak.mises_MPa, at, self.exclusion_mm, peak.largest)
+        return RevolvedField(
+            n=wave.n,
+            places=space.places,
+            triangles=space.dofs,
+            displacement=self.solved.values.reshape(-1, 3),
+            stress=self.found.nodal,
+            peak=replace(found, shortfall=self.shortfall),
+            peak_rz=peak.rz,
+            peak_phi=phi,
+            peak_change=self.change,
+            levels=self.levels,
+        )
+
+
+def _last(refinements: Iterator[_Refined]) -> RevolvedField:
+    for found in refinements:
+        last = found
+    return last.field()
 
 
 def _refinements(
@@ -165,13 +215,13 @@ def _refinements(
     exclusion_mm: float,
     tolerance: float,
     deadline: Deadline,
-) -> Iterator[RevolvedField]:
+) -> Iterator[_Refined]:
     """Refine where the energy is wrong, and where a stress that counts is, until neither is."""
     mesh = triangulate(outline)
     while (coarse := coarse_at_border(mesh, exclusion_mm)).any():
         mesh = refined(mesh, coarse)
     levels: list[StressLevel] = []
-    field: RevolvedField | None = None
+    last: _Refined | None = None
     pace = Pace(deadline)
     while True:
         try:
@@ -181,21 +231,23 @@ def _refinements(
             found = recovered(model, wave, solved.values)
             peak = peak_stress(model, found.nodal, exclusion_mm)
         except (ComputationError, MemoryError) as fault:
-            if field is None:
+            if last is None:
                 raise
-            yield _ended(field, next_mesh_failed(fault))
+            yield replace(last, shortfall=next_mesh_failed(fault))
             return
         energy_error = float(found.error.sum() / found.energy.sum())
         levels.append(
             StressLevel(len(mesh.triangles), solved.unknowns, peak.mises_MPa, energy_error)
         )
         change = _change(levels)
-        field = _field(model, wave, solved, found, peak, change, exclusion_mm, levels)
+        last = _Refined(
+            model, wave, solved, found, peak, change, exclusion_mm, tuple(levels), shortfall=""
+        )
         met = change < tolerance and energy_error < tolerance
         if not met and len(mesh.triangles) > MOST_TRIANGLES:
-            yield _ended(field, largest_mesh(len(mesh.triangles), MOST_TRIANGLES))
+            yield replace(last, shortfall=largest_mesh(len(mesh.triangles), MOST_TRIANGLES))
             return
-        yield field
+        yield last
         if met:
             return
         wrong = peak.counted & (found.misfit > LOCAL * tolerance * peak.mises_MPa)
@@ -204,38 +256,8 @@ def _refinements(
         mesh = refined(mesh, bulk(found.error, BULK) | (wrong & near))
 
 
-def _ended(field: RevolvedField, shortfall: str) -> RevolvedField:
-    return replace(field, peak=replace(field.peak, shortfall=shortfall))
-
-
 def _change(levels: list[StressLevel]) -> float:
     if len(levels) <= QUIET_ROUNDS:
         return np.inf
     last = [level.mises_MPa for level in levels[-1 - QUIET_ROUNDS :]]
     return max(last) / min(last) - 1
-
-
-def _field(
-    model: HarmonicModel,
-    wave: Wave,
-    solved: Amplitudes,
-    found: Recovered,
-    peak: Peak,
-    change: float,
-    exclusion_mm: float,
-    levels: list[StressLevel],
-) -> RevolvedField:
-    phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
-    r, z = peak.rz
-    return RevolvedField(
-        n=wave.n,
-        places=model.space.places,
-        triangles=model.space.dofs,
-        displacement=solved.values.reshape(-1, 3),
-        stress=found.nodal,
-        peak=judged(peak.mises_MPa, (r * cos(phi), r * sin(phi), z), exclusion_mm, peak.largest),
-        peak_rz=peak.rz,
-        peak_phi=phi,
-        peak_change=change,
-        levels=tuple(levels),
-    )

@@ -32,11 +32,17 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from skfem import BilinearForm, Functional, condense
+from skfem.helpers import dot, grad
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary
-from flexspline.fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
+from flexspline.fea.axisymmetric.space import Space, moved, relative_residual, solved, straight
 
+WEIGHTED_LAPLACE = BilinearForm(lambda u, v, w: w.weight * dot(grad(u), grad(v)))
+WEIGHTED_ENERGY = Functional(lambda w: w.weight * dot(grad(w.field), grad(w.field)))
+CROSS_PRODUCT = Functional(lambda w: w.psi.grad[1] * w.phi.grad[0] - w.psi.grad[0] * w.phi.grad[1])
 PRIMAL_DEGREE = 5
 """Of quadrature: r³|∇ψ|², with ψ of degree 2."""
 DUAL_DEGREE = 11
@@ -79,21 +85,23 @@ def across_from_axis(mesh: MeridianMesh, boundary: Boundary) -> np.ndarray:
 
 def bracket(mesh: MeridianMesh, boundary: Boundary) -> Bracket:
     """Solve both problems on one mesh."""
-    outer = quadratic(mesh, mesh.containing(), PRIMAL_DEGREE)
-    inner = quadratic(mesh, mesh.contained(), DUAL_DEGREE)
-    psi, reaction, primal_residual = _primal(outer, mesh, boundary)
-    phi, dual_residual = _dual(inner, mesh, boundary)
-    cubed = inverse_radius_bound(inner) ** 3
-    stretch = _energies(outer, psi, outer.r**3)
-    stress = _energies(inner, phi, cubed)
-    torque = 2 * pi * float(_piece_constants(inner, mesh, boundary, phi) @ boundary.jump)
+    roles = {"held": boundary.held, "driven": boundary.driven}
+    pieces = {_piece(k): np.flatnonzero(boundary.piece == k) for k in range(boundary.pieces)}
+    outer = straight(mesh, mesh.containing(), PRIMAL_DEGREE, roles | pieces)
+    inner = moved(outer, mesh.contained(), DUAL_DEGREE)
+    inverse_cubed = inverse_radius_bound(inner) ** 3
+    psi, reaction, primal_residual = _primal(outer)
+    phi, dual_residual = _dual(inner, inverse_cubed, mesh, boundary)
+    stretch = WEIGHTED_ENERGY.elemental(outer.basis, field=psi, weight=outer.r**3)
+    within, around = (inner.basis.interpolate(field) for field in (psi, phi))
+    stress = WEIGHTED_ENERGY.elemental(inner.basis, field=around, weight=inverse_cubed)
+    torque = 2 * pi * float(_piece_constants(inner, boundary, phi) @ boundary.jump)
     upper = 2 * pi * float(stretch.sum())
     lower = torque**2 / (2 * pi * float(stress.sum()))
     # the gap is the energy of the constitutive misfit r³∇ψ - s rot φ (Prager and Synge 1947)
     s = lower / torque
-    g, h = inner.gradient(psi), inner.gradient(phi)
-    cross = g[1] * h[0] - g[0] * h[1]
-    misfit = stretch + s**2 * stress - 2 * s * (inner.weights * cross).sum(axis=1)
+    cross = CROSS_PRODUCT.elemental(inner.basis, psi=within, phi=around)
+    misfit = stretch + s**2 * stress - 2 * s * cross
     # where fillets are cut differently for the two problems, the energy between them counts too
     sliver = np.abs(outer.weights.sum(axis=1) / inner.weights.sum(axis=1) - 1)
     share = 2 * pi * (np.maximum(misfit, 0.0) + stretch * sliver)
@@ -101,10 +109,9 @@ def bracket(mesh: MeridianMesh, boundary: Boundary) -> Bracket:
     return Bracket(lower, upper, reaction, share, int(inner.count), residual)
 
 
-def _energies(space: Space, field: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """∫ weight |∇field|² of each triangle, (m,)."""
-    by_r, by_z = space.gradient(field)
-    return (space.weights * weight * (by_r**2 + by_z**2)).sum(axis=1)
+def _piece(number: int) -> str:
+    """Name of a piece of free boundary."""
+    return f"free {number}"
 
 
 def inverse_radius_bound(space: Space) -> np.ndarray:
@@ -117,65 +124,53 @@ def inverse_radius_bound(space: Space) -> np.ndarray:
     return np.where(away, (1 - (r - a) * (r - b) * (r - c) ** 2 / at_zero) / r, 0.0)
 
 
-def _primal(
-    space: Space, mesh: MeridianMesh, boundary: Boundary
-) -> tuple[np.ndarray, float, float]:
+def _primal(space: Space) -> tuple[np.ndarray, float, float]:
     """ψ, the reaction torque on the driven patch for G = 1 and angle 1 [mm³], the residual."""
     psi = np.zeros(space.count)
-    driven = space.on(mesh, boundary.driven)
+    driven = space.on("driven")
     psi[driven] = 1.0
-    fixed = np.union1d(driven, space.on(mesh, boundary.held))
-    free = np.setdiff1d(np.arange(space.count), fixed)
-    matrix = summed(space.dirichlet_matrices(space.r**3), space.dofs, space.count)
-    load = -(matrix @ psi)[free]
-    inside = matrix[free][:, free]
+    free = np.setdiff1d(np.arange(space.count), np.union1d(driven, space.on("held")))
+    matrix = WEIGHTED_LAPLACE.assemble(space.basis, weight=space.r**3)
+    inside, load = condense(matrix, x=psi, I=free, expand=False)
     psi[free] = solved(inside, load)
     reaction = 2 * pi * float((matrix @ psi)[driven].sum())
     return psi, reaction, relative_residual(inside, psi[free], load)
 
 
-def _dual(space: Space, mesh: MeridianMesh, boundary: Boundary) -> tuple[np.ndarray, float]:
-    number = _dual_numbers(space, mesh, boundary)
-    size = int(number.max()) + 1
-    weight = inverse_radius_bound(space) ** 3
-    matrix = summed(space.dirichlet_matrices(weight), number[space.dofs], size)
-    load = np.zeros(size)
+def _dual(
+    space: Space, weight: np.ndarray, mesh: MeridianMesh, boundary: Boundary
+) -> tuple[np.ndarray, float]:
+    """φ = P x with one unknown x for each free piece (`_tied`), and the residual."""
+    tied = _tied(space, mesh, boundary)
+    matrix = tied.T @ WEIGHTED_LAPLACE.assemble(space.basis, weight=weight) @ tied
+    jumps = np.zeros(space.count)
     for piece in range(boundary.pieces):
-        at = number[_piece_number(space, mesh, boundary, piece)]
-        if at >= 0:
-            load[at] += boundary.jump[piece]
+        jumps[space.on(_piece(piece))[0]] += boundary.jump[piece]
+    load = tied.T @ jumps
     reduced = solved(matrix, load)
-    phi = np.where(number >= 0, reduced[number], 0.0)
-    return phi, relative_residual(matrix, reduced, load)
+    return tied @ reduced, relative_residual(matrix, reduced, load)
 
 
-def _dual_numbers(space: Space, mesh: MeridianMesh, boundary: Boundary) -> np.ndarray:
-    """Unknown of each P2 number: one per free piece, -1 where φ is 0 (one piece, and the axis)."""
+def _tied(space: Space, mesh: MeridianMesh, boundary: Boundary) -> csr_matrix:
+    """P (count, unknowns): one unknown per free piece, none where φ is 0 (one piece, and the axis)."""
     number = np.zeros(space.count, int)
     ground = max(boundary.axis, 0)
     zero = np.zeros(space.count, bool)
     if boundary.axis >= 0:
         zero[space.dofs[touching_axis(mesh)]] = True
-    tied = np.full(space.count, -1)
+    piece_of = np.full(space.count, -1)
     for piece in range(boundary.pieces):
-        tied[space.on(mesh, np.flatnonzero(boundary.piece == piece))] = piece
-    zero |= tied == ground
-    number[zero] = -1
-    own = ~zero & (tied < 0)
+        piece_of[space.on(_piece(piece))] = piece
+    zero |= piece_of == ground
+    own = ~zero & (piece_of < 0)
     number[own] = np.arange(own.sum())
     others = [p for p in range(boundary.pieces) if p != ground]
     for k, piece in enumerate(others):
-        number[tied == piece] = own.sum() + k
-    return number
+        number[piece_of == piece] = own.sum() + k
+    rows = np.flatnonzero(~zero)
+    shape = space.count, int(own.sum()) + len(others)
+    return csr_matrix((np.ones(len(rows)), (rows, number[rows])), shape=shape)
 
 
-def _piece_number(space: Space, mesh: MeridianMesh, boundary: Boundary, piece: int) -> int:
-    """Some P2 number on a free piece: the middle of one of its edges."""
-    mine = np.isin(mesh.edge_segment, np.flatnonzero(boundary.piece == piece))
-    return int(space.rim[mine.argmax(), 2])
-
-
-def _piece_constants(
-    space: Space, mesh: MeridianMesh, boundary: Boundary, phi: np.ndarray
-) -> np.ndarray:
-    return np.array([phi[_piece_number(space, mesh, boundary, p)] for p in range(boundary.pieces)])
+def _piece_constants(space: Space, boundary: Boundary, phi: np.ndarray) -> np.ndarray:
+    return np.array([phi[space.on(_piece(p))[0]] for p in range(boundary.pieces)])

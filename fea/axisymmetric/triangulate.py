@@ -8,6 +8,7 @@ Element size follows the local thickness by itself: one layer across a thin wall
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import ceil, pi, sin
 
 import numpy as np
@@ -37,8 +38,9 @@ TOUCH = 1e-7
 """Relative slack of circle tests: cocircular points of right-angled outlines count as outside."""
 
 
+@lru_cache(maxsize=8)
 def triangulate(outline: Meridian) -> MeridianMesh:
-    """Mesh an outline whose corners are not much sharper than 60°.
+    """Mesh an outline whose corners are not much sharper than 60°. All load cases share it.
 
     Raises
     ------

@@ -18,13 +18,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import csr_matrix
+from skfem import BilinearForm, Functional, LinearForm, bmat, condense
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.points import VALUE
-from flexspline.fea.axisymmetric.space import Space, quadratic, relative_residual, solved, summed
+from flexspline.fea.axisymmetric.space import Space, relative_residual, solved, straight
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.tooth import ToothCell
 
@@ -33,6 +34,55 @@ DEGREE = 6
 LARGEST_RESIDUAL = 1e-8
 """Of ‖Ku − f‖/‖f‖: far below the error of the mesh."""
 RADIAL, TANGENTIAL = 0, 1
+
+
+def _around(f: Any, w: Any) -> Any:
+    """(1/r) ∂f/∂φ of a field in (r, ρφ)."""
+    return f.grad[1] * w.rho / w.x[0]
+
+
+def _area(w: Any) -> Any:
+    """r dr dφ per dr d(ρφ)."""
+    return w.x[0] / w.rho
+
+
+def _shear(f: Any, w: Any) -> Any:
+    """γ_rφ of a tangential displacement."""
+    return f.grad[0] - f / w.x[0]
+
+
+# plane strain per E': σ_rr = a ε_rr + b ε_φφ, σ_φφ = b ε_rr + a ε_φφ, τ = g γ;
+# ε_rr = U,r  ε_φφ = U/r + V,φ/r  γ = U,φ/r + V,r - V/r; the test function comes second
+RADIAL_RADIAL = BilinearForm(
+    lambda u, v, w: (
+        (
+            (w.a * u.grad[0] + w.b * u / w.x[0]) * v.grad[0]
+            + (w.b * u.grad[0] + w.a * u / w.x[0]) * v / w.x[0]
+            + w.g * _around(u, w) * _around(v, w)
+        )
+        * _area(w)
+    )
+)
+RADIAL_TANGENTIAL = BilinearForm(
+    lambda u, v, w: (
+        (
+            w.b * _around(u, w) * v.grad[0]
+            + w.a * _around(u, w) * v / w.x[0]
+            + w.g * _shear(u, w) * _around(v, w)
+        )
+        * _area(w)
+    )
+)
+TANGENTIAL_TANGENTIAL = BilinearForm(
+    lambda u, v, w: (
+        (w.a * _around(u, w) * _around(v, w) + w.g * _shear(u, w) * _shear(v, w)) * _area(w)
+    )
+)
+WARPING = BilinearForm(
+    lambda u, v, w: (u.grad[0] * v.grad[0] + _around(u, w) * _around(v, w)) * _area(w)
+)
+ROTATION = LinearForm(lambda v, w: _around(v, w) * w.x[0] * _area(w))
+POLAR_MOMENT = Functional(lambda w: w.x[0] ** 2 * _area(w))
 
 
 class ToothedRingError(ComputationError):
@@ -48,7 +98,9 @@ class CellModel:
 
     @cached_property
     def space(self) -> Space:
-        return quadratic(self.mesh, self.mesh.points, DEGREE)
+        names = {s.patch for s in self.mesh.outline.segments if s.patch}
+        patches = {name: self.mesh.segments_of(name) for name in names}
+        return straight(self.mesh, self.mesh.points, DEGREE, patches)
 
     def bending(self, poissons_ratio: float) -> float:
         """As `plain.bending`: M/E' per δ/θ [mm³]. No Poisson's ratio changes it."""
@@ -71,71 +123,42 @@ class CellModel:
 
     def torsion(self) -> float:
         """As `plain.torsion`: J of the whole ring [mm⁴]."""
-        s = self.space
-        along, around = self._slopes()
-        area = self._area
-        gradient = np.stack([along, around], -1)  # (m, 6, q, 2)
-        scaled = gradient * area[:, None, :, None]
-        m = len(s.dofs)
-        matrix = summed(
-            scaled.reshape(m, 6, -1) @ gradient.reshape(m, 6, -1).transpose(0, 2, 1),
-            s.dofs,
-            s.count,
-        )
-        load = -np.bincount(s.dofs.ravel(), (scaled[..., 1] @ s.r[..., None]).ravel(), s.count)
-        planes = np.concatenate([self.mesh.segments_of("tooth"), self.mesh.segments_of("space")])
-        free = np.setdiff1d(np.arange(s.count), s.on(self.mesh, planes))
-        warping = _solved(matrix[free][:, free], load[free])
-        polar = float((area * s.r**2).sum())
+        basis, rho = self.space.basis, self.cell.unroll
+        matrix = WARPING.assemble(basis, rho=rho)
+        load = -ROTATION.assemble(basis, rho=rho)
+        planes = basis.get_dofs({"tooth", "space"})
+        inside, right = condense(matrix, load, D=planes, expand=False)
+        warping = _solved(inside, right)
+        polar = float(POLAR_MOMENT.assemble(basis, rho=rho))
         # the minimum of |∇ω|² + 2 r·∇ω + r²; at it the first is half the second, of other sign
-        return (polar - float(load[free] @ warping)) * 2 * np.pi / self.cell.half_pitch
-
-    @property
-    def _area(self) -> np.ndarray:
-        """Quadrature weights (m, q) of the cell itself, r dr dφ [mm²]."""
-        return self.space.weights * self.space.r / self.cell.unroll
-
-    def _slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """∂/∂r and (1/r)∂/∂φ of the shape functions, each (m, 6, q) [1/mm]."""
-        by_r, by_z = self.space.shape_slopes()
-        return by_r, by_z * (self.cell.unroll / self.space.r)[:, None, :]
+        return (polar - float(right @ warping)) * 2 * np.pi / self.cell.half_pitch
 
     def _on(
         self, patch: str, component: int, value: Callable[[np.ndarray], np.ndarray]
     ) -> dict[int, float]:
-        """The value at each radius, by number 2·node + component, on a patch."""
-        on = self.space.on(self.mesh, self.mesh.segments_of(patch))
+        """The value at each radius, by number component·count + node, on a patch."""
+        on = self.space.on(patch)
         values = value(self.space.places[on, 0])
-        return dict(zip((2 * on + component).tolist(), values.tolist(), strict=True))
+        return dict(zip((component * self.space.count + on).tolist(), values.tolist(), strict=True))
 
     def _plane_strain(self, poissons_ratio: float, given: dict[int, float]) -> float:
         """∫ σ:ε / E' with the given displacements, the others free; numbers as in `_on`."""
-        s, nu = self.space, poissons_ratio
-        along, around = self._slopes()
-        over_r = s.points.reference.functions[VALUE] / s.r[:, None, :]
-        m, _, q = along.shape
-        parts = np.zeros((m, q, 3, 6, 2))  # rr, φφ, shear
-        to_points = (0, 2, 1)
-        parts[:, :, 0, :, RADIAL] = along.transpose(to_points)
-        parts[:, :, 1, :, RADIAL] = over_r.transpose(to_points)
-        parts[:, :, 1, :, TANGENTIAL] = around.transpose(to_points)
-        parts[:, :, 2, :, RADIAL] = around.transpose(to_points)
-        parts[:, :, 2, :, TANGENTIAL] = (along - over_r).transpose(to_points)
-        strain = parts.reshape(m, q, 3, 12)
-        c = nu / (1 - nu)
-        hooke = np.array([[1, c, 0], [c, 1, 0], [0, 0, (1 - c) / 2]]) / (1 - c * c)
-        stress = np.einsum("ab,mqbi->mqai", hooke, strain) * self._area[:, :, None, None]
-        local = strain.reshape(m, -1, 12).transpose(0, 2, 1) @ stress.reshape(m, -1, 12)
-        numbers = (2 * s.dofs[:, :, None] + np.arange(2)).reshape(m, 12)
-        matrix = summed(local, numbers, 2 * s.count)
-        u = np.zeros(2 * s.count)
+        basis, c = self.space.basis, poissons_ratio / (1 - poissons_ratio)
+        scale = 1 / (1 - c * c)
+        hooke = {"a": scale, "b": c * scale, "g": (1 - c) / 2 * scale, "rho": self.cell.unroll}
+        rr, rt, tt = (
+            form.assemble(basis, **hooke)
+            for form in (RADIAL_RADIAL, RADIAL_TANGENTIAL, TANGENTIAL_TANGENTIAL)
+        )
+        matrix = bmat([[rr, rt], [rt.T, tt]], "csr")
+        u = np.zeros(2 * self.space.count)
         u[list(given)] = list(given.values())
-        free = np.setdiff1d(np.arange(2 * s.count), list(given))
-        u[free] = _solved(matrix[free][:, free], -(matrix @ u)[free])
+        free = np.setdiff1d(np.arange(len(u)), list(given))
+        u[free] = _solved(*condense(matrix, x=u, I=free, expand=False))
         return float(u @ (matrix @ u))
 
 
-def _solved(matrix: csc_matrix, load: np.ndarray) -> np.ndarray:
+def _solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
     found = solved(matrix, load)
     residual = relative_residual(matrix, found, load)
     if not residual < LARGEST_RESIDUAL:
