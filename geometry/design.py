@@ -93,6 +93,10 @@ class Solver(Table):
     model: Literal["axisymmetric", "solid", "auto"] = Field(
         default="auto", description="axisymmetric (bodies of revolution only), solid or auto"
     )
+    mesher: Literal["auto", "swept", "tetwild"] = Field(
+        default="auto",
+        description="of solid models: swept (from the meridian), tetwild (fTetWild), or auto",
+    )
     load_case: Literal["uniform", "lobes"] = Field(
         default="uniform", description="uniform or lobes: which K_b enters the sum"
     )

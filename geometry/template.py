@@ -127,6 +127,7 @@ def _values(kind: str) -> Table:
         },
         "solver": {
             "model": "auto",
+            "mesher": "auto",
             "load_case": "uniform",
             "tolerance_pct": 0.5,
             "edge_length_mm": 1.0,

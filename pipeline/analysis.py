@@ -147,7 +147,8 @@ def stiffnesses(
     """
     rim_part, shaft_part = context.part("flexspline"), context.part("shaft")
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
-        _ = wanted and part.axisymmetric  # refuse before the long work
+        if wanted:
+            part.refuse_settings()
     tried = Attempts()
     K_b = tried.get("K_b", rim_part.stiffness) if flexspline else None
     K_e = tried.get("K_e", shaft_part.stiffness) if shaft else None

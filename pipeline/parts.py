@@ -13,6 +13,7 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
+from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import can_be_swept, swept_edges, swept_mesh
@@ -127,7 +128,30 @@ class PartModel:
     @property
     def torsion_key(self) -> Mapping[str, Any]:
         """What the solid solution depends on."""
-        return {**self.revolved_key, "spec": asdict(self.first_spec)}
+        return {**self.revolved_key, "spec": asdict(self.first_spec), "mesher": self._mesher}
+
+    @property
+    def _mesher(self) -> str:
+        return self.context.design.solver.mesher
+
+    @property
+    def is_swept(self) -> bool:
+        """Whether its solid meshes are swept from the meridian, by `solver.mesher`.
+
+        Raises
+        ------
+        DesignError : that is asked for, and the part needs fTetWild.
+        """
+        able = can_be_swept(self.part)
+        if self._mesher == "swept" and not able:
+            holes = "bolt holes that no plain column of its meridian holds"
+            why = holes if self.part.keyway is None else "a keyway"
+            raise DesignError(
+                "solver.mesher",
+                self._mesher,
+                f'the {self.name} has {why} and cannot be swept; "tetwild" or "auto" works',
+            )
+        return able and self._mesher != "tetwild"
 
     @property
     def _edge_spacing(self) -> float:
@@ -140,6 +164,15 @@ class PartModel:
                 self.part, self.first_spec, self.sector.degrees, self._edge_spacing
             )
 
+    def refuse_settings(self) -> None:
+        """Refuse a model or a mesher that the part does not allow, before the long work.
+
+        Raises
+        ------
+        DesignError : as `axisymmetric` and `is_swept`.
+        """
+        _ = self.axisymmetric, self.is_swept
+
     def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
         """The sector's mesh swept from the meridian; None for a part that only a mesher can mesh."""
         degrees = self.sector.degrees
@@ -149,20 +182,30 @@ class PartModel:
         return MeshedPart(mesh, swept_edges(self.part, degrees, self._edge_spacing))
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
-        """The sector's mesh to a specification: swept where that works, else by fTetWild."""
+        """The sector's mesh to a specification, by `solver.mesher`: "auto" sweeps where that works.
+
+        Raises
+        ------
+        DesignError : as `is_swept`. SolidError : a sweep is asked for and fails a check.
+        """
 
         def make() -> MeshedPart:
-            if can_be_swept(self.part):
+            if self.is_swept:
                 with self.context.progress.stage(f"mesh of the {self.name}"):
                     swept = self.swept(spec)
                 if swept is not None:
                     return swept
+                if self._mesher == "swept":
+                    raise SolidError(
+                        f"the swept mesh of the {self.name} fails a check; solver.mesher"
+                        ' "tetwild" or "auto" works'
+                    )
                 self.context.progress.note("  the swept mesh fails a check: fTetWild instead")
             surface = self._surface
             with self.context.progress.stage(f"mesh of the {self.name}"):
                 return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
 
-        inputs = {**self.geometry_key, "spec": asdict(spec)}
+        inputs = {**self.geometry_key, "spec": asdict(spec), "mesher": self._mesher}
         return self.context.cache.get("mesh", inputs, make)[0]
 
     def stiffness(self) -> Stiffness:

@@ -8,7 +8,6 @@ from typing import Any
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
-from flexspline.fea.solid.swept import can_be_swept
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import Sector, sector_of
@@ -61,7 +60,7 @@ def _meshes(
     ------
     SolidError : the next one would be too large, or fails a check.
     """
-    own = range(MESHES if can_be_swept(flexspline.part) else 0)
+    own = range(MESHES if flexspline.is_swept else 0)
     if supported or not own:
         yield _of_torsion(flexspline, sector, supported)
     for number in own:

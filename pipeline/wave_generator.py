@@ -10,7 +10,6 @@ from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.cases import Model, ellipse
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.peak import SharpEdges, stress_field
-from flexspline.fea.solid.swept import can_be_swept
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import SolidField
@@ -63,7 +62,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     """Where (r, z) the stress is largest without the holes; None where no mesh can use or find it."""
     part, w0 = flexspline.part, flexspline.context.design.gear.centre_distance_mm
-    if not can_be_swept(part):
+    if not flexspline.is_swept:
         return None
     try:
         found = ellipse_stress(

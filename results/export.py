@@ -34,20 +34,22 @@ def write_exports(
     or not at all.
     """
     done: list[Path] = []
+    models = (context.part("flexspline"), context.part("shaft"))
+    for model in models:
+        model.refuse_settings()
     for part in context.design.parts:
         with context.progress.stage(f"CAD of the whole {part.name}"):
             solid = build_solid(part)
             done.append(_whole(folder / f"{part.name}.step", partial(write_step, solid)))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
             done.append(_whole(folder / f"{part.name}.stl", stl))
-    for model in (context.part("flexspline"), context.part("shaft")):
+    for model in models:
         done += _write_meshes(model, folder, formats)
         done += [_write_deck(model, folder)] if deck else []
         torque = folder / f"{model.name}_torque.vtu"
         done.append(_write_field(model, torque, torque_field, "antisymmetric"))
-    flexspline = context.part("flexspline")
     wave_generator = folder / "wave_generator.vtu"
-    return [*done, _write_field(flexspline, wave_generator, wave_generator_field, "symmetric")]
+    return [*done, _write_field(models[0], wave_generator, wave_generator_field, "symmetric")]
 
 
 def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:

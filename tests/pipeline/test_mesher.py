@@ -1,0 +1,70 @@
+"""`solver.mesher`: which mesher a solid model is made by, and that both answer the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.progress import Progress
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PLAIN = {"flexspline.bolt_count": 0, "solver.model": "solid", "solver.tolerance_pct": 2.0}
+
+
+def context_of(design: Design, folder: Path) -> tuple[AnalysisContext, list[str]]:
+    said: list[str] = []
+    return AnalysisContext(
+        design, Cache(folder, CACHED_TYPES, said.append), Progress(said.append)
+    ), said
+
+
+def with_mesher(mesher: str) -> Design:
+    return load_design(EXAMPLES / "xb1-40.toml").changed({**PLAIN, "solver.mesher": mesher})
+
+
+@pytest.mark.cad
+def test_a_plain_cup_has_one_stiffness_by_both_meshers(tmp_path: Path) -> None:
+    """One cache for both: an answer by one mesher is none for the other."""
+    swept, swept_said = context_of(with_mesher("swept"), tmp_path)
+    tetwild, tetwild_said = context_of(with_mesher("tetwild"), tmp_path)
+    a = swept.part("flexspline").stiffness()
+    b = tetwild.part("flexspline").stiffness()
+    # fTetWild needs the CAD solid's surface, a sweep the meridian alone
+    assert not any("CAD" in line for line in swept_said)
+    assert any("CAD" in line for line in tetwild_said)
+    # K lies within the bounds of both
+    assert a.lower_Nm_per_rad <= b.upper_Nm_per_rad
+    assert b.lower_Nm_per_rad <= a.upper_Nm_per_rad
+    assert a.K_Nm_per_rad == pytest.approx(b.K_Nm_per_rad, rel=a.half_width + b.half_width)
+
+
+def test_auto_sweeps_what_can_be_swept(tmp_path: Path) -> None:
+    auto, said = context_of(with_mesher("auto"), tmp_path / "a")
+    swept, _ = context_of(with_mesher("swept"), tmp_path / "b")
+    of_auto, of_swept = auto.part("flexspline").stiffness(), swept.part("flexspline").stiffness()
+    assert of_auto.K_Nm_per_rad == pytest.approx(of_swept.K_Nm_per_rad, rel=1e-9)
+    assert not any("CAD" in line for line in said)
+
+
+@pytest.mark.parametrize("wanted", ["swept", "auto", "tetwild"])
+def test_a_keyway_cannot_be_swept(wanted: str, tmp_path: Path) -> None:
+    keyed = load_design(EXAMPLES / "keyed-shaft.toml").changed({"solver.mesher": wanted})
+    context, _ = context_of(keyed, tmp_path)
+    if wanted != "swept":
+        assert not context.part("shaft").is_swept
+        return
+    with pytest.raises(DesignError, match=r"solver.mesher.*keyway.*\"tetwild\" or \"auto\" works"):
+        stiffnesses(context, flexspline=False)
+    assert not (tmp_path / "mesh").exists()  # before the long work
+
+
+def test_another_word_is_refused() -> None:
+    with pytest.raises(DesignError, match=r"solver.mesher.*auto.*swept.*tetwild"):
+        with_mesher("netgen")
