@@ -107,6 +107,11 @@ class Solver(Table):
         default=None, description="mm, fixes the first solid mesh"
     )
 
+    @property
+    def K_b_in_sum(self) -> Literal["K_b", "K_b_lobes"]:
+        """Name of the K_b that enters the backlash sum."""
+        return "K_b_lobes" if self.load_case == "lobes" else "K_b"
+
 
 class Design(Table):
     """One strain wave gear: flexspline, output shaft, materials, gear, play, load."""

@@ -21,6 +21,11 @@ ARCSEC_PER_RAD = 180 * 3600 / pi
 MM_PER_UM = 1e-3
 
 
+def series_stiffness(K_b: float, K_e: float) -> float:
+    """K [N·m/rad] of flexspline and shaft one behind the other, 1/K = 1/K_e + 1/K_b."""
+    return 1 / (1 / K_e + 1 / K_b)
+
+
 class StiffnessValueError(FlexsplineError, ValueError):
     """A stiffness that is not a positive number; `name`, `value` [N·m/rad]."""
 

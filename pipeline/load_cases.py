@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Literal, TypeVar
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
@@ -39,31 +40,28 @@ HARMONICS = {
 
 @dataclass(frozen=True)
 class RimAnswers:
-    """K_b of the lobe cases and the peak stress on the ellipse; None where it was not found.
+    """K_b of the lobe cases by the name of its figure, and the peak stress on the ellipse; None: not found.
 
-    `K_b_lobes_contact` (the seat may lift off) is None where only the solid model applies: lift-off
+    `K_b_lobes_contact` (the seat may lift off) is absent where only the solid model applies: lift-off
     breaks the symmetry that makes that model small.
     """
 
-    K_b_lobes: Stiffness | None
-    K_b_lobes_unsupported: Stiffness | None
-    K_b_lobes_contact: Stiffness | None
+    stiffnesses: Mapping[str, Stiffness | None]
     wave_generator_peak: StressPeak | None
 
 
 def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
+    cases: list[RimCase] = ["lobes", "lobes_unsupported"]
+    peak = _solid_peak
     if flexspline.axisymmetric:
-        contact = tried.get("K_b_lobes_contact", lambda: rim_stiffness(flexspline, "lobes_contact"))
+        cases.insert(0, "lobes_contact")
         peak = _revolved_peak
-    else:
-        contact, peak = None, _solid_peak
-    return RimAnswers(
-        tried.get("K_b_lobes", lambda: rim_stiffness(flexspline, "lobes")),
-        tried.get("K_b_lobes_unsupported", lambda: rim_stiffness(flexspline, "lobes_unsupported")),
-        contact,
-        tried.get("wave_generator_peak", lambda: peak(flexspline)),
-    )
+    found = {
+        f"K_b_{case}": tried.get(f"K_b_{case}", partial(rim_stiffness, flexspline, case))
+        for case in cases
+    }
+    return RimAnswers(found, tried.get("wave_generator_peak", lambda: peak(flexspline)))
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:

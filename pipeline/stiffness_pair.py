@@ -34,14 +34,14 @@ def stiffness_pair(
     """
     if K_b is not None and K_e is not None:
         return StiffnessPair(K_b, K_e, True)
-    rim = context.design.solver.load_case == "lobes"
+    rim = context.design.solver.K_b_in_sum != "K_b"
     found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []
     if K_b is None:
         solved.append(found.in_sum(context.design))
         K_b = solved[-1].K_Nm_per_rad
     if K_e is None:
-        solved.append(found.shaft)
+        solved.append(found.K_e)
         K_e = solved[-1].K_Nm_per_rad
     doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
     return StiffnessPair(K_b, K_e, False, doubt / (1 / K_b + 1 / K_e))

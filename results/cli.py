@@ -140,6 +140,7 @@ def backlash(
 def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, Any]:
     from flexspline.geometry.sanity import warnings
     from flexspline.pipeline.backlash import backlash as total
+    from flexspline.pipeline.backlash import series_stiffness
     from flexspline.pipeline.linear_limit import linear_limit
     from flexspline.results.records import (
         backlash_record,
@@ -152,13 +153,13 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
     if kb is None or ke is None:
         from flexspline.pipeline.analysis import stiffnesses
 
-        rim = job.design.solver.load_case == "lobes"
+        rim = job.design.solver.K_b_in_sum != "K_b"
         found = stiffnesses(job.context, flexspline=kb is None, shaft=ke is None, rim=rim)
         record |= stiffness_record(job.design, found, job.wall_s)
         kb = kb or found.in_sum(job.design).K_Nm_per_rad
-        ke = ke or found.shaft.K_Nm_per_rad
+        ke = ke or found.K_e.K_Nm_per_rad
         warn(job.design, found)
-    K = record["K_series_Nm_per_rad"] = 1 / (1 / kb + 1 / ke)
+    K = record["K_series_Nm_per_rad"] = series_stiffness(kb, ke)
     limit = linear_limit(job.design, K)
     record["warnings"] += tell_all(limit.passed(job.design))
     return record | backlash_record(total(job.design, kb, ke)) | linear_limit_record(limit)

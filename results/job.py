@@ -15,8 +15,8 @@ import typer
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
-    from flexspline.pipeline.analysis import Stiffnesses
     from flexspline.pipeline.parts import AnalysisContext
+    from flexspline.pipeline.stiffnesses import Stiffnesses
     from flexspline.results.report.attached import Attachment
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
@@ -185,7 +185,7 @@ def tell_all(warnings: Iterable[str]) -> list[str]:
 @contextmanager
 def kept(job: Job, as_json: bool) -> Iterator[None]:
     """Where a figure that the answer needs failed, keep the others before the error goes on."""
-    from flexspline.pipeline.analysis import NotFoundError
+    from flexspline.pipeline.stiffnesses import NotFoundError
 
     try:
         yield

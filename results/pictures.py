@@ -18,7 +18,7 @@ import numpy as np
 
 from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import RunResult
-from flexspline.pipeline.backlash import angle_rad
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, angle_rad
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.pipeline.parts import AnalysisContext
@@ -34,7 +34,6 @@ from flexspline.results.renders.stress_picture import (
     write_turning_torque_stress,
 )
 
-ARCSEC_PER_RAD = 180 / np.pi * 3600
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 ELLIPSE = "wave_generator"
 DRAWING = 5
@@ -186,8 +185,8 @@ def _charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterable[_D
     """What matplotlib draws alone."""
     design, found, backlash = result.design, result.stiffnesses, result.backlash
     sums = {"backlash": asdict(backlash), "torque_Nm": design.load.torque_Nm}
-    K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.shaft.K_Nm_per_rad
-    solved = {"K_b_Nm_per_rad": found.flexspline, "K_e_Nm_per_rad": found.shaft}
+    K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad
+    solved = {"K_b_Nm_per_rad": found.K_b, "K_e_Nm_per_rad": found.K_e}
     settling = {key: K for key, K in solved.items() if len(K.levels) > 1}
 
     def angle(torque: np.ndarray) -> np.ndarray:

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from flexspline.fea.toothed_ring.equivalent import EquivalentRing
     from flexspline.fea.types import SolidField, Stiffness, StressPeak
     from flexspline.geometry.design import Design
-    from flexspline.pipeline.analysis import RunResult, Stiffnesses
+    from flexspline.pipeline.analysis import RunResult
     from flexspline.pipeline.backlash import Backlash
     from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
     from flexspline.pipeline.linear_limit import LinearLimit
+    from flexspline.pipeline.stiffnesses import Stiffnesses
 
 Record = dict[str, Any]
 
@@ -36,7 +37,7 @@ def heading(design: Design) -> Record:
 def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Record:
     """K of every load case that was solved, with bounds, and how it was solved."""
     record: Record = {}
-    for name, stiffness in found.named.items():
+    for name, stiffness in found.solved.items():
         record |= bounded_record(name, stiffness)
     if found.wave_generator_peak is not None:
         record |= peak_record("wave_generator_peak", found.wave_generator_peak)
@@ -50,7 +51,9 @@ def stiffness_record(design: Design, found: Stiffnesses, wall_s: float) -> Recor
     if found.has_sum(design):
         record["K_series_Nm_per_rad"] = found.series_Nm_per_rad(design)
     solver = {
-        name: _solver(k) for name, k in (("flexspline", found.K_b), ("shaft", found.K_e)) if k
+        part: _solver(found[K])
+        for part, K in (("flexspline", "K_b"), ("shaft", "K_e"))
+        if K in found.solved
     }
     # these flat figures are the flexspline's, or the shaft's where that alone was solved
     flat = next(iter(solver.values()), {})

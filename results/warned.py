@@ -11,7 +11,8 @@ from flexspline.results.quantities import quantity
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField, StressPeak
     from flexspline.geometry.design import Design
-    from flexspline.pipeline.analysis import RunResult, Stiffnesses
+    from flexspline.pipeline.analysis import RunResult
+    from flexspline.pipeline.stiffnesses import Stiffnesses
 
 
 def shortfalls(
@@ -47,7 +48,7 @@ def _peaks(found: Stiffnesses, fields: Mapping[str, SolidField]) -> dict[str, St
 
 def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
     asked = design.solver.tolerance_pct
-    for name, stiffness in found.named.items():
+    for name, stiffness in found.solved.items():
         half = 100 * stiffness.half_width
         if half > asked:
             symbol = quantity(f"{name}_Nm_per_rad").symbol

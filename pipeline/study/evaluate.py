@@ -20,7 +20,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.geometry.part import PartName
-from flexspline.pipeline.backlash import StiffnessValueError, backlash
+from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_stiffness
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.revolved import (
     contact,
@@ -82,8 +82,8 @@ def figures_of(
     """
     flexspline, shaft = revolved(design).parts
     found: dict[str, float] = {}
-    lobed = design.solver.load_case == "lobes"
-    if "lobes" in solves or lobed:
+    in_sum = design.solver.K_b_in_sum
+    if "lobes" in solves or in_sum != "K_b":
         found |= _stiffness("K_b_lobes", lobes(flexspline, True, LOBE_TOLERANCE))
     if "unsupported" in solves:
         found |= _stiffness("K_b_lobes_unsupported", lobes(flexspline, False, LOBE_TOLERANCE))
@@ -100,7 +100,7 @@ def figures_of(
         found |= _stiffness("K_b", torsion(flexspline, TORSION_TOLERANCE))
         found |= _stiffness("K_e", torsion(shaft, TORSION_TOLERANCE))
         found = with_holes(found, design, holes)
-        found |= _sum(design, found["K_b_lobes_Nm_per_rad" if lobed else "K_b_Nm_per_rad"], found)
+        found |= _sum(design, found)
     mass = masses(design)
     sizes = (
         mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
@@ -114,13 +114,13 @@ def revolved_torsion(design: Design, name: PartName) -> tuple[float, float, floa
     return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
 
 
-def _sum(design: Design, K_b: float, found: Mapping[str, float]) -> dict[str, float]:
-    K_e = found["K_e_Nm_per_rad"]
+def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
+    K_b, K_e = found[f"{design.solver.K_b_in_sum}_Nm_per_rad"], found["K_e_Nm_per_rad"]
     total = backlash(design, K_b, K_e)
     terms = ["shaft", "flexspline", "flank_clearance", "bearing_play", "total"]
     terms += ["std"] if total.std_arcsec is not None else []
     return {
-        "K_series_Nm_per_rad": 1 / (1 / K_e + 1 / K_b),
+        "K_series_Nm_per_rad": series_stiffness(K_b, K_e),
         **{f"backlash_arcsec.{t}": float(getattr(total, f"{t}_arcsec")) for t in terms},
     }
 

@@ -32,8 +32,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
         context = AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, _silent), Progress())
-        lobed = design.solver.load_case == "lobes"
-        found = stiffnesses(context, rim=rim or lobed)
+        found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
         total = backlash_of(design, found)
     except OUR_ERRORS as fault:
         return Outcome(reason=str(fault))
@@ -43,8 +42,8 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         "backlash_arcsec.total": total.total_arcsec,
     }
     for name in ("K_b", "K_e", "K_b_lobes", "K_b_lobes_unsupported"):
-        k = getattr(found, name)
-        if k is not None:
+        if name in found.solved:
+            k = found[name]
             figures[f"{name}_Nm_per_rad"] = k.K_Nm_per_rad
             figures[f"{name}_bounds_Nm_per_rad[0]"] = k.lower_Nm_per_rad
             figures[f"{name}_bounds_Nm_per_rad[1]"] = k.upper_Nm_per_rad

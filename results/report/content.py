@@ -9,7 +9,7 @@ from pathlib import Path
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
-from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.backlash import Backlash, series_stiffness
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.results.report.attached import Attachment
 
@@ -77,14 +77,14 @@ class ReportContent:
     @property
     def K_b_in_sum(self) -> Stiffness:
         """The K_b that `solver.load_case` puts into the sum."""
-        if self.design.solver.load_case == "lobes" and self.K_b_lobes is not None:
-            return self.K_b_lobes
-        return self.K_b
+        found = self.K_b if self.design.solver.K_b_in_sum == "K_b" else self.K_b_lobes
+        assert found is not None  # a run has it, or ends without a report
+        return found
 
     @property
     def K_series_bounds_Nm_per_rad(self) -> tuple[float, float]:
         """1/(1/K_b + 1/K_e) at both parts' lower and at both parts' upper bounds."""
         K_b, K_e = self.K_b_in_sum, self.K_e
-        low = 1 / (1 / K_b.lower_Nm_per_rad + 1 / K_e.lower_Nm_per_rad)
-        high = 1 / (1 / K_b.upper_Nm_per_rad + 1 / K_e.upper_Nm_per_rad)
+        low = series_stiffness(K_b.lower_Nm_per_rad, K_e.lower_Nm_per_rad)
+        high = series_stiffness(K_b.upper_Nm_per_rad, K_e.upper_Nm_per_rad)
         return low, high

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD, Backlash, angle_rad, backlash
+from flexspline.pipeline.backlash import (
+    ARCSEC_PER_RAD,
+    Backlash,
+    angle_rad,
+    backlash,
+    series_stiffness,
+)
 from flexspline.pipeline.linear_limit import linear_limit
 from flexspline.pipeline.live import left_out
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
@@ -37,10 +43,10 @@ def message(design: Design, found: Found) -> Message:
     """
     figures = dict(found)
     shown: Message = {}
-    K_b = found.get(f"{'K_b_lobes' if lobed(design) else 'K_b'}_Nm_per_rad")
+    K_b = found.get(f"{design.solver.K_b_in_sum}_Nm_per_rad")
     K_e = found.get("K_e_Nm_per_rad")
     if K_b is not None and K_e is not None:
-        figures["K_series_Nm_per_rad"] = 1 / (1 / K_b + 1 / K_e)
+        figures["K_series_Nm_per_rad"] = series_stiffness(K_b, K_e)
         total = backlash(design, K_b, K_e)
         figures |= backlash_record(total)
         limit = linear_limit(design, figures["K_series_Nm_per_rad"])
@@ -66,11 +72,6 @@ def agreement(design: Design) -> str:
     if design.solver.model == "solid":
         return "Equals `flexspline stiffness`, there the solid model, within the bounds"
     return "Equals `flexspline stiffness` to seven digits"
-
-
-def lobed(design: Design) -> bool:
-    """Whether the lobes' K_b enters the sum."""
-    return design.solver.load_case == "lobes"
 
 
 def figure(key: str, value: float) -> Message:

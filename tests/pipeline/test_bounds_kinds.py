@@ -12,10 +12,11 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.pipeline import parts
-from flexspline.pipeline.analysis import CACHED_TYPES, Stiffnesses, stiffnesses
+from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.records import stiffness_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

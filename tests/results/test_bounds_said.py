@@ -13,7 +13,7 @@ from hand_made_gear import K_B, K_E, content, design
 from page_text import letters, pdf_letters, read_page
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline.analysis import Stiffnesses
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.records import stiffness_record
@@ -31,14 +31,14 @@ GUARANTEE = letters("hold without exception")
 
 def found(guaranteed: tuple[str, ...]) -> Stiffnesses:
     kinds = {name: K_E if name in guaranteed else ESTIMATE for name in FIGURES}
-    return Stiffnesses(**kinds)
+    return Stiffnesses(kinds)
 
 
 def said_of(stiffnesses: Stiffnesses):
     return content(
-        K_b=stiffnesses.K_b, K_e=stiffnesses.K_e, K_b_lobes=stiffnesses.K_b_lobes,
-        K_b_lobes_contact=stiffnesses.K_b_lobes_contact,
-        K_b_lobes_unsupported=stiffnesses.K_b_lobes_unsupported,
+        K_b=stiffnesses.K_b, K_e=stiffnesses.K_e, K_b_lobes=stiffnesses["K_b_lobes"],
+        K_b_lobes_contact=stiffnesses["K_b_lobes_contact"],
+        K_b_lobes_unsupported=stiffnesses["K_b_lobes_unsupported"],
     )  # fmt: skip
 
 

@@ -11,8 +11,8 @@ from page_text import letters, pdf_letters, read_page
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
-from flexspline.pipeline.analysis import Stiffnesses
 from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passed, share_of_limit
 from flexspline.results.console import table
 from flexspline.results.peaks import BORDER
@@ -106,7 +106,7 @@ def test_reports_carry_mark_alarm_seat_and_torque(tmp_path: Path) -> None:
 
 
 def test_json_console_and_page_mark_it(tmp_path: Path) -> None:
-    found = Stiffnesses(K_B, K_E, wave_generator_peak=peak(400.0, border=True))
+    found = Stiffnesses({"K_b": K_B, "K_e": K_E}, wave_generator_peak=peak(400.0, border=True))
     record = {"design": "", **stiffness_record(limited(500.0), found, 1.0)}
     record |= peak_record("torque_peak", peak(3.0, border=False))
     record |= peak_record("shaft_torque_peak", peak(4.0, border=True))
@@ -128,7 +128,7 @@ def test_pictures_say_where_their_colours_end() -> None:
 
 
 def test_a_passed_limit_is_a_warning() -> None:
-    found = Stiffnesses(K_B, K_E, wave_generator_peak=peak(600.0, border=True))
+    found = Stiffnesses({"K_b": K_B, "K_e": K_E}, wave_generator_peak=peak(600.0, border=True))
     (line,) = shortfalls(limited(500.0), found)
     assert "wave_generator_peak_mises_MPa = 600" in line
     assert "above material.flexspline.fatigue_limit_MPa = 500" in line

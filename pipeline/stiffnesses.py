@@ -1,0 +1,90 @@
+"""K_b of each load case and K_e as solved, and which of them the backlash sum takes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+from flexspline.fea.types import Stiffness, StressPeak
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.backlash import series_stiffness
+
+FIGURES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e")
+"""In the order of the reports."""
+
+
+def in_order(every: Mapping[str, Stiffness | None]) -> dict[str, Stiffness]:
+    """Those of `FIGURES` that were found."""
+    return {name: found for name in FIGURES if (found := every.get(name)) is not None}
+
+
+@dataclass(frozen=True)
+class Stiffnesses:
+    """All stiffnesses that were found, and the peaks on the wave generator.
+
+    Attributes
+    ----------
+    solved : by the name of the figure, in the order of `FIGURES`.
+    half_seat_peak : the wave generator's peak on a seat half as wide as the ring.
+    ring : the plain ring that stood for the teeth in all K_b, None where none were drawn.
+    missing : why a figure that was asked for is not there, by its name.
+    """
+
+    solved: Mapping[str, Stiffness]
+    wave_generator_peak: StressPeak | None = None
+    half_seat_peak: StressPeak | None = None
+    ring: EquivalentRing | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Stiffness:
+        """The figure of that name.
+
+        Raises
+        ------
+        NotFoundError : it failed, or nobody asked for it.
+        """
+        if name not in self.solved:
+            raise NotFoundError(name, self.missing.get(name, "nobody asked for it"), self)
+        return self.solved[name]
+
+    @property
+    def K_b(self) -> Stiffness:
+        """Of the case "uniform"; raises NotFoundError."""
+        return self["K_b"]
+
+    @property
+    def K_e(self) -> Stiffness:
+        """Raises NotFoundError."""
+        return self["K_e"]
+
+    def in_sum(self, design: Design) -> Stiffness:
+        """The K_b that enters the backlash sum, by `solver.load_case`; raises NotFoundError."""
+        return self[design.solver.K_b_in_sum]
+
+    def has_sum(self, design: Design) -> bool:
+        """Whether both K of the backlash sum are there."""
+        return {design.solver.K_b_in_sum, "K_e"} <= set(self.solved)
+
+    def require(self, design: Design) -> None:
+        """Both K of the sum and K_b of the case "uniform", which every answer is about.
+
+        Raises
+        ------
+        NotFoundError : one of them is not there.
+        """
+        for name in ("K_b", "K_e", design.solver.K_b_in_sum):
+            self[name]
+
+    def series_Nm_per_rad(self, design: Design) -> float:
+        """1/K = 1/K_e + 1/K_b; raises NotFoundError."""
+        return series_stiffness(self.in_sum(design).K_Nm_per_rad, self.K_e.K_Nm_per_rad)
+
+
+class NotFoundError(ComputationError):
+    """A figure that the answer needs failed: its `name`, and all that was `found` beside it."""
+
+    def __init__(self, name: str, why: str, found: Stiffnesses) -> None:
+        self.name, self.found = name, found
+        super().__init__(f"{name} was not found: {why}")
