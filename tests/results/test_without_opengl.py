@@ -20,7 +20,9 @@ Run = subprocess.CompletedProcess[str]
 
 def flexspline(cache: Path, *words: object, without: Path | None = None) -> Run:
     """The command; `without`: a folder to hide OpenGL with."""
-    env = os.environ | {"FLEXSPLINE_CACHE": str(cache)}
+    scratch = cache.with_name("scratch")  # nobody else's leftovers are cleared, and said, here
+    scratch.mkdir(exist_ok=True)
+    env = os.environ | {"FLEXSPLINE_CACHE": str(cache), "TMPDIR": str(scratch)}
     if without:
         without.mkdir()
         env |= machine_without(without)
