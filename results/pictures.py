@@ -168,14 +168,15 @@ def _views(
 ) -> Iterable[_Drawing]:
     """Those of the stress pictures again, as views that turn."""
     fields, load = result.fields, result.design.load
+    key: dict[str, Any] = {"turning": TURNING}
+    part_of: dict[str, PartName] = {f"{part}_torque": part for part in TITLES}
     for name in names:
-        key: dict[str, Any] = {"turning": TURNING}
-        part: PartName = "shaft" if name == "shaft_torque" else "flexspline"
         if name == ELLIPSE:
             ellipse = name, fields[name], result.design.gear.centre_distance_mm
             make = partial(process.draw, write_turning_ellipse, *ellipse)
             yield _Drawing(name, {**key, **_ellipse_inputs(context)}, make)
-        elif part in TITLES:
+        elif name in part_of:
+            part = part_of[name]
             shown = name, fields[name], TITLES[part], load.torque_Nm
             make = partial(process.draw, write_turning_torque_stress, *shown)
             yield _Drawing(name, {**key, **_stress_inputs(context, part)}, make)
