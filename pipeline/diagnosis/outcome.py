@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -16,7 +16,6 @@ class NamedCause:
     """A cause found; `alternatives` are ids that the data cannot tell from it."""
 
     id: str
-    title: str
     probability: float
     alternatives: tuple[str, ...]
     magnitude: float
@@ -32,15 +31,6 @@ class NamedCause:
     def is_surplus(self) -> bool:
         """Whether the simulation has too much of it, not too little: compliance that the gear lacks."""
         return self.id == "series_compliance" and self.magnitude < 0
-
-
-def left_out(found: Sequence[NamedCause], said: Callable[[NamedCause], str]) -> str:
-    """What the simulation leaves out and where it is too soft; `said` words one cause."""
-    missing = [said(c) for c in found if not c.is_surplus]
-    surplus = [said(c) for c in found if c.is_surplus]
-    sentences = [f"The simulation leaves out: {'; '.join(missing)}."] if missing else []
-    sentences += [f"The simulation is too soft: {'; '.join(surplus)}."] if surplus else []
-    return " ".join(sentences)
 
 
 @dataclass(frozen=True)
@@ -68,24 +58,43 @@ class Gain:
     """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
 
 
+Aim = Literal["more_data", "find_structure", "confirm", "separate"]
+
+
 @dataclass(frozen=True)
 class NextMeasurement:
-    """The measurement that tells the rivals apart best, and by how many units of noise."""
+    """The measurement that would settle what is open.
+
+    Attributes
+    ----------
+    vary : the channel or thing to vary. aim : what it is for.
+    causes : ids: the one to confirm, or the one to tell from all others.
+    doing : what to do, of a plan. where : the structure to find, the unit to measure.
+    separation : by how many units of noise the two nearest rivals then differ.
+    same_points : the same for end points at the torques measured, None where they were not compared.
+    dimension_mm : of a specimen to make, and as drawn.
+    """
 
     vary: str
-    why: str
-    separation: float
+    aim: Aim
+    causes: tuple[str, ...] = ()
+    doing: str = ""
+    where: str = ""
+    separation: float = 0.0
+    same_points: float | None = None
+    dimension_mm: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
 class DiagnosisOutcome:
-    """The verdict and all that goes with it."""
+    """The verdict and all that goes with it, as facts; `results.diagnosis` puts them into words.
+
+    `too_little` is why there are too few data, of an `insufficient` verdict.
+    """
 
     verdict: Verdict
-    causes: tuple[NamedCause, ...]
-    unexplained: tuple[Unexplained, ...]
-    gain: Gain | None
-    next_measurement: NextMeasurement | None
-    summary: str
-    """One or two sentences in plain words."""
-    notes: tuple[str, ...] = field(default=())
+    causes: tuple[NamedCause, ...] = ()
+    unexplained: tuple[Unexplained, ...] = ()
+    gain: Gain | None = None
+    next_measurement: NextMeasurement | None = None
+    too_little: str = ""

@@ -6,14 +6,17 @@ import textwrap
 from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
     capital,
+    cause_title,
     channel_words,
     figures_text,
     magnitude_words,
-    sentence,
     sure_words,
     title_of,
 )
@@ -25,10 +28,10 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     """Verdict, causes, gain and what to measure next."""
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
-    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {sentence(outcome)}")
+    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {summary(diagnosis)}")
     for cause in outcome.causes:
         lines.append(
-            f"  {capital(cause.title):<62} {magnitude_words(cause):<28} {sure_words(cause)}"
+            f"  {capital(cause_title(cause)):<62} {magnitude_words(cause):<28} {sure_words(cause)}"
         )
         if cause.alternatives:
             lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
@@ -48,8 +51,10 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
             lines.append(f"    {words:<60} {figures_text(value)}")
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
-        lines += _wrapped(f"Measure next ({channel_words(after.vary)}): {after.why}")
-    for note in outcome.notes:
+        lines += _wrapped(
+            f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind)}"
+        )
+    for note in notes(diagnosis):
         lines += _wrapped(f"note: {note}", "  ", "    ")
     lines.append(f"files in {folder}")
     return "\n".join(lines)

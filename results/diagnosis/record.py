@@ -6,6 +6,9 @@ from typing import Any
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.summary import summary
 from flexspline.results.records import heading
 
 EXTENDED_MODEL = "extended_model.toml"
@@ -18,13 +21,13 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
     record: Record = {
         **heading(diagnosis.design),
         "verdict": outcome.verdict,
-        "summary": outcome.summary,
+        "summary": summary(diagnosis),
         "causes": [_cause(c) for c in outcome.causes],
         "unexplained": [
             {"channel": u.channel, "rms": u.rms, "p_value": u.p_value, "what": u.what}
             for u in outcome.unexplained
         ],
-        "notes": list(outcome.notes),
+        "notes": list(notes(diagnosis)),
     }
     if outcome.gain is not None:
         record["gain"] = _gain(outcome.gain)
@@ -32,7 +35,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         record["extended_model"] = EXTENDED_MODEL
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
-        record["next_measurement"] = {"vary": after.vary, "why": after.why}
+        record["next_measurement"] = {"vary": after.vary, "why": why(after, diagnosis.kind)}
     return record
 
 

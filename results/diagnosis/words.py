@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, log10
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, left_out
+from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.quantities import grouped
 
 CHANNELS = {
@@ -81,14 +81,19 @@ def magnitude_words(cause: NamedCause) -> str:
     return f"{plus_minus(cause.magnitude, cause.magnitude_std)} {unit_words(cause.unit)}".rstrip()
 
 
-def title_of(cause_id: str) -> str:
-    """A cause's title; of a dimension, which one."""
+def title_of(cause_id: str, magnitude: float = 0.0) -> str:
+    """A cause's title; of a dimension, which one. The sign of the magnitude may change what it is."""
     if cause_id in SPECIMENS:
         return SPECIMENS[cause_id]
     if cause_id.startswith("geometry:"):
         return f"{channel_words(cause_id.removeprefix('geometry:'))} other than drawn"
     cause = known_causes().get(cause_id)
-    return cause.title if cause else cause_id
+    return cause.title_at(magnitude) if cause else cause_id
+
+
+def cause_title(cause: NamedCause) -> str:
+    """What a person reads of a cause found."""
+    return title_of(cause.id, cause.magnitude)
 
 
 def capital(text: str) -> str:
@@ -102,13 +107,6 @@ def figures_text(value: float, digits: int = 3) -> str:
         return "0"
     places = max(0, digits - 1 - floor(log10(abs(value))))
     return grouped(value, places)
-
-
-def sentence(outcome: DiagnosisOutcome) -> str:
-    """The verdict in one sentence; magnitudes with as many digits as their deviation bears."""
-    if outcome.verdict != "named":
-        return outcome.summary
-    return left_out(outcome.causes, lambda c: f"{c.title}, {magnitude_words(c)}")
 
 
 def calibrated_words(gain: Gain) -> str:

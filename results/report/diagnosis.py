@@ -8,15 +8,18 @@ from typing import Literal
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     calibrated_words,
     capital,
+    cause_title,
     channel_words,
     figures_text,
     magnitude_words,
     odds_words,
-    sentence,
     sure_words,
     title_of,
 )
@@ -57,10 +60,10 @@ def diagnosis_document(
         *_causes(diagnosis.outcome),
         *_unexplained(diagnosis.outcome.unexplained),
         *_worth(diagnosis.outcome),
-        *_after(diagnosis.outcome),
+        *_after(diagnosis),
         *_figures(figures),
         *_model(diagnosis),
-        *_notes(diagnosis.outcome),
+        *_notes(diagnosis),
     )
     return Document(
         title="The simulation against a measurement",
@@ -75,7 +78,7 @@ def diagnosis_document(
 def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     outcome = diagnosis.outcome
     tone: Literal["amber", "blue"] = "amber" if outcome.verdict in OPEN else "blue"
-    yield Callout(tone, VERDICTS[outcome.verdict], sentence(outcome))
+    yield Callout(tone, VERDICTS[outcome.verdict], summary(diagnosis))
     yield Heading("What was measured")
     yield Facts(tuple((name, fact) for name, fact in measured(diagnosis)))
     yield Paragraph(worded(compared(diagnosis, used)))
@@ -105,7 +108,7 @@ def _cause(cause: NamedCause) -> tuple[Text, ...]:
     odds = "" if cause.alternatives else odds_words(cause.evidence_nats)
     others = ", ".join(map(title_of, cause.alternatives))
     return (
-        bold(capital(cause.title)) + (note(f"unit {units}") if units else ()),
+        bold(capital(cause_title(cause))) + (note(f"unit {units}") if units else ()),
         magnitude_words(cause),
         plain(sure_words(cause)) + (note(odds) if odds else ()),
         capital(others) or "No other known cause",
@@ -161,12 +164,13 @@ def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     yield "Measurement noise, the lower limit", gain.noise_floor
 
 
-def _after(outcome: DiagnosisOutcome) -> Iterable[Block]:
-    after = outcome.next_measurement
+def _after(diagnosis: Diagnosis) -> Iterable[Block]:
+    after = diagnosis.outcome.next_measurement
     if after is not None:
         yield Heading("What to measure next")
         yield Paragraph(
-            bold(f"{capital(channel_words(after.vary))}. ") + plain(f"{capital(after.why)}.")
+            bold(f"{capital(channel_words(after.vary))}. ")
+            + plain(f"{capital(why(after, diagnosis.kind))}.")
         )
 
 
@@ -192,10 +196,11 @@ def _model(diagnosis: Diagnosis) -> Iterable[Block]:
     yield Paragraph(code("flexspline predict DESIGN.toml --model extended_model.toml TORQUE.csv"))
 
 
-def _notes(outcome: DiagnosisOutcome) -> Iterable[Block]:
-    if outcome.notes:
+def _notes(diagnosis: Diagnosis) -> Iterable[Block]:
+    found = notes(diagnosis)
+    if found:
         yield Heading("Notes")
-        yield Bullets(tuple(capital(n) for n in outcome.notes), small=True)
+        yield Bullets(tuple(map(capital, found)), small=True)
 
 
 def _percent(share: float) -> str:

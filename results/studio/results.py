@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     capital,
+    cause_title,
     channel_words,
     figures_text,
     magnitude_words,
@@ -66,13 +67,12 @@ def _cause(entry: Told) -> Told:
         "rms_arcsec",
     )
     cause = NamedCause(
-        title=title_of(entry["id"]),
         alternatives=tuple(entry["alternatives"]),
         own_units=tuple(entry.get("units", ())),
         **{key: entry[key] for key in keys},
     )
     return {
-        "title": capital(cause.title),
+        "title": capital(cause_title(cause)),
         "magnitude": magnitude_words(cause),
         "sure": sure_words(cause),
         "others": ", ".join(map(title_of, cause.alternatives)),

@@ -14,7 +14,7 @@ class TorqueOffset(Cause):
     """The reading is `amplitude` [N·m] above the true torque: every other term sees the true one.
 
     On a straight branch that is a shift of the angle's zero, which is free; it shows where the torque
-    changes sign. Its amplitude is searched by `pipeline.diagnosis.crossing`, not linearly.
+    changes sign. Its amplitude is searched by `pipeline.diagnosis.sweep.torque_offset`, not linearly.
     """
 
     id = "torque_offset"

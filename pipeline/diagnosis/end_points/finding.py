@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, Explanation
-from flexspline.pipeline.diagnosis.end_points.next_measurement import PlanSeparation
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
+from flexspline.pipeline.diagnosis.plans import PlanSeparation
 
 SIGNIFICANT = 0.05
 """A unit is beyond the envelope where its p-value, corrected for all units looked at, is below this."""
@@ -59,7 +59,8 @@ class EndPointAnalysis:
     `envelopes`: of each torque. `units`: each unit at its worst. `common` (mean, std): the gap's
     deviation that all units share [arcsec]; `share`: how much of the gap's stated variance is common.
     `reading_arcsec`: standard deviation of a total. `hypotheses`: the race, likeliest first.
-    `plans`: further measurements by what they separate, best first.
+    `plans`: further measurements by what they separate, best first. `several_torques`: whether some unit
+    was measured at more than one torque.
     """
 
     envelopes: tuple[Envelope, ...]
@@ -70,6 +71,7 @@ class EndPointAnalysis:
     reading_arcsec: float
     hypotheses: tuple[Hypothesis, ...]
     plans: tuple[PlanSeparation, ...]
+    several_torques: bool
 
     def envelope_at(self, torque_Nm: float) -> Envelope:
         """Of one of the file's torques."""

@@ -29,7 +29,7 @@ FEWEST_UNITS = 3
 
 
 def extended(
-    weighed: UnitEvidence, fleet: UnitDeviations, names: Sequence[str], prediction: Prediction
+    weighed: UnitEvidence, deviations: UnitDeviations, names: Sequence[str], prediction: Prediction
 ) -> ExtendedModel:
     """The calibrated simulation with the terms of a hypothesis; a unit's own gap beside the common one."""
     elements: dict[str, tuple[Element, ...]] = {}
@@ -38,7 +38,10 @@ def extended(
     return ExtendedModel(
         prediction.compliance,
         prediction.gap_arcsec + weighed.common[0],
-        {n: float(fleet.mid[rows].mean()) for n, rows in zip(names, fleet.unit_rows, strict=True)},
+        {
+            n: float(deviations.mid[rows].mean())
+            for n, rows in zip(names, deviations.unit_rows, strict=True)
+        },
         elements,
         {n: (0.0, float(weighed.own[u])) for u, n in enumerate(names)},
     )
@@ -72,23 +75,23 @@ def _model(prediction: Prediction, term: EndPointRegressor, amplitude: float) ->
     return ExtendedModel(prediction.compliance, prediction.gap_arcsec, {}, elements, {})
 
 
-def gain_of(fleet: UnitDeviations, best: Hypothesis, names: Sequence[str]) -> Gain | None:
+def gain_of(deviations: UnitDeviations, best: Hypothesis, names: Sequence[str]) -> Gain | None:
     """Each unit in turn predicted from the others; errors of totals [arcsec].
 
     None for what is one unit's own, which no other unit can predict, and for fewer than three units.
     """
-    if fleet.units < FEWEST_UNITS or best.own is not None:
+    if deviations.units < FEWEST_UNITS or best.own is not None:
         return None
     terms = [t for t in best.best.terms if t.channel == "total"]
-    calibrated, after = fleet.deviation.copy(), fleet.deviation.copy()
-    for u in range(fleet.units):
-        out = fleet.unit == u
-        _, unit = np.unique(fleet.unit[~out], return_inverse=True)
+    calibrated, after = deviations.deviation.copy(), deviations.deviation.copy()
+    for u in range(deviations.units):
+        out = deviations.unit == u
+        _, unit = np.unique(deviations.unit[~out], return_inverse=True)
         rest = replace(
-            fleet,
-            deviation=fleet.deviation[~out],
-            mid=fleet.mid[~out],
-            torque=fleet.torque[~out],
+            deviations,
+            deviation=deviations.deviation[~out],
+            mid=deviations.mid[~out],
+            torque=deviations.torque[~out],
             unit=unit,
         )
         calibrated[out] -= unit_evidence(rest, ()).common[0]
@@ -97,8 +100,8 @@ def gain_of(fleet: UnitDeviations, best: Hypothesis, names: Sequence[str]) -> Ga
         for term, amplitude in zip(terms, trained.mean, strict=True):
             after[out] -= amplitude * term.column[out]
     return Gain(
-        f"each of {len(names)} units in turn", _rms(fleet.deviation), _rms(calibrated), _rms(after),
-        best.best.reading, held_out_rows=tuple(range(len(fleet.deviation))),
+        f"each of {len(names)} units in turn", _rms(deviations.deviation), _rms(calibrated), _rms(after),
+        best.best.reading, held_out_rows=tuple(range(len(deviations.deviation))),
     )  # fmt: skip
 
 

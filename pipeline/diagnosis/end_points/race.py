@@ -51,59 +51,59 @@ class Hypothesis:
 
 
 def race(
-    points: EndPoints, rig: Rig, fleet: UnitDeviations, suspects: Sequence[int]
+    points: EndPoints, rig: Rig, deviations: UnitDeviations, suspects: Sequence[int]
 ) -> list[Hypothesis]:
     """All hypotheses, the likeliest first; the null has no causes and score 0."""
     terms = end_point_regressors(points, rig)
-    several = several_torques(fleet)
+    several = several_torques(deviations)
     if not several:  # a zero per unit absorbs what shifts mid positions, and a curve needs torques
         terms = [t for t in terms if t.channel == "total"]
     else:
-        curve = (fleet.torque / rig.torque_Nm) ** 2
+        curve = (deviations.torque / rig.torque_Nm) ** 2
         terms.append(
             EndPointRegressor(
                 UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,))
             )
         )
     ids = list(dict.fromkeys(t.cause for t in terms))
-    null = unit_evidence(fleet, ())
+    null = unit_evidence(deviations, ())
     found = [Hypothesis((), None, 0.0, null.likelihood, null)]
     for cause in ids:
         mine = [t for t in terms if t.cause == cause]
         odds = (UNNAMED_NATS if cause == UNNAMED else 0.0) - log(len(ids))
-        found.append(_of(fleet, [(t,) for t in mine], None, odds, null))
-        for u in suspects if fleet.units > 1 and cause != UNNAMED else ():
-            rows = fleet.unit == u
+        found.append(_of(deviations, [(t,) for t in mine], None, odds, null))
+        for u in suspects if deviations.units > 1 and cause != UNNAMED else ():
+            rows = deviations.unit == u
             one = [(t.of(rows),) for t in mine]
-            found.append(_of(fleet, one, u, odds - log(fleet.units), null))
+            found.append(_of(deviations, one, u, odds - log(deviations.units), null))
     for a, b in combinations(ids, 2) if several else ():
         if {a, b} <= CONCAVE:
             continue
         pairs = [(s, t) for s in terms if s.cause == a for t in terms if t.cause == b]
         odds = PAIR_NATS - log(len(ids) ** 2 / 2) + (UNNAMED_NATS if UNNAMED in (a, b) else 0.0)
-        found.append(_of(fleet, pairs, None, odds, null))
+        found.append(_of(deviations, pairs, None, odds, null))
     return sorted(found, key=lambda h: -h.score)
 
 
-def several_torques(fleet: UnitDeviations) -> bool:
+def several_torques(deviations: UnitDeviations) -> bool:
     """Whether some unit was measured at more than one torque."""
-    return any(np.ptp(fleet.torque[rows]) > 0 for rows in fleet.unit_rows)
+    return any(np.ptp(deviations.torque[rows]) > 0 for rows in deviations.unit_rows)
 
 
 def _of(
-    fleet: UnitDeviations,
+    deviations: UnitDeviations,
     sets: Sequence[tuple[EndPointRegressor, ...]],
     own: int | None,
     odds: float,
     null: UnitEvidence,
 ) -> Hypothesis:
-    weighed = [unit_evidence(fleet, terms) for terms in sets]
+    weighed = [unit_evidence(deviations, terms) for terms in sets]
     scores = [w.evidence for w in weighed]
     best = weighed[int(np.argmax(scores))]
     score = float(logsumexp(scores)) - log(len(scores)) - null.evidence + odds
-    free = unit_evidence(fleet, [replace(t, spread=FREE * t.spread) for t in best.terms])
+    free = unit_evidence(deviations, [replace(t, spread=FREE * t.spread) for t in best.terms])
     allowed = all(not t.positive or m > 0 for t, m in zip(best.terms, free.mean, strict=True))
-    penalty = len(best.terms) * log(max(len(fleet.deviation), 2)) / 2
+    penalty = len(best.terms) * log(max(len(deviations.deviation), 2)) / 2
     return Hypothesis(
         tuple(t.cause for t in best.terms), own, score,
         free.likelihood - penalty if allowed else -np.inf, best,

@@ -81,10 +81,10 @@ def readings(resolution_arcsec: float, total_arcsec: np.ndarray) -> tuple[float,
     return tuple(float(s) for s in np.geomspace(low, high, READINGS))
 
 
-def unit_evidence(fleet: UnitDeviations, terms: Sequence[EndPointRegressor]) -> UnitEvidence:
+def unit_evidence(deviations: UnitDeviations, terms: Sequence[EndPointRegressor]) -> UnitEvidence:
     """Evidence of a set of terms, over the grids of ρ and σ."""
     cells = [
-        _cell(fleet, terms, rho, sigma) for rho in SHARES for sigma in fleet.readings
+        _cell(deviations, terms, rho, sigma) for rho in SHARES for sigma in deviations.readings
     ]  # fmt: skip
     logs = np.array([c[0] for c in cells])
     weight = np.exp(logs - logsumexp(logs))
@@ -93,7 +93,7 @@ def unit_evidence(fleet: UnitDeviations, terms: Sequence[EndPointRegressor]) -> 
     variances = np.array([c[3] for c in cells])
     mean = weight @ means
     std = np.sqrt(weight @ (variances + (means - mean) ** 2))
-    grid = [(rho, sigma) for rho in SHARES for sigma in fleet.readings]
+    grid = [(rho, sigma) for rho in SHARES for sigma in deviations.readings]
     own = weight @ np.array([c[4] for c in cells])
     return UnitEvidence(
         tuple(terms),
@@ -108,27 +108,32 @@ def unit_evidence(fleet: UnitDeviations, terms: Sequence[EndPointRegressor]) -> 
 
 
 def _cell(
-    fleet: UnitDeviations, terms: Sequence[EndPointRegressor], rho: float, sigma: float
+    deviations: UnitDeviations, terms: Sequence[EndPointRegressor], rho: float, sigma: float
 ) -> tuple[float, float, np.ndarray, np.ndarray, np.ndarray]:
     """Log evidence, log likelihood at the mean, posterior means and variances, own parts.
 
     Parameters are the terms' amplitudes, Young's modulus, the gap's common part, and, for the mid
     positions, each unit's free zero.
     """
-    n = len(fleet.deviation)
+    n = len(deviations.deviation)
     total = [t for t in terms if t.channel == "total"]
-    columns = [*(t.column for t in total), 2 * fleet.torque, np.ones(n)]
-    prior = [*(t.spread for t in total), fleet.modulus_std, fleet.gap_std * rho**0.5]
-    own_variance = fleet.gap_std**2 * (1 - rho)
+    columns = [*(t.column for t in total), 2 * deviations.torque, np.ones(n)]
+    prior = [*(t.spread for t in total), deviations.modulus_std, deviations.gap_std * rho**0.5]
+    own_variance = deviations.gap_std**2 * (1 - rho)
     ev, like, mean, cov, left = _linear(
-        fleet.deviation, np.column_stack(columns), np.array(prior), fleet, own_variance, sigma
+        deviations.deviation,
+        np.column_stack(columns),
+        np.array(prior),
+        deviations,
+        own_variance,
+        sigma,
     )
     middle = [t for t in terms if t.channel == "mid"]
     # a unit's zero may be anything: its prior is as wide as the mid positions are far
-    anything = (10 * (np.abs(fleet.mid).max() + sigma)) ** 2
+    anything = (10 * (np.abs(deviations.mid).max() + sigma)) ** 2
     ev_mid, like_mid, mean_mid, cov_mid, _ = _linear(
-        fleet.mid, np.array([t.column for t in middle]).T.reshape(n, len(middle)),
-        np.array([t.spread for t in middle]), fleet, anything, sigma / 2,
+        deviations.mid, np.array([t.column for t in middle]).T.reshape(n, len(middle)),
+        np.array([t.spread for t in middle]), deviations, anything, sigma / 2,
     )  # fmt: skip
     means, variances = np.zeros(len(terms) + 2), np.zeros(len(terms) + 2)
     it, im = 0, 0
@@ -143,9 +148,9 @@ def _cell(
         if t.positive:  # half a normal prior: what of the posterior lies there, twice
             sign += log(2) + float(log_ndtr(means[i] / max(variances[i], 1e-300) ** 0.5))
     means[-2:], variances[-2:] = mean[it:], np.diag(cov)[it:]
-    count = np.bincount(fleet.unit, minlength=fleet.units)
+    count = np.bincount(deviations.unit, minlength=deviations.units)
     shrink = own_variance / (sigma**2 + own_variance * count)
-    own = shrink * np.bincount(fleet.unit, left, minlength=fleet.units)
+    own = shrink * np.bincount(deviations.unit, left, minlength=deviations.units)
     return ev + ev_mid + sign, like + like_mid, means, variances, own
 
 
@@ -153,19 +158,22 @@ def _linear(
     y: np.ndarray,
     columns: np.ndarray,
     prior: np.ndarray,
-    fleet: UnitDeviations,
+    deviations: UnitDeviations,
     own: float,
     sigma: float,
 ) -> tuple[float, float, np.ndarray, np.ndarray, np.ndarray]:
     """Normal linear model with unit blocks σ²I + own·11ᵀ: evidence, likelihood, mean, cov, residual."""
-    count = np.bincount(fleet.unit, minlength=fleet.units)
+    count = np.bincount(deviations.unit, minlength=deviations.units)
     pull = own / (sigma**2 + own * count)
 
     def weighted(v: np.ndarray) -> np.ndarray:
         sums = np.column_stack(
-            [np.bincount(fleet.unit, v[:, j], minlength=fleet.units) for j in range(v.shape[1])]
+            [
+                np.bincount(deviations.unit, v[:, j], minlength=deviations.units)
+                for j in range(v.shape[1])
+            ]
         )
-        return (v - (pull[:, None] * sums)[fleet.unit]) / sigma**2
+        return (v - (pull[:, None] * sums)[deviations.unit]) / sigma**2
 
     logdet = float(np.sum((count - 1) * 2 * log(sigma) + np.log(sigma**2 + own * count)))
     scaled = columns * prior

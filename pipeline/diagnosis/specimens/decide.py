@@ -4,7 +4,7 @@ Rules, with their numbers:
 - The null is the simulation with its modulus calibrated by the design's prior and at most one dimension
   within ISO 2768-m. Nothing NAMING_NATS better than it: `consistent`.
 - A second term must be NAMING_NATS better than the explanation without it.
-- Rivals by the contract: another cause in a cause's place, within 4 nats of evidence or 6 of penalised
+- Rivals (`../decision.py`): another cause in a cause's place, within 4 nats of evidence or 6 of penalised
   likelihood: `ambiguous`.
 - Unnamed structure of more than half the named causes' rms: `unknown`.
 """
@@ -13,60 +13,57 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained, Verdict
+from flexspline.pipeline.diagnosis.decision import Decision, chance, decided, is_rival, probability
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""
-RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
-UNEXPLAINED_SHARE = 0.5
 ARCSEC_PER_RAD = 180 * 3600 / np.pi
 UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", "load_zone": "1"}
 
 
 @dataclass(frozen=True)
-class SpecimenDecision:
-    """The verdict with its causes; `rivals` are fits that stand for the alternatives."""
+class SpecimenExplanation:
+    """The decision, the fit that it speaks of, and the fits that stand for the alternatives."""
 
-    verdict: Verdict
+    decision: Decision
     chosen: LaplaceFit
-    found: tuple[NamedCause, ...]
-    unexplained: tuple[Unexplained, ...]
-    rivals: tuple[LaplaceFit, ...]
+    rivals: tuple[LaplaceFit, ...] = ()
 
 
-def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenDecision:
+def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
     """The verdict; `torque_Nm` turns compliance into the angle that a cause is worth."""
     best = next((f for f in race.fits if f.named or f.unnamed), None)
     if best is None or best.score - race.null < NAMING_NATS:
         within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
-        return SpecimenDecision("consistent", within[0] if within else race.null_fit, (), (), ())
+        return SpecimenExplanation(Decision("consistent"), within[0] if within else race.null_fit)
     best = _reduced(race, best)
-    unexplained = tuple(_unexplained(race, best, t) for t in best.unnamed)
+    unexplained = [_unexplained(race, best, t) for t in best.unnamed]
     found = []
     rivals: list[LaplaceFit] = []
     for cause in best.named:
-        mine = [f for f in race.fits if _stands_for(f, best, cause)]
         near = [
-            f for f in mine
-            if best.score - f.score < RIVAL_EVIDENCE or best.penalised - f.penalised < RIVAL_LIKELIHOOD
+            f for f in race.fits
+            if _stands_for(f, best, cause)
+            and is_rival(best.score - f.score, best.penalised - f.penalised)
         ]  # fmt: skip
         alternatives = tuple(dict.fromkeys(c for f in near for c in f.named if c not in best.named))
         rivals += [next(f for f in near if a in f.named) for a in alternatives]
         found.append(_named(race, best, cause, alternatives, torque_Nm))
-    found.sort(key=lambda c: -c.rms_arcsec)
-    named_rms = float(np.hypot.reduce([100 * _rms(race, best, (c,)) for c in best.named] or [0.0]))
-    unnamed_rms = float(np.hypot.reduce([u.rms for u in unexplained] or [0.0]))
-    verdict: Verdict = "ambiguous" if rivals else "named"
-    if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
-        verdict = "unknown"
-    return SpecimenDecision(verdict, best, tuple(found), unexplained, tuple(rivals))
+    decision = decided(
+        found,
+        unexplained,
+        named_rms=hypot(*(100 * _rms(race, best, (c,)) for c in best.named)),
+        unnamed_rms=hypot(*(u.rms for u in unexplained)),
+    )
+    return SpecimenExplanation(decision, best, tuple(rivals))
 
 
 def _reduced(race: SpecimenRace, best: LaplaceFit) -> LaplaceFit:
@@ -96,29 +93,13 @@ def _named(
     alternatives: tuple[str, ...],
     torque_Nm: float,
 ) -> NamedCause:
-    weight = np.exp(np.array([f.score for f in race.fits]) - race.fits[0].score)
-    having = np.array([cause in f.named for f in race.fits])
     without = max([race.null, *(f.score for f in race.fits if cause not in f.named)])
     value, std = magnitude(race, best, cause)
-    title = (
-        f"{cause.removeprefix('geometry:')} other than drawn"
-        if ":" in cause
-        else causes_title(cause)
-    )
     return NamedCause(
-        cause, title, float(weight @ having / weight.sum()), alternatives, value, std,
+        cause, probability(cause, ((f.named, f.score) for f in race.fits)), alternatives, value, std,
         UNITS.get(cause, "mm"), best.score - without,
         ARCSEC_PER_RAD * torque_Nm * _rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
     )  # fmt: skip
-
-
-def causes_title(cause: str) -> str:
-    """What a person reads."""
-    own = {"youngs_modulus": "material softer or stiffer than stated",
-           "load_zone": "load that enters at the lobes, not evenly"}  # fmt: skip
-    if cause.startswith("geometry:"):
-        return f"{cause.removeprefix('geometry:')} other than drawn"
-    return own.get(cause) or known_causes()[cause].title
 
 
 def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, float]:
@@ -164,6 +145,5 @@ def _rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) -> float:
 
 
 def _unexplained(race: SpecimenRace, best: LaplaceFit, term: SpecimenParameter) -> Unexplained:
-    without = max([race.null, *(f.score for f in race.fits if term not in f.terms)])
-    p = float(np.exp(min(0.0, without - best.score)))
+    p = chance(best.score, (race.null, *(f.score for f in race.fits if term not in f.terms)))
     return Unexplained(term.owner[1:], 100 * _rms(race, best, (term.owner,)), p, term.what)

@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMeasurement
-from flexspline.pipeline.diagnosis.specimens.decide import SpecimenDecision, causes_title, decide
+from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
@@ -55,7 +55,7 @@ def diagnose_specimens(
     if n < FEWEST:
         return _insufficient(n), None
     bench = Bench(context, K_b, K_e, full)
-    parts, notes = _parts(bench, designs, specimens)
+    parts, guessed_by = _parts(bench, designs, specimens)
     fe = compliances(bench, designs, parts)
     std = specimens.stiffness_std_Nm_per_rad
     data = SpecimenData(
@@ -65,14 +65,14 @@ def diagnose_specimens(
         design.solver.tolerance_pct / 100,
         design.uncertainty.youngs_modulus_pct / 100,
     )
-    found, decision = weighed(bench, data, specimens, design)
-    fe, chosen = found.data.fe, decision.chosen
+    found, explanation = weighed(bench, data, specimens, design)
+    fe, chosen, decision = found.data.fe, explanation.chosen, explanation.decision
     before, calibrated, after = _held_out(found.data, found.null_fit, chosen)
     analysis = SpecimenAnalysis(
         specimens.specimen, parts, specimens.stiffness_Nm_per_rad, 1 / fe.total,
         np.exp(-log_compliance(fe, (), found.null_fit.mean)),
         np.exp(-log_compliance(fe, chosen.terms, chosen.mean)),
-        chosen.noise, after, before, found, chosen,
+        chosen.noise, after, before, found, chosen, full, guessed_by,
     )  # fmt: skip
     gain = None
     if n >= FEWEST_HELD_OUT:
@@ -82,16 +82,15 @@ def diagnose_specimens(
         )  # fmt: skip
     most = max(set(parts), key=parts.count)
     outcome = DiagnosisOutcome(
-        decision.verdict, decision.found, decision.unexplained, gain,
-        next_specimen(decision, bench, design, most, float(chosen.noise.mean())),
-        _summary(decision), (*notes, *_notes(decision, data, full)),
+        decision.verdict, decision.causes, decision.unexplained, gain,
+        next_specimen(explanation, bench, design, most, float(chosen.noise.mean())),
     )  # fmt: skip
     return outcome, analysis
 
 
 def weighed(
     bench: Bench, data: SpecimenData, specimens: Specimens, design: Design
-) -> tuple[SpecimenRace, SpecimenDecision]:
+) -> tuple[SpecimenRace, SpecimenExplanation]:
     """The race, run again where a dimension was found: with FE at what was found."""
     one_material = design.material.shaft is None
     found = race(data, specimen_parameters(data.fe, specimens.overrides, one_material))
@@ -112,20 +111,20 @@ def weighed(
 
 def _insufficient(n: int) -> DiagnosisOutcome:
     reason = f"{n} specimen{'s' if n != 1 else ''}; modulus, one cause and the noise need {FEWEST}"
-    advice = NextMeasurement(
-        "specimen", "measure at least eight specimens whose length, wall and diaphragm differ", 0.0
-    )
+    doing = "measure at least eight specimens whose length, wall and diaphragm differ"
     return DiagnosisOutcome(
-        "insufficient", (), (), None, advice, f"Too little data to say anything: {reason}."
+        "insufficient",
+        next_measurement=NextMeasurement("specimen", "more_data", doing=doing),
+        too_little=reason,
     )
 
 
 def _parts(
     bench: Bench, designs: Sequence[Design], specimens: Specimens
-) -> tuple[tuple[str, ...], list[str]]:
-    """The part of each row; where the file does not say, by the overridden keys and the stiffness."""
+) -> tuple[tuple[str, ...], str]:
+    """The part of each row; where the file does not say, by what it was guessed."""
     if specimens.part_recorded:
-        return specimens.part, []
+        return specimens.part, ""
     owners = {key.split(".")[0] for key in specimens.overrides} & {"flexspline", "shaft"}
     choices = [*owners, "series"] if len(owners) == 1 else ["series", "flexspline", "shaft"]
     off = {}
@@ -136,7 +135,7 @@ def _parts(
     if part != "series" and off[part] > PLAINLY and off["series"] < off[part] / 2:
         part = "series"
     why = "the overridden keys" if len(owners) == 1 and part in owners else "its stiffness"
-    return (part,) * len(designs), [f"the file has no column part: taken as {part}, by {why}"]
+    return (part,) * len(designs), why
 
 
 def _held_out(
@@ -158,50 +157,3 @@ def _held_out(
 
 def _pct(values: np.ndarray) -> float:
     return 100 * float(np.sqrt(np.mean(values**2)))
-
-
-def _summary(decision: SpecimenDecision) -> str:
-    listed = "; ".join(
-        f"{c.title}, {c.magnitude:+.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
-        for c in decision.found
-    )
-    match decision.verdict:
-        case "consistent":
-            return "The specimens agree with the simulation within its stated uncertainty and the noise."
-        case "named":
-            return f"The simulation is wrong in one thing or more: {listed}."
-        case "ambiguous":
-            rivals = "; ".join(
-                f"{c.title} cannot be told from {' or '.join(causes_title(a) for a in c.alternatives)}"
-                for c in decision.found if c.alternatives
-            )  # fmt: skip
-            return f"Something is wrong, and these specimens cannot tell what: {rivals}."
-        case _:
-            what = "; ".join(u.what for u in decision.unexplained)
-            known = f" Beside it: {listed}." if listed else ""
-            return f"There is structure that no known cause explains: {what}.{known}"
-
-
-def _notes(decision: SpecimenDecision, data: SpecimenData, full: bool) -> list[str]:
-    chosen = decision.chosen
-    notes = [f"one stiffness is taken to be good to {100 * float(chosen.noise.mean()):.2g} %"]
-    if data.std is None:
-        notes[0] += ", which the scatter says, as the file states none"
-    if "youngs_modulus" not in chosen.named:
-        notes.append(
-            f"Young's modulus calibrated by {100 * chosen.mean[0]:+.2g} % within its uncertainty"
-        )
-    for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
-        s = term.sensitivity
-        if s is not None and term.owner not in chosen.named:
-            notes.append(
-                f"{s.key} {value:+.2g} mm would suit the data; that is within ± {s.tolerance_mm:g} mm of "
-                "ISO 2768-m and no finding"
-            )
-    source = (
-        "solved with their holes"
-        if full
-        else "the given stiffness times the hole-free model's ratio"
-    )
-    notes.append(f"rows are {source}; changes with a dimension come from the hole-free model")
-    return notes

@@ -23,6 +23,8 @@ class SpecimenAnalysis:
     held_out : (n,) relative error of each specimen's stiffness, predicted from the others by the chosen
         explanation; `held_out_before` by FE as it is. NaN where nothing was held out.
     race : all fits and the null; chosen : the one that the verdict speaks of.
+    with_holes : whether rows were solved with their holes, not scaled from given stiffnesses.
+    part_guessed_by : what says the part, where the file does not; else empty.
     """
 
     specimen: tuple[str, ...]
@@ -36,3 +38,5 @@ class SpecimenAnalysis:
     held_out_before: np.ndarray
     race: SpecimenRace
     chosen: LaplaceFit
+    with_holes: bool
+    part_guessed_by: str

@@ -9,7 +9,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
-from flexspline.pipeline.diagnosis.specimens.decide import SpecimenDecision, causes_title
+from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
 from flexspline.pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
@@ -18,43 +18,35 @@ FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""
 ANOTHER_GEAR = ("inner_diameter_mm", "bore_diameter_mm")
 """Not to be changed on the same wave generator, teeth and rig."""
-CONFIRM = {
-    "youngs_modulus": ("material", "a tensile or resonance test of the same bar gives E directly"),
-    "series_compliance": ("fixture", "clamp a solid dummy in the same fixture: what twists is the fixture"),
-    "load_zone": ("flexspline.ring_width_mm", "specimens with another ring width, which the lobes feel most"),
-}  # fmt: skip
+CONFIRM = {"youngs_modulus": "material", "series_compliance": "fixture",
+           "load_zone": "flexspline.ring_width_mm"}  # fmt: skip
+"""What to vary or look at to confirm a cause; of a dimension, itself."""
 
 
 def next_specimen(
-    decision: SpecimenDecision, bench: Bench, design: Design, part: str, noise: float
+    explanation: SpecimenExplanation, bench: Bench, design: Design, part: str, noise: float
 ) -> NextMeasurement | None:
     """What to measure next; None where nothing is in doubt."""
+    decision = explanation.decision
     match decision.verdict:
         case "unknown":
             u = decision.unexplained[0]
-            return NextMeasurement(
-                u.channel,
-                f"the structure is {u.what}: repeat those specimens, in another order",
-                0.0,
-            )
+            return NextMeasurement(u.channel, "find_structure", where=u.what)
         case "named":
-            cause = decision.found[-1].id
-            if cause.startswith("geometry:"):
-                key = cause.removeprefix("geometry:")
-                return NextMeasurement(key, f"measure {key} of the specimens", 0.0)
-            vary, why = CONFIRM[cause]
-            return NextMeasurement(vary, f"to confirm it: {why}", 0.0)
+            cause = decision.causes[-1].id
+            vary = CONFIRM.get(cause) or cause.removeprefix("geometry:")
+            return NextMeasurement(vary, "confirm", (cause,))
         case "ambiguous":
-            return _separating(decision, bench, design, part, noise)
+            return _separating(explanation, bench, design, part, noise)
         case _:
             return None
 
 
 def _separating(
-    decision: SpecimenDecision, bench: Bench, design: Design, part: str, noise: float
+    explanation: SpecimenExplanation, bench: Bench, design: Design, part: str, noise: float
 ) -> NextMeasurement:
     """The dimension whose change drives the two nearest rivals furthest apart."""
-    fits = (decision.chosen, *decision.rivals)
+    fits = (explanation.chosen, *explanation.rivals)
     bench.context.progress.note("the specimen that would tell the rivals apart")
     found: list[tuple[float, str, float, float]] = []
     for name in PARTS[part]:
@@ -67,26 +59,13 @@ def _separating(
                 except (DesignError, ComputationError):
                     continue
                 found.append((apart, key, value, nominal))
-    titles = " from ".join(
-        [
-            causes_title(decision.found[0].id),
-            " or ".join(causes_title(a) for a in _others(decision)),
-        ]
-    )
+    causes = explanation.decision.causes
+    others = dict.fromkeys(a for c in causes for a in c.alternatives)
+    ids = (causes[0].id, *others)
     if not found:
-        return NextMeasurement("fixture", f"another fixture, to tell {titles}", 0.0)
-    apart, key, value, nominal = max(found)
-    return NextMeasurement(
-        key,
-        f"a specimen with {key} = {value:g} instead of {nominal:g}: the "
-        f"predicted stiffnesses nearest to each other then differ by {apart:.1f} times the noise; it tells "
-        f"{titles}",
-        apart,
-    )
-
-
-def _others(decision: SpecimenDecision) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(a for c in decision.found for a in c.alternatives))
+        return NextMeasurement("fixture", "separate", ids)
+    apart, key, value, drawn = max(found)
+    return NextMeasurement(key, "separate", ids, separation=apart, dimension_mm=(value, drawn))
 
 
 def _compliances(

@@ -10,6 +10,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, Posterior, posterior_of
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS
 
@@ -153,3 +155,22 @@ def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
             added[unit[kept] == u] -= added[unit[kept] == u].mean()
         found[owner] = float(np.sqrt(np.mean(added**2)))
     return found
+
+
+def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float) -> ExtendedModel:
+    """The fitted model, with the elements of the named causes."""
+    mean, k, p = fit.posterior.mean, fit.units, fit.rig.prediction
+    elements = {c: e for c, e in fit.elements().items() if c in named}
+    if offset_Nm:
+        elements["torque_offset"] = (Element({}, (offset_Nm,)),)
+    own = {}
+    if k > 1:
+        pairs = mean[k + 2 : k + 2 + 2 * k].reshape(k, 2)
+        own = {name: (float(a), float(b)) for name, (a, b) in zip(sweep.units, pairs, strict=True)}
+    return ExtendedModel(
+        p.compliance + float(mean[k]),
+        p.gap_arcsec + float(mean[k + 1]),
+        {name: float(z) for name, z in zip(sweep.units, mean[:k], strict=True)},
+        elements,
+        own,
+    )

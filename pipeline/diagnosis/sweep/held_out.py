@@ -11,8 +11,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import torque_nois
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import calibrated_residual, fit_regressors, less_zero
-from flexspline.pipeline.diagnosis.sweep.offset_race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 
@@ -71,7 +71,7 @@ def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
     before = less_zero(reading, train, history)
     left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
-    floor = explained.decision.fit.residual_as_read()[prepared.kept]
+    floor = explained.identified.fit.residual_as_read()[prepared.kept]
     return Gain(
         label,
         rmse_before=_rms(left["before"]),

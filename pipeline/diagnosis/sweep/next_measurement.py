@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import Aim, NextMeasurement
+from flexspline.pipeline.diagnosis.plans import MeasurementPlan, separations
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 
 ROWS = 64
 """Of one triangular cycle."""
@@ -23,16 +26,7 @@ POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 MORE_CYCLES = 40
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Something a rig can do: which channel it varies, in words, and the record it would give."""
-
-    vary: str
-    doing: str
-    history: History
-
-
-def plans(prepared: PreparedSweep) -> list[Plan]:
+def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     """Each plan holds a part like the record so far and a part where one thing is changed."""
     h = prepared.rig.history
     largest = prepared.rig.torque_Nm
@@ -66,19 +60,37 @@ def plans(prepared: PreparedSweep) -> list[Plan]:
     k = len(many)
     same = (place0, place0)
     return [
-        Plan("temperature_C", f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
-             cycles(warmer=(0.0, WARMER_K), places=same, numbers=(last, last))),
-        Plan("torque_rate", "repeat the sweep ten times slower and ten times faster",
-             cycles((1.0,) * 3, (1.0, 10.0, 0.1), (0.0,) * 3, (place0,) * 3, (last,) * 3)),
-        Plan("hold", "hold the torque at both ends for twenty ramps",
-             cycles(places=same, numbers=(last, last), hold=20.0)),
-        Plan("torque_amplitude", "sweep to a quarter, half, and one and a half times the largest torque",
-             cycles((0.25, 0.5, 1.0, 1.5), (1.0,) * 4, (0.0,) * 4, (place0,) * 4, (last,) * 4)),
-        Plan("input_angle_deg", "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
-             cycles((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k)),
-        Plan("cycle", f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
-             cycles(places=same, numbers=(last, last + MORE_CYCLES))),
-    ]  # fmt: skip
+        MeasurementPlan(
+            "temperature_C",
+            f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
+            cycles(warmer=(0.0, WARMER_K), places=same, numbers=(last, last)),
+        ),
+        MeasurementPlan(
+            "torque_rate",
+            "repeat the sweep ten times slower and ten times faster",
+            cycles((1.0,) * 3, (1.0, 10.0, 0.1), (0.0,) * 3, (place0,) * 3, (last,) * 3),
+        ),
+        MeasurementPlan(
+            "hold",
+            "hold the torque at both ends for twenty ramps",
+            cycles(places=same, numbers=(last, last), hold=20.0),
+        ),
+        MeasurementPlan(
+            "torque_amplitude",
+            "sweep to a quarter, half, and one and a half times the largest torque",
+            cycles((0.25, 0.5, 1.0, 1.5), (1.0,) * 4, (0.0,) * 4, (place0,) * 4, (last,) * 4),
+        ),
+        MeasurementPlan(
+            "input_angle_deg",
+            "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+            cycles((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k),
+        ),
+        MeasurementPlan(
+            "cycle",
+            f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
+            cycles(places=same, numbers=(last, last + MORE_CYCLES)),
+        ),
+    ]
 
 
 def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, np.ndarray]:
@@ -100,42 +112,31 @@ def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, n
     return np.concatenate(torque), np.concatenate(time)
 
 
-def best_plan(
-    prepared: PreparedSweep, models: Sequence[ExtendedModel]
-) -> tuple[Plan, float] | None:
-    """The plan whose predicted records differ most between models, in units of noise.
-
-    Of each difference, what a new zero, compliance or gap would absorb does not count.
-    """
-    if len(models) < 2:
+def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasurement | None:
+    """What to measure next: to find the unknown, to part rivals, or to confirm the smallest cause."""
+    if decision.verdict == "unknown" and decision.unexplained:
+        worst = decision.unexplained[0]
+        return NextMeasurement(worst.channel, "find_structure", where=worst.what)
+    unsure = [c for c in decision.causes if c.alternatives] or list(decision.causes[-1:])
+    if not unsure:
         return None
-    found = []
-    for plan in plans(prepared):
-        h = plan.history
-        free = np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign])
-        first = models[0].angle_of(h)
-        separations = []
-        for other in models[1:]:
-            off = other.angle_of(h) - first
-            off = off - free @ np.linalg.lstsq(free, off, rcond=None)[0]
-            separations.append(float(np.sqrt(off @ off)) / prepared.noise.std_arcsec)
-        found.append((min(separations), plan))
-    separation, plan = max(found, key=lambda f: f[0])
-    return plan, separation
+    cause, rivals = unsure[0].id, unsure[0].alternatives
+    aim: Aim = "separate" if rivals else "confirm"
+    models = _rival_models(explained, decision, cause) if rivals else []
+    if len(models) < 2:
+        return NextMeasurement(known_causes()[cause].vary, aim, (cause, *rivals))
+    noise = explained.prepared.noise.std_arcsec
+    best = separations(plans(explained.prepared), models, noise)[0]
+    return NextMeasurement(best.vary, aim, (cause, *rivals), best.doing, separation=best.separation)
 
 
-def to_tell_apart(
-    prepared: PreparedSweep, models: Sequence[ExtendedModel], cause: str, rivals: Sequence[str]
-) -> NextMeasurement:
-    """The next measurement for a cause and its rivals."""
-    titles = " from ".join(
-        [known_causes()[cause].title, " or ".join(known_causes()[r].title for r in rivals)]
-    )
-    chosen = best_plan(prepared, models)
-    if chosen is None:
-        vary = known_causes()[cause].vary
-        return NextMeasurement(vary, f"to tell {titles}: {known_causes()[cause].reveals}", 0.0)
-    plan, separation = chosen
-    times = f"their predictions then differ by {separation:.0f} times the noise"
-    why = f"{plan.doing}: {times}; it tells {titles}"
-    return NextMeasurement(plan.vary, why, separation)
+def _rival_models(explained: ExplainedSweep, decision: Decision, cause: str) -> list[ExtendedModel]:
+    """The best set's model, and the one of the rival that comes nearest in a cause's place."""
+    identified, sweep = explained.identified, explained.prepared.sweep
+    offset = explained.offset_Nm
+    models = [model_of(identified.fit, sweep, [c.id for c in decision.causes], offset)]
+    rival = identified.rival_sets.get(cause)
+    if rival is not None:
+        fit = fit_regressors(identified.search.evidence, rival.terms)
+        models.append(model_of(fit, sweep, sorted(fit.elements()), offset))
+    return models

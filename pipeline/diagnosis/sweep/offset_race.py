@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
-from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.decision import Decision
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
-from flexspline.pipeline.diagnosis.sweep.race import explain
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import NAMED_COST, Search
-from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing, first_offset
-from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
+from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, first_offset
 
 OFFSET_ROUNDS = 4
 BESIDE_STEP = 0.01
@@ -29,36 +22,16 @@ OFFSET_LEAST = (0.012, 0.005)
 """Of the largest torque: smaller offsets move nothing that counts; the second where it is sure."""
 
 
-@dataclass(frozen=True)
-class ExplainedSweep:
-    """A prepared sweep and its decided race; `crossing` where the gap's crossing was seen."""
-
-    prepared: PreparedSweep
-    decision: Decision
-    crossing: Crossing | None
-    offset_Nm: float
-    offset_nats: float
-
-    @cached_property
-    def shares(self) -> dict[str, UnitAmplitudes]:
-        """How much of each named cause each unit shows, by cause id; none for a single unit."""
-        if len(self.prepared.sweep.units) < 2:
-            return {}
-        return {c: unit_amplitudes(self.decision, c) for c in self.decision.named}
-
-
-def diagnosed(sweep: Sweep, prediction: Prediction) -> ExplainedSweep:
-    """The whole race, with and without an offset of the torque reading."""
-    sweep = thinned(sweep)
-    prepared, decision = explain(prepare(sweep, prediction))
-    seen = seen_crossing(prepared, decision.fit)
-    plain = ExplainedSweep(prepared, decision, seen, 0.0, 0.0 if seen is None else seen.nats)
-    guess = first_offset(sweep.history, sweep.angle_arcsec, prediction.gap_arcsec, prepared.band_Nm)
+def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
+    """The race again with an offset of the torque reading, where the record shows one; else `plain`."""
+    prepared, seen = plain.prepared, plain.crossing
     if seen is not None and _counts(seen, prepared):
-        return _with_offset(sweep, prediction, seen.offset_Nm) or plain
+        return _raced_with(prepared, seen.offset_Nm) or plain
+    sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
+    guess = first_offset(sweep.history, sweep.angle_arcsec, gap, prepared.band_Nm)
     if abs(guess) < prepared.band_Nm / 2:
         return plain
-    shifted = _with_offset(sweep, prediction, guess)
+    shifted = _raced_with(prepared, guess)
     return shifted if shifted is not None and _better(shifted, plain) else plain
 
 
@@ -68,21 +41,20 @@ def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
     return seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > least
 
 
-def _with_offset(sweep: Sweep, prediction: Prediction, offset_Nm: float) -> ExplainedSweep | None:
+def _raced_with(plain: PreparedSweep, offset_Nm: float) -> ExplainedSweep | None:
     """The race with an offset taken off, and the offset found anew from it; None where it vanishes."""
     for _ in range(OFFSET_ROUNDS):
         try:
-            prepared, decision = explain(prepare(sweep, prediction, offset_Nm))
+            explained = run_race(prepare(plain.sweep, plain.prediction, offset_Nm))
         except TooFewRowsError:
             return None
-        seen = seen_crossing(prepared, decision.fit)
+        seen, prepared = explained.crossing, explained.prepared
         if seen is None or not _counts(seen, prepared):
             return None
         if abs(seen.offset_Nm - offset_Nm) < max(0.5 * seen.std_Nm, 0.001 * prepared.rig.torque_Nm):
-            break
+            return explained
         offset_Nm = seen.offset_Nm
-    assert seen is not None
-    return ExplainedSweep(prepared, decision, seen, offset_Nm, seen.nats)
+    return replace(explained, offset_Nm=offset_Nm)
 
 
 def _better(shifted: ExplainedSweep, plain: ExplainedSweep) -> bool:
@@ -102,20 +74,8 @@ def _better(shifted: ExplainedSweep, plain: ExplainedSweep) -> bool:
     def total(e: ExplainedSweep) -> float:
         p = e.prepared
         again = gaussian_evidence(p.columns, p.target, common, quieter)
-        found = Search(again).candidate(e.decision.best.terms)
+        found = Search(again).candidate(e.identified.best.terms)
         gain = float(again.base_right @ np.linalg.solve(again.base_gram, again.base_right))
         return found.score + gain / 2 - again.total / 2 - np.linalg.slogdet(again.base_gram)[1] / 2
 
     return total(shifted) - NAMED_COST > total(plain)
-
-
-def seen_crossing(prepared: PreparedSweep, fit: SweepFit) -> Crossing | None:
-    """The crossing as read, with everything but the gap taken off the measured angle."""
-    history = prepared.rig.history
-    gap = fit.measured_rig().gap_arcsec
-    good = ~prepared.outlier
-    left = fit.residual() + history.sign * gap / 2
-    return crossing(
-        history.torque_Nm[good] + prepared.offset_Nm, left[good], gap,
-        prepared.noise.std_arcsec, torque_noise_Nm(history),
-    )  # fmt: skip

@@ -1,8 +1,13 @@
-"""The race on a prepared sweep: noise estimated anew from the best set, shapes tuned, causes decided."""
+"""The race on a prepared sweep: which set of regressors explains it best, and what that set identifies.
+
+Two rounds: the first with the noise of a local polynomial, the second with the noise of what the best set
+leaves.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -11,35 +16,66 @@ from flexspline.pipeline.diagnosis.measurement.noise import (
     isolated_outliers,
     stretches_of,
 )
-from flexspline.pipeline.diagnosis.sweep.decision import Decision, decide
+from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import (
     GaussianEvidence,
     gaussian_evidence,
     with_shapes,
 )
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.identification import Identification, identify
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
+from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
+from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
 
-ROUNDS = 1
-"""Of noise estimated from what the best set leaves."""
 TUNINGS, KINDS = 3, 3
 
 
-def explain(prepared: PreparedSweep) -> tuple[PreparedSweep, Decision]:
+@dataclass(frozen=True)
+class ExplainedSweep:
+    """A prepared sweep and what its race identified.
+
+    Attributes
+    ----------
+    crossing : how the gap's crossing fits the reading's zero, None where it cannot be seen.
+    offset_Nm : by which the torque reading is shifted; 0 where no offset is identified.
+    """
+
+    prepared: PreparedSweep
+    identified: Identification
+    crossing: Crossing | None
+    offset_Nm: float
+
+    @property
+    def offset_nats(self) -> float:
+        """Evidence of the offset over none."""
+        return 0.0 if self.crossing is None else self.crossing.nats
+
+    @cached_property
+    def shares(self) -> dict[str, UnitAmplitudes]:
+        """How much of each named cause each unit shows, by cause id; none for a single unit."""
+        if len(self.prepared.sweep.units) < 2:
+            return {}
+        return {c: unit_amplitudes(self.identified, c) for c in self.identified.named}
+
+
+def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
-    for _ in range(ROUNDS):
-        now = _tuned_race(_race(prepared))
-        best = Search(now).run()
-        left = fit_regressors(now, best.terms).residual()
-        prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=now.columns)
-    now = _tuned_race(_race(prepared))
-    return replace(prepared, columns=now.columns), decide(now, prepared.offset_Nm != 0.0)
+    first = _with_tuned_shapes(_evidence(prepared))
+    best = Search(first).run()
+    left = fit_regressors(first, best.terms).residual()
+    prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=first.columns)
+    final = _with_tuned_shapes(_evidence(prepared))
+    prepared = replace(prepared, columns=final.columns)
+    identified = identify(final, beside=prepared.offset_Nm != 0.0)
+    seen = _crossing(prepared, identified.fit)
+    return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
 
 
-def _tuned_race(now: GaussianEvidence) -> GaussianEvidence:
+def _with_tuned_shapes(now: GaussianEvidence) -> GaussianEvidence:
     """The race with tuned shapes: of the best named set, of each cause alone, of the best of all.
 
     Named causes are tuned before any competitor is let in: a shape from a coarse grid leaves a
@@ -86,7 +122,7 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     return sorted(found - {best.terms})
 
 
-def _race(prepared: PreparedSweep) -> GaussianEvidence:
+def _evidence(prepared: PreparedSweep) -> GaussianEvidence:
     return gaussian_evidence(prepared.columns, prepared.target, prepared.kept, prepared.noise)
 
 
@@ -99,3 +135,15 @@ def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> Prepare
     kept = inside & ~outlier
     noise = estimated(left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + 3)
     return replace(prepared, noise=noise, kept=kept, outlier=outlier)
+
+
+def _crossing(prepared: PreparedSweep, fit: SweepFit) -> Crossing | None:
+    """The crossing as read, with everything but the gap taken off the measured angle."""
+    history = prepared.rig.history
+    gap = fit.measured_rig().gap_arcsec
+    good = ~prepared.outlier
+    left = fit.residual() + history.sign * gap / 2
+    return crossing(
+        history.torque_Nm[good] + prepared.offset_Nm, left[good], gap,
+        prepared.noise.std_arcsec, torque_noise_Nm(history),
+    )  # fmt: skip

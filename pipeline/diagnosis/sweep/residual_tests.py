@@ -18,6 +18,8 @@ BINS = 12
 FEWEST_PER_BIN = 5
 SIGNIFICANT = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested."""
+SURE = 1e-8
+"""p-value of a channel's structure that, with nothing named, makes the verdict `unknown`."""
 
 
 @dataclass(frozen=True)

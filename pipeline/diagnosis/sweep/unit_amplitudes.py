@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.sweep.decision import Decision
+from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 OWN_NATS = 5.0
 """Evidence that separate amplitudes must gain over a common one."""
@@ -40,13 +40,13 @@ class UnitAmplitudes:
         return tuple(int(u) for u in shown)
 
 
-def unit_amplitudes(decision: Decision, cause: str) -> UnitAmplitudes:
+def unit_amplitudes(identified: Identification, cause: str) -> UnitAmplitudes:
     """Scale a named cause's fitted effect separately in each unit.
 
     The cause's shapes and the proportions of its elements stay as fitted; everything else in the model
     is free again.
     """
-    evidence, fit = decision.search.evidence, decision.fit
+    evidence, fit = identified.search.evidence, identified.fit
     unit = fit.rig.history.unit
     count = int(unit.max()) + 1
     effect = fit.added(cause)

@@ -11,6 +11,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
     capital,
+    cause_title,
     channel_words,
     magnitude_words,
     odds_words,
@@ -62,10 +63,10 @@ class Part:
 
 def parts(shown: Seen) -> list[Part]:
     """Named causes, then structure that has no name."""
-    decision = shown.explained.decision
+    identified = shown.explained.identified
     found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
     told = {p.owner for p in found}
-    for owner, rms in sorted(decision.rms.items(), key=lambda item: -item[1]):
+    for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < shown.noise_arcsec / 3:
             continue
         key = owner.removeprefix("?")
@@ -95,7 +96,7 @@ def _named(shown: Seen, cause: NamedCause) -> Part:
         lines[2:] = ["not decided: rivals", "explain it as well"]
     return Part(
         cause.id,
-        _short(cause.title),
+        _short(cause_title(cause)),
         tuple(lines),
         channel,
         view if channel.key == key else "angle",

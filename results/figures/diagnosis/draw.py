@@ -107,7 +107,7 @@ def _told(shown: Seen) -> dict[str, str]:
         t.channel: f"structure left, {t.rms_arcsec:.2g}″"
         if t.p_value < SIGNIFICANT
         else "no structure left"
-        for t in shown.diagnosis.left_over
+        for t in shown.tests
     }
 
 

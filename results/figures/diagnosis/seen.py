@@ -11,8 +11,10 @@ from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, calibrated_residual, less_zero
-from flexspline.pipeline.diagnosis.sweep.offset_race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 
 MOST_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
@@ -44,11 +46,20 @@ class Seen:
     """A sweep's diagnosis as arrays over its rows."""
 
     diagnosis: Diagnosis
-    explained: ExplainedSweep
+    analysis: SweepAnalysis
+
+    @property
+    def explained(self) -> ExplainedSweep:
+        return self.analysis.explained
+
+    @property
+    def tests(self) -> tuple[ChannelTest, ...]:
+        """Of what the best model leaves, in each channel."""
+        return self.analysis.tests
 
     @property
     def fit(self) -> SweepFit:
-        return self.explained.decision.fit
+        return self.explained.identified.fit
 
     @property
     def history(self) -> History:
@@ -112,7 +123,7 @@ class Seen:
 
 def seen(diagnosis: Diagnosis) -> Seen | None:
     """None where no race was run."""
-    return None if diagnosis.explained is None else Seen(diagnosis, diagnosis.explained)
+    return None if diagnosis.sweep is None else Seen(diagnosis, diagnosis.sweep)
 
 
 def thinned(rows: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
-from flexspline.results.diagnosis.words import capital
+from flexspline.results.diagnosis.words import capital, cause_title
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import Seen, plain_names
 from flexspline.results.figures.words import thin_labels
@@ -21,7 +21,7 @@ def shared_causes(shown: Seen) -> dict[str, UnitAmplitudes]:
     """Shares of each cause that the race named, by its title; none for a single unit."""
     shares = shown.explained.shares
     named = [c for c in shown.diagnosis.outcome.causes if c.id in shares]
-    return {capital(c.title).partition(" (")[0]: shares[c.id] for c in named[:MOST_CAUSES]}
+    return {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in named[:MOST_CAUSES]}
 
 
 def write_units(path: Path, shown: Seen, shares: dict[str, UnitAmplitudes]) -> None:

@@ -19,26 +19,24 @@ import flexspline.pipeline.diagnosis.causes as folder
 
 if sys.argv[1]:
     folder.__path__.append(sys.argv[1])
-from flexspline.pipeline.diagnosis.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.geometry.load import load_design
 
 rng = np.random.default_rng(11)
 h = sweep(cycles=6, rows=80)
 angle = PREDICTION.angle_arcsec(h) + 0.08 * h.torque_Nm * (h.temperature_C - 20)
 angle += rng.normal(0, 0.2, len(angle))
 record = Sweep(Path("made-up.csv"), h, angle, ("",), (tuple(range(1, 7)),), np.arange(len(h)), True)
-found = diagnose_sweep(load_design(sys.argv[2]), record, PREDICTION)
-named = [[c.id, c.magnitude, c.magnitude_std] for c in found.outcome.causes]
-print(json.dumps([found.outcome.verdict, named]))
+outcome, _ = diagnose_sweep(record, PREDICTION)
+named = [[c.id, c.magnitude, c.magnitude_std] for c in outcome.causes]
+print(json.dumps([outcome.verdict, named]))
 """
 
 
 def diagnosed(folder: str) -> list:
-    design = PAGE.parents[1] / "examples" / "xb1-40.toml"
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, folder, str(design)],
+        [sys.executable, "-c", SCRIPT, folder],
         capture_output=True, text=True, check=False, cwd=Path(__file__).parents[2] / "helpers",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION
@@ -12,7 +10,6 @@ from histories import sweep as swept
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.outcome import NamedCause, left_out
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import ALLOWED, calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
@@ -59,25 +56,3 @@ def test_no_other_calibration_within_its_limits_is_better(compliance: float, gap
     ]
     # the prior counts against each calibration too, as 4 of some thousand squares at the limit
     assert rms(calibrated_residual(now)[now.kept]) <= min(tried) * 1.01
-
-
-def named(cause: str, magnitude: float) -> NamedCause:
-    title = known_causes()[cause].title_at(magnitude)
-    return NamedCause(cause, title, 1.0, (), magnitude, 0.5, "%", 20.0, 3.0)
-
-
-def test_a_stiffer_gear_is_no_part_left_out() -> None:
-    soft, stiff = named("series_compliance", 12.0), named("series_compliance", -36.8)
-    friction = replace(soft, id="friction_hysteresis", title="friction")
-
-    def said(*found: NamedCause) -> str:
-        return left_out(found, lambda c: f"{c.title}, {c.magnitude:g} %")
-
-    assert said(soft) == (
-        "The simulation leaves out: elastic part left out of the simulation, 12 %."
-    )
-    assert said(stiff) == "The simulation is too soft: gear stiffer than simulated, -36.8 %."
-    assert said(stiff, friction) == (
-        "The simulation leaves out: friction, 12 %. "
-        "The simulation is too soft: gear stiffer than simulated, -36.8 %."
-    )

@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import SIGNIFICANT
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.results.diagnosis.end_point_notes import end_point_notes
 
 ROOT = Path(__file__).parents[3]
 DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")
@@ -109,7 +110,7 @@ def test_explanation_is_where_it_says() -> None:
 
 def test_mid_positions_say_nothing(article) -> None:
     assert article.end_points.mids.mid_arcsec == pytest.approx((9, 2, -19.5, 25))
-    note = next(n for n in article.outcome.notes if n.startswith("mid positions"))
+    note = next(n for n in end_point_notes(article.end_points) if n.startswith("mid positions"))
     assert "free" in note
     shifted = moved(60.0)
     again = diagnose_end_points(DESIGN, shifted, PREDICTION)[0]
@@ -130,7 +131,7 @@ def moved(by_arcsec: float) -> EndPoints:
 def test_next_is_several_amplitudes_on_unit_3(article) -> None:
     after = article.outcome.next_measurement
     assert after.vary == "torque_amplitude"
-    assert "unit 3" in after.why
+    assert after.where == "3"
     plans = {p.vary: p.separation for p in article.end_points.plans}
     # friction and clearance widen every pair of end points alike; only a loop shows the difference
     assert plans["torque_Nm"] < 1 < plans["sweep"] < plans["torque_amplitude"]

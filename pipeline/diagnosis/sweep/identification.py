@@ -1,4 +1,4 @@
-"""From a finished race to causes: which are named, which rivals remain, what is left over."""
+"""From a finished race to causes: which are identified, and which rivals remain."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
@@ -22,13 +23,11 @@ MINOR_SHARE = 0.045
 has but one shape."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
-RIVAL_EVIDENCE, RIVAL_LIKELIHOOD = 4.0, 6.0
-"""The contract's limits for a rival."""
 
 
 @dataclass(frozen=True)
-class Decision:
-    """A race decided.
+class Identification:
+    """The causes of the best set of regressors.
 
     Attributes
     ----------
@@ -47,17 +46,12 @@ class Decision:
     evidence_nats: dict[str, float]
 
     @property
-    def named_rms(self) -> float:
-        """Of all named causes together [arcsec]."""
-        return float(np.sqrt(sum(self.rms[c] ** 2 for c in self.named)))
-
-    @property
     def unnamed_rms(self) -> float:
         """Of all competitors and minor causes in the best set [arcsec]."""
         return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
 
 
-def decide(evidence: GaussianEvidence, beside: bool = False) -> Decision:
+def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification:
     """Run the race and decide it; `beside`: another cause is already known."""
     search = Search(evidence)
     best = _plausible(evidence, search, search.run())
@@ -84,7 +78,7 @@ def decide(evidence: GaussianEvidence, beside: bool = False) -> Decision:
         rivals[cause], found = _rivals(evidence, best, cause)
         if found is not None:
             rival_sets[cause] = found
-    return Decision(search, best, fit, tuple(named), rms, rivals, rival_sets, nats)
+    return Identification(search, best, fit, tuple(named), rms, rivals, rival_sets, nats)
 
 
 def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
@@ -134,7 +128,7 @@ def _rivals(
         if other not in rival.named(evidence):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
-        if gap < RIVAL_EVIDENCE or mine - penalised(evidence, rival.terms) < RIVAL_LIKELIHOOD:
+        if is_rival(gap, mine - penalised(evidence, rival.terms)):
             found.append((gap, other, rival))
     found.sort(key=lambda f: f[0])
     return tuple(f[1] for f in found), (found[0][2] if found else None)

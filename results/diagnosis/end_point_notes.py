@@ -1,55 +1,18 @@
-"""A verdict on end points in plain words."""
+"""End points: what else can and cannot be concluded, with the numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import isfinite
 
-from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from flexspline.pipeline.diagnosis.outcome import NamedCause, Verdict, left_out
 
 LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""
 
 
-def summary_of(
-    verdict: Verdict, found: Sequence[NamedCause], analysis: EndPointAnalysis, several: bool
-) -> str:
-    """One or two sentences."""
-    beyond = [u for u in analysis.units if not u.within]
-    who = _units(beyond)
-    title = known_causes()[found[0].id].title if found else ""
-    match verdict:
-        case "consistent":
-            return "Every unit's total agrees with the simulation within its stated uncertainty."
-        case "named":
-            return left_out(found, _said)
-        case "unknown":
-            return "The totals depend on torque in a way that no known cause explains."
-        case _:
-            others = ", ".join(known_causes()[a].title for a in found[0].alternatives)
-            rival = (
-                f"{title} cannot be told from {others}"
-                if others
-                else f"{title} is only a suspicion"
-            )
-            where = (
-                f"{who} beyond the predicted envelope"
-                if beyond
-                else "The totals differ from the prediction"
-            )
-            why = "" if several else ", because each unit was measured at one torque"
-            return f"{where}, and these end points cannot tell why: {rival}{why}."
-
-
-def _said(c: NamedCause) -> str:
-    return f"{c.title}, {c.magnitude:.3g} ± {c.magnitude_std:.2g} {c.unit}".removesuffix(" 1")
-
-
-def notes_of(analysis: EndPointAnalysis, several: bool) -> tuple[str, ...]:
-    """What else can and cannot be concluded, with the numbers."""
+def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
+    """Units, limits, the common gap and the mid positions."""
     furthest = sorted(analysis.units, key=lambda u: u.p_value)[:LISTED]
     notes = [_unit_note(u) for u in furthest]
     for u in furthest:
@@ -67,7 +30,7 @@ def notes_of(analysis: EndPointAnalysis, several: bool) -> tuple[str, ...]:
         f"mid positions {told} arcsec: the symmetric model predicts 0, but where an angle reading has its "
         "zero is free for each unit, so they neither support nor refute it; stiffness that differs with "
         f"direction could move one by at most {mids.asymmetry_reach_arcsec:.1f} arcsec"
-        + ("" if several else ", and only a second torque would show it")
+        + ("" if analysis.several_torques else ", and only a second torque would show it")
     )
     return tuple(notes)
 
@@ -98,8 +61,3 @@ def _limit_note(u: UnitFinding, of: Envelope) -> str:
         f"unit {u.unit}: {least}; with j_bn0 one standard deviation up and c at c_max, where the involute "
         f"model saturates, the sum is {limit:.1f} arcsec: the unit shows {side}"
     )
-
-
-def _units(units: Sequence[UnitFinding]) -> str:
-    named = ", ".join(u.unit for u in units[:LISTED])
-    return f"Unit {named} lies" if len(units) == 1 else f"Units {named} lie"

@@ -1,0 +1,80 @@
+"""From weighed explanations to a verdict: the rules that sweeps, end points and specimens share.
+
+Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/unit_likelihood.py`
+(block covariance) and `specimens/laplace.py` (Laplace's approximation). What follows from evidence is decided
+here. All log quantities are in nats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from math import exp
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained, Verdict
+
+RIVAL_EVIDENCE = 4.0
+"""Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
+RIVAL_LIKELIHOOD = 6.0
+"""Nats of log likelihood less ½ log n for each amplitude (half of Schwarz's BIC), docs/contract.md."""
+UNEXPLAINED_SHARE = 0.5
+"""Of the named causes' rms, docs/contract.md: with more left unexplained the verdict is `unknown`."""
+
+Scored = tuple[Collection[str], float]
+"""The causes of an explanation, and its log evidence with its log prior."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The verdict, the causes, the one of the largest effect first, and the structure that they leave."""
+
+    verdict: Verdict
+    causes: tuple[NamedCause, ...] = ()
+    unexplained: tuple[Unexplained, ...] = ()
+
+
+def is_rival(evidence_behind: float, likelihood_behind: float) -> bool:
+    """Whether an explanation so many nats behind the best one explains the data as well."""
+    return evidence_behind < RIVAL_EVIDENCE or likelihood_behind < RIVAL_LIKELIHOOD
+
+
+def probability(cause: str, explanations: Iterable[Scored]) -> float:
+    """Posterior probability of a cause: the share of the evidence in explanations that have it."""
+    scored = list(explanations)
+    score = np.array([s for _, s in scored])
+    weight = np.exp(score - score.max())
+    having = np.array([cause in causes for causes, _ in scored])
+    return min(1.0, float(weight[having].sum() / weight.sum()))
+
+
+def chance(best: float, without: Iterable[float]) -> float:
+    """p-value of an unnamed term: the odds of the likeliest explanation without it."""
+    return exp(min(0.0, max(without) - best))
+
+
+def decided(
+    causes: Iterable[NamedCause],
+    unexplained: Iterable[Unexplained],
+    named_rms: float,
+    unnamed_rms: float,
+    structure: bool = False,
+    sure: bool = True,
+) -> Decision:
+    """The decision on causes and structure found.
+
+    Parameters
+    ----------
+    named_rms, unnamed_rms : of what the causes and what the terms without a name explain, in one unit.
+    structure : whether the residual tests leave no doubt of structure, where nothing was found.
+    sure : whether the best explanation beats the simulation by enough to be named.
+    """
+    found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
+    left = tuple(unexplained)
+    if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
+        return Decision("unknown", found, left)
+    if not found:
+        return Decision("unknown", (), left) if structure else Decision("consistent")
+    open_ = not sure or any(c.alternatives for c in found)
+    return Decision("ambiguous" if open_ else "named", found, left)

@@ -1,0 +1,87 @@
+"""From hypotheses about end points to causes, rivals and what is left over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.decision import (
+    RIVAL_EVIDENCE,
+    Decision,
+    chance,
+    decided,
+    is_rival,
+    probability,
+)
+from flexspline.pipeline.diagnosis.end_points.race import UNNAMED, Hypothesis
+from flexspline.pipeline.diagnosis.end_points.unit_likelihood import UnitEvidence
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
+from flexspline.pipeline.diagnosis.prediction import Prediction
+
+NAMING_NATS = RIVAL_EVIDENCE
+"""The simulation within its uncertainty is a rival too."""
+
+
+def decide(
+    hypotheses: Sequence[Hypothesis], rig: Rig, names: Sequence[str], prediction: Prediction
+) -> Decision:
+    """The decision on hypotheses of which some beats the simulation, or some unit is beyond the envelope."""
+    best = next(h for h in hypotheses if h.causes)
+    if UNNAMED in best.causes and best.score > NAMING_NATS:
+        left = _unnamed(best, hypotheses)
+        return decided((), (left,), named_rms=0.0, unnamed_rms=left.rms)
+    named = [h for h in hypotheses if h.causes and UNNAMED not in h.causes]
+    best = named[0]
+    scored = [(h.causes, h.score) for h in hypotheses]
+    found = []
+    for i, cause in enumerate(best.causes):
+        kept = set(best.causes) - {cause}
+        rivals = [
+            h for h in named
+            if cause not in h.causes and kept <= set(h.causes) and len(h.causes) <= len(best.causes)
+            and _channels(h) == _channels(best)
+            and is_rival(best.score - h.score, best.penalised - h.penalised)
+        ]  # fmt: skip
+        alternatives = dict.fromkeys(c for h in rivals for c in h.causes if c not in best.causes)
+        without = max(h.score for h in hypotheses if cause not in h.causes)
+        magnitude, std = _magnitude(best.best, i, rig, prediction)
+        term = best.best.terms[i]
+        found.append(NamedCause(
+            cause, probability(cause, scored), tuple(alternatives), magnitude, std,
+            known_causes()[cause].unit, best.score - without,
+            float(np.sqrt(np.mean((term.column * best.best.mean[i])[term.column != 0] ** 2))),
+            () if best.own is None else (names[best.own],),
+        ))  # fmt: skip
+    rms = hypot(*(c.rms_arcsec for c in found))
+    return decided(found, (), named_rms=rms, unnamed_rms=0.0, sure=best.score > NAMING_NATS)
+
+
+def _unnamed(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Unexplained:
+    """The curve of no cause that is likeliest."""
+    term, amplitude = best.best.terms[-1], best.best.mean[-1]
+    rms = float(np.sqrt(np.mean((term.column * amplitude) ** 2)))
+    p = chance(best.score, (h.score for h in hypotheses if UNNAMED not in h.causes))
+    return Unexplained("torque_Nm", rms, p, "a curve of the totals over torque")
+
+
+def _channels(h: Hypothesis) -> set[str]:
+    """Whether totals or mid positions are explained: what moves one cannot stand for the other."""
+    return {t.channel for t in h.best.terms}
+
+
+def _magnitude(best: UnitEvidence, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
+    """The contract's magnitude and its standard deviation, to first order in the amplitude."""
+    term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
+    if term.cause == "clearance_offset":
+        return mean + best.common[0], std
+    if term.cause == "series_compliance":
+        return 100 * mean / prediction.compliance, 100 * std / prediction.compliance
+    cause = known_causes()[term.cause]
+    low, here, high = (
+        cause.magnitude(term.elements(a), rig) for a in (mean - std / 2, mean, mean + std / 2)
+    )
+    return here, abs(high - low)

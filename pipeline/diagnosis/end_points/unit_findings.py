@@ -1,0 +1,87 @@
+"""Measured end points as deviations from the prediction, and each unit against the envelope."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
+from flexspline.pipeline.diagnosis.end_points.finding import MidPositions, UnitFinding
+from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+    UnitDeviations,
+    UnitEvidence,
+    readings,
+)
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.prediction import Prediction
+
+RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+"""Steps of an angle reading that a file may show [arcsec]: round steps of displays; finer count as none."""
+
+
+def unit_deviations(
+    points: EndPoints, prediction: Prediction
+) -> tuple[UnitDeviations, tuple[str, ...]]:
+    """Deviations of all rows, and the units' names in their order."""
+    names = tuple(dict.fromkeys(points.unit))
+    code = {name: i for i, name in enumerate(names)}
+    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    angles = np.concatenate([points.angle_plus_arcsec, points.angle_minus_arcsec])
+    deviations = UnitDeviations(
+        total - 2 * points.torque_Nm * prediction.compliance - prediction.gap_arcsec,
+        (points.angle_plus_arcsec + points.angle_minus_arcsec) / 2,
+        points.torque_Nm,
+        np.array([code[u] for u in points.unit]),
+        prediction.compliance_std,
+        prediction.gap_std_arcsec,
+        readings(_resolution(angles), total),
+    )
+    return deviations, names
+
+
+def _resolution(angles: np.ndarray) -> float:
+    """The coarsest step of which all angles are multiples; 0 where none is."""
+    for step in RESOLUTIONS:
+        if np.abs(angles / step - np.round(angles / step)).max() < 1e-6:
+            return step
+    return 0.0
+
+
+def unit_findings(
+    points: EndPoints,
+    deviations: UnitDeviations,
+    names: Sequence[str],
+    envelopes: Sequence[Envelope],
+    null: UnitEvidence,
+) -> tuple[UnitFinding, ...]:
+    """Every unit at the torque where it is furthest out; `null` is the simulation's own fit."""
+    at = {e.torque_Nm: e for e in envelopes}
+    looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
+    total = points.angle_plus_arcsec - points.angle_minus_arcsec
+    found = []
+    for u, (name, rows) in enumerate(zip(names, deviations.unit_rows, strict=True)):
+        p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]
+        i, p = rows[int(np.argmin(p_values))], min(p_values)
+        of = at[float(points.torque_Nm[i])]
+        off = float(total[i]) - of.total_arcsec
+        z = (
+            off / of.std_arcsec
+            if of.std_arcsec > 0
+            else float(np.sign(off)) * np.inf
+            if off
+            else 0.0
+        )
+        found.append(UnitFinding(
+            name, of.torque_Nm, float(total[i]), of.total_arcsec, of.std_arcsec, float(deviations.mid[i]),
+            z, p, float(-np.expm1(looked * np.log1p(-min(p, 1 - 1e-15)))), float(null.own[u]),
+            of.explanation(float(total[i])),
+        ))  # fmt: skip
+    return tuple(found)
+
+
+def mid_positions(deviations: UnitDeviations, prediction: Prediction) -> MidPositions:
+    """Where the units' mid positions lie."""
+    each = [float(deviations.mid[rows].mean()) for rows in deviations.unit_rows]
+    spread = float(np.std(each, ddof=1)) if len(each) > 1 else 0.0
+    return MidPositions(tuple(each), spread, float(deviations.torque.max()) * prediction.compliance)

@@ -1,0 +1,73 @@
+"""Further measurements, compared by how far apart they drive the predictions of rival models."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+
+FREE = 1e4
+"""Times the largest predicted angle: a standard deviation that leaves a calibration to the data."""
+
+
+@dataclass(frozen=True)
+class MeasurementPlan:
+    """Something a rig can do: which channel it varies, in words, and the record it would give."""
+
+    vary: str
+    doing: str
+    history: History
+
+
+@dataclass(frozen=True)
+class PlanSeparation:
+    """A plan and how far the two rivals that are nearest to each other are apart, in units of noise."""
+
+    vary: str
+    doing: str
+    separation: float
+
+
+def separations(
+    plans: Sequence[MeasurementPlan],
+    models: Sequence[ExtendedModel],
+    noise_arcsec: float,
+    calibration: tuple[float, float] | None = None,
+) -> list[PlanSeparation]:
+    """Of every plan, the widest first.
+
+    A difference counts only beyond what a zero, a compliance and a gap would absorb; `calibration`
+    are the standard deviations of these two [arcsec per N·m, arcsec], None where both are free.
+    """
+    found = []
+    for plan in plans:
+        angles = [m.angle_of(plan.history) for m in models]
+        columns = _calibration_columns(plan.history, float(np.abs(angles).max()), calibration)
+        apart = [_separation(a - b, columns, noise_arcsec) for a, b in combinations(angles, 2)]
+        found.append(PlanSeparation(plan.vary, plan.doing, min(apart, default=0.0)))
+    return sorted(found, key=lambda s: -s.separation)
+
+
+def _calibration_columns(
+    history: History, largest_arcsec: float, calibration: tuple[float, float] | None
+) -> np.ndarray:
+    """(n, 3) zero, compliance and gap, each times its standard deviation [arcsec]."""
+    torque, side = history.torque_Nm, history.sign / 2
+    free = FREE * max(largest_arcsec, 1e-9)
+    compliance, gap = calibration or (free / np.abs(torque).max(), free)
+    zero = free if calibration is None else 10 * largest_arcsec
+    return np.column_stack([np.full(len(torque), zero), compliance * torque, gap * side])
+
+
+def _separation(off_arcsec: np.ndarray, columns: np.ndarray, noise_arcsec: float) -> float:
+    """Length of a difference (n,) in units of noise, less what the columns absorb."""
+    off = off_arcsec / noise_arcsec
+    seen = columns.T @ off / noise_arcsec
+    inner = np.eye(columns.shape[1]) + columns.T @ columns / noise_arcsec**2
+    left = float(off @ off - seen @ np.linalg.solve(inner, seen))
+    return max(left, 0.0) ** 0.5

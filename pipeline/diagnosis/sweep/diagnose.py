@@ -1,0 +1,110 @@
+"""A torque sweep, from its rows to a verdict: the steps in order.
+
+| step | file |
+|---|---|
+| shorten a long record | `measurement/thinning.py` |
+| choose rows, estimate the noise | `row_selection.py`, `measurement/noise.py`, `prepare.py` |
+| evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |
+| evidence of any set of them | `evidence.py` |
+| race: search sets, tune shapes, estimate the noise again | `race.py`, `search.py`, `shape_tuning.py` |
+| identify causes and rivals | `identification.py`, rules in `../decision.py` |
+| the same with a shifted torque reading | `torque_offset.py`, `offset_race.py` |
+| magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
+| test the residual in every channel | `residual_tests.py`, `unexplained.py` |
+| verdict | `../decision.py` |
+| error on data held out | `held_out.py` |
+| next measurement | `next_measurement.py`, `../plans.py` |
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.decision import decided
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.thinning import thinned
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.fit import model_of
+from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
+from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
+from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
+from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
+from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError, prepare
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
+from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
+
+STILL = 0.1
+"""Torque that varies by less than this share of its largest value is constant."""
+FEWEST_TORQUES = 4
+"""One more than zero, stiffness and gap."""
+
+
+@dataclass(frozen=True)
+class SweepAnalysis:
+    """What stands behind the verdict on a sweep, with all that a figure or a report needs.
+
+    `model` is the calibrated simulation with the causes found; `tests` are of what it leaves.
+    """
+
+    explained: ExplainedSweep
+    model: ExtendedModel
+    tests: tuple[ChannelTest, ...]
+
+
+def diagnose_sweep(
+    sweep: Sweep, prediction: Prediction
+) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
+    """The verdict on a sweep and what stands behind it; None where there are too few data."""
+    shortage = _too_little(sweep)
+    if shortage:
+        return _insufficient(shortage), None
+    try:
+        prepared = prepare(thinned(sweep), prediction)
+    except TooFewRowsError as error:
+        return _insufficient(str(error)), None
+    explained = with_torque_offset(run_race(prepared))
+    identified = explained.identified
+    causes = named_causes(explained)
+    tests = channel_tests(explained.prepared, identified.fit)
+    decision = decided(
+        causes,
+        unexplained_of(identified, tests),
+        named_rms=hypot(*(c.rms_arcsec for c in causes)),
+        unnamed_rms=identified.unnamed_rms,
+        structure=any(t.p_value < SURE for t in tests),
+    )
+    ids = [c.id for c in decision.causes]
+    outcome = DiagnosisOutcome(
+        decision.verdict,
+        decision.causes,
+        decision.unexplained,
+        gain_of(explained, ids),
+        next_measurement(explained, decision),
+    )
+    model = model_of(identified.fit, sweep, ids, explained.offset_Nm)
+    return outcome, SweepAnalysis(explained, model, tuple(tests))
+
+
+def _too_little(sweep: Sweep) -> str | None:
+    torque = sweep.history.torque_Nm
+    largest = float(np.abs(torque).max())
+    if largest == 0 or np.ptp(torque) < STILL * largest:
+        return "the torque is constant, so neither stiffness nor gap can be seen"
+    if len(np.unique(np.round(torque / largest, 2))) < FEWEST_TORQUES:
+        return "fewer than four different torques"
+    return None
+
+
+def _insufficient(shortage: str) -> DiagnosisOutcome:
+    doing = "sweep the torque 0 → +T → 0 → −T → 0 twice, with at least 100 rows a cycle"
+    return DiagnosisOutcome(
+        "insufficient",
+        next_measurement=NextMeasurement("torque_Nm", "more_data", doing=doing),
+        too_little=shortage,
+    )

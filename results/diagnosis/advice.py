@@ -1,0 +1,72 @@
+"""The next measurement in words: what to do, and what it would settle."""
+
+from __future__ import annotations
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
+from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.results.diagnosis.words import title_of
+
+CONFIRMS = {
+    "youngs_modulus": "a tensile or resonance test of the same bar gives E directly",
+    "series_compliance": "clamp a solid dummy in the same fixture: what twists is the fixture",
+    "load_zone": "specimens with another ring width, which the lobes feel most",
+}
+"""What confirms a cause that specimens show."""
+
+
+def why(after: NextMeasurement, kind: MeasurementKind) -> str:
+    """What to measure next and why, of the kind of measurement that was diagnosed."""
+    if after.aim == "more_data":
+        return after.doing
+    return {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind](
+        after
+    )
+
+
+def _of_sweep(after: NextMeasurement) -> str:
+    if after.aim == "find_structure":
+        where = f"{after.vary} ({after.where})"
+        return f"the structure lies in {where}: vary it alone, everything else held"
+    cause = known_causes()[after.causes[0]]
+    if after.aim == "confirm":
+        return f"to confirm {cause.title}: {cause.reveals}"
+    titles = _one_from_others(after)
+    if not after.doing:
+        return f"to tell {titles}: {cause.reveals}"
+    apart = f"their predictions then differ by {after.separation:.0f} times the noise"
+    return f"{after.doing}: {apart}; it tells {titles}"
+
+
+def _of_end_points(after: NextMeasurement) -> str:
+    if after.aim == "find_structure":
+        return "closed torque sweeps show the whole curve, not its ends"
+    titles = ", ".join(map(title_of, after.causes))
+    apart = "it would confirm or clear the suspicion"
+    if after.aim == "separate":
+        times = f"{after.separation:.0f} times the noise"
+        apart = f"the two of them that are nearest to each other then differ by {times}"
+        if after.same_points is not None:
+            apart += f" (end points at the same torques: {after.same_points:.1f})"
+    return f"on unit {after.where}: {after.doing}; it tells {titles} apart: {apart}"
+
+
+def _of_specimens(after: NextMeasurement) -> str:
+    if after.aim == "find_structure":
+        return f"the structure is {after.where}: repeat those specimens, in another order"
+    if after.aim == "confirm":
+        test = CONFIRMS.get(after.causes[0])
+        return f"to confirm it: {test}" if test else f"measure {after.vary} of the specimens"
+    titles = _one_from_others(after)
+    if after.dimension_mm is None:
+        return f"another fixture, to tell {titles}"
+    made, drawn = after.dimension_mm
+    return (
+        f"a specimen with {after.vary} = {made:g} instead of {drawn:g}: the predicted stiffnesses nearest "
+        f"to each other then differ by {after.separation:.1f} times the noise; it tells {titles}"
+    )
+
+
+def _one_from_others(after: NextMeasurement) -> str:
+    first, *others = map(title_of, after.causes)
+    return f"{first} from {' or '.join(others)}"

@@ -1,0 +1,96 @@
+"""A verdict in one or two sentences; the same for console, record and report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
+from flexspline.results.diagnosis.words import cause_title, magnitude_words, title_of
+
+AGREES = {
+    "sweep": "The measurement agrees",
+    "end_points": "Every unit's total agrees",
+    "specimens": "The specimens agree",
+}
+LISTED = 12
+"""Units that are spelt out; so many fill two lines."""
+
+
+def summary(diagnosis: Diagnosis) -> str:
+    """The verdict in one or two sentences; magnitudes with as many digits as their deviation bears."""
+    outcome = diagnosis.outcome
+    points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
+    match outcome.verdict:
+        case "insufficient":
+            return f"Too little data to say anything: {outcome.too_little}."
+        case "consistent":
+            noise = "" if points else " and the noise"
+            return f"{AGREES[diagnosis.kind]} with the simulation within its stated uncertainty{noise}."
+        case "named" if specimens:
+            return f"The simulation is wrong in one thing or more: {_listed(outcome.causes)}."
+        case "named":
+            return left_out(outcome.causes)
+        case "ambiguous" if points is not None:
+            return _ambiguous_end_points(outcome, points)
+        case "ambiguous":
+            what = "missing from the simulation, and these data"
+            what = "wrong, and these specimens" if specimens else what
+            return f"Something is {what} cannot tell what: {_rivals(outcome.causes)}."
+        case _ if points is not None:
+            return "The totals depend on torque in a way that no known cause explains."
+        case _:
+            return _unknown(outcome, specimens)
+
+
+def left_out(causes: Sequence[NamedCause]) -> str:
+    """What the simulation leaves out, and where it is too soft."""
+    missing = [c for c in causes if not c.is_surplus]
+    surplus = [c for c in causes if c.is_surplus]
+    sentences = [f"The simulation leaves out: {_listed(missing)}."] if missing else []
+    sentences += [f"The simulation is too soft: {_listed(surplus)}."] if surplus else []
+    return " ".join(sentences)
+
+
+def _listed(causes: Sequence[NamedCause]) -> str:
+    return "; ".join(map(_said, causes))
+
+
+def _said(cause: NamedCause) -> str:
+    where = f" (only {', '.join(cause.own_units)})" if cause.own_units else ""
+    return f"{cause_title(cause)}, {magnitude_words(cause)}{where}"
+
+
+def _rivals(causes: Sequence[NamedCause]) -> str:
+    return "; ".join(
+        f"{cause_title(c)} cannot be told from {' or '.join(map(title_of, c.alternatives))}"
+        for c in causes
+        if c.alternatives
+    )
+
+
+def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
+    known = f" Beside it: {_listed(outcome.causes)}." if outcome.causes else ""
+    if specimens:
+        what = "; ".join(u.what for u in outcome.unexplained)
+        return f"There is structure that no known cause explains: {what}.{known}"
+    where = ", ".join(dict.fromkeys(u.channel for u in outcome.unexplained)) or "the data"
+    return f"There is structure in {where} that no known cause explains.{known}"
+
+
+def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis) -> str:
+    first = outcome.causes[0]
+    title = cause_title(first)
+    others = ", ".join(map(title_of, first.alternatives))
+    rival = f"{title} cannot be told from {others}" if others else f"{title} is only a suspicion"
+    beyond = [u.unit for u in analysis.units if not u.within]
+    named = ", ".join(beyond[:LISTED])
+    who = f"Unit {named} lies" if len(beyond) == 1 else f"Units {named} lie"
+    where = (
+        f"{who} beyond the predicted envelope"
+        if beyond
+        else "The totals differ from the prediction"
+    )
+    why = "" if analysis.several_torques else ", because each unit was measured at one torque"
+    return f"{where}, and these end points cannot tell why: {rival}{why}."

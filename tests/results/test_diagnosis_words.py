@@ -1,0 +1,61 @@
+"""A diagnosis in words: one way to write a number, a sign and a cause, whatever was measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, NextMeasurement
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.summary import left_out, summary
+
+DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
+NONE = np.zeros(0)
+HISTORY = History(NONE, NONE.astype(int), NONE.astype(int))
+KINDS = {
+    "sweep": Sweep(Path("m.csv"), HISTORY, NONE, (), (), NONE, True),
+    "end_points": EndPoints(Path("m.csv"), (), NONE, NONE, NONE),
+    "specimens": Specimens(Path("m.csv"), (), (), NONE, None, {}, NONE),
+}
+
+
+def named(cause: str, magnitude: float, unit: str = "%") -> NamedCause:
+    return NamedCause(cause, 1.0, (), magnitude, 0.5, unit, 20.0, 3.0)
+
+
+def test_a_stiffer_gear_is_no_part_left_out() -> None:
+    soft, stiff = named("series_compliance", 12.0), named("series_compliance", -36.8)
+    friction = named("friction_hysteresis", 12.0, "arcsec")
+    said = "elastic part left out of the simulation, 12.00 ± 0.50 %"
+    assert left_out([soft]) == f"The simulation leaves out: {said}."
+    stiffer = "gear stiffer than simulated, −36.80 ± 0.50 %"
+    assert left_out([stiff]) == f"The simulation is too soft: {stiffer}."
+    assert left_out([stiff, friction]) == (
+        "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec. "
+        f"The simulation is too soft: {stiffer}."
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_writes_a_magnitude_alike(kind: str) -> None:
+    """A true minus sign, and digits to the second of the standard deviation."""
+    outcome = DiagnosisOutcome("named", (named("series_compliance", -19.5),))
+    diagnosis = Diagnosis(DESIGN, KINDS[kind], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    assert diagnosis.kind == kind
+    assert "−19.50 ± 0.50 %" in summary(diagnosis)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_rival_is_named_in_the_advice(kind) -> None:
+    rivals = ("series_compliance", "friction_hysteresis")
+    after = NextMeasurement("torque_Nm", "separate", rivals, "do so", "3", 5.0, None, (2.0, 1.0))
+    said = why(after, kind)
+    assert "elastic part left out of the simulation" in said
+    assert "friction hysteresis" in said
