@@ -17,7 +17,7 @@ ONLY_IN = {
     "pytetwild": "fea", "skfem": "fea", "pypardiso": "fea",
     "optuna": "pipeline", "dask": "pipeline", "distributed": "pipeline",
     "pyvista": "results", "matplotlib": "results", "typst": "results", "typer": "results",
-    "aiohttp": "results", "meshio": "results", "h5py": "results",
+    "aiohttp": "results", "meshio": "results", "h5py": "results", "pyarrow": "results",
 }  # fmt: skip
 FILES = sorted(p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
 

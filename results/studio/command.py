@@ -7,9 +7,7 @@ from typing import Annotated
 
 import typer
 
-from flexspline.results.job import answered, tell
-
-INSTALL = "pip install 'flexspline[studio]'"
+from flexspline.results.job import answered
 
 
 def register(app: typer.Typer) -> None:
@@ -32,11 +30,6 @@ def studio(
 ) -> None:
     """A page on this machine: every dimension a slider, stiffness, stress and backlash follow."""
     with answered(design):
-        try:
-            import aiohttp  # noqa: F401
-        except ImportError:
-            tell(f"flexspline: the page needs aiohttp: {INSTALL}")
-            raise typer.Exit(2) from None
         from flexspline.results.studio.serve import serve, starting_design
 
         serve(starting_design(design), host, port, browser)

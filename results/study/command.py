@@ -13,6 +13,8 @@ from flexspline.results.streams import show
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
 
+NO_PARQUET = 'no study.parquet beside study.csv: pip install "flexspline[parquet]" for that'
+
 
 def register(app: typer.Typer) -> None:
     """Add the commands of this room."""
@@ -67,7 +69,11 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         result = run_study(asked, store, pool, Watch(asked), say=tell, holes=holes)
         table = table_of(result)
         write_csv(folder / "study.csv", table)
-        write_parquet(folder / "study.parquet", table)
+        tables = [folder / "study.csv"]
+        if write_parquet(folder / "study.parquet", table):
+            tables.append(folder / "study.parquet")
+        else:
+            tell(NO_PARQUET)
         record: dict[str, Any] = summary(result)
         shown = best_field(result, tell) if len(result.built) > 1 else None
         best = draw_best_stress(folder, shown)
@@ -77,7 +83,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
                 f"warning: not drawn: {(best.picture and '3-D view ') or ''}best_stress: {best.missing}"
             )
         pictures = write_figures(folder, result, best.picture)
-        record["files"] = [str(folder / n) for n in ("study.csv", "study.parquet")]
+        record["files"] = [str(p) for p in tables]
         reports = write_study_reports(folder, result, pictures, best, attached)
         record["files"] += [str(p) for p in (*pictures, *reports)]
         show(as_json(record) if json else words(result, record), json)

@@ -1,4 +1,4 @@
-"""study.csv and study.parquet: one row per design."""
+"""study.csv, and study.parquet where pyarrow is: one row per design."""
 
 from __future__ import annotations
 
@@ -43,11 +43,14 @@ def write_csv(path: Path, table: Table) -> None:
     write_bytes(path, out.getvalue().encode())
 
 
-def write_parquet(path: Path, table: Table) -> None:
-    """The same columns, typed."""
-    import pyarrow as pa
-    from pyarrow import parquet
-
+def write_parquet(path: Path, table: Table) -> bool:
+    """The same columns, typed; False, and nothing written, where pyarrow is not installed."""
+    try:
+        import pyarrow as pa
+        from pyarrow import parquet
+    except ImportError:
+        return False
     sink = pa.BufferOutputStream()
     parquet.write_table(pa.table(table), sink)
     write_bytes(path, sink.getvalue().to_pybytes())
+    return True

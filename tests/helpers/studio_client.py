@@ -8,15 +8,11 @@ import tomllib
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-import pytest
-
-from flexspline.geometry.load import design_from
-from flexspline.geometry.template import template
-
-pytest.importorskip("aiohttp", reason="aiohttp is not installed: pip install '.[studio]'")
 from aiohttp import ClientWebSocketResponse, TCPConnector
 from aiohttp.test_utils import TestClient, TestServer
 
+from flexspline.geometry.load import design_from
+from flexspline.geometry.template import template
 from flexspline.results.studio.guard import Guard
 from flexspline.results.studio.server import Studio, application
 from flexspline.results.studio.tab import Workers

@@ -18,7 +18,7 @@ ROOMS = ("geometry", "fea", "pipeline", "results")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS = PROJECT["optional-dependencies"]
 NEEDED = [Requirement(d) for d in PROJECT["dependencies"]]
-USED_BY_THE_ROOMS = ("studio", "hdf5")
+USED_BY_THE_ROOMS = ("hdf5", "parquet")
 OPTIONAL = [Requirement(d) for extra in USED_BY_THE_ROOMS for d in EXTRAS[extra]]
 DECLARED = {canonicalize_name(r.name) for r in [*NEEDED, *OPTIONAL]}
 NOT_IMPORTED = {"vtk": "bounds the version that pyvista draws with"}

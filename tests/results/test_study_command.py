@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -96,6 +97,22 @@ def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
     lines = rows_of(tmp_path)
     assert [r["reason"] for r in lines] == ["", "too thin, it is"]
     assert [r["K_b_Nm_per_rad"] for r in lines] == ["3.0", ""]
+
+
+def test_without_pyarrow_the_table_is_csv_alone_and_a_line_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)  # an import of it fails
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, ["study", str(written(tmp_path)), "--out", str(out), "--json"])
+    assert done.exit_code == 0
+    files = {Path(name).name for name in json.loads(done.stdout)["files"]}
+    assert "study.csv" in files
+    assert "study.parquet" not in files
+    assert not (out / "study.parquet").exists()
+    (line,) = [line for line in done.stderr.splitlines() if "study.parquet" in line]
+    assert "flexspline[parquet]" in line
+    assert len(rows_of(out)) == 6
 
 
 @pytest.mark.parametrize(

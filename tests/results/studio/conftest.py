@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def studio_browser() -> Iterator[Browser]:
-    pytest.importorskip("aiohttp", reason="aiohttp is not installed: pip install '.[studio]'")
     with chromium() as browser:
         yield browser
 

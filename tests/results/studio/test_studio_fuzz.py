@@ -8,6 +8,8 @@ import json
 import random
 from typing import Any
 
+import aiohttp
+import aiohttp.test_utils
 import pytest
 from studio_client import TABLES, heard, want, with_client
 
@@ -15,7 +17,6 @@ from flexspline.geometry.design import Design
 from flexspline.results.studio.jobs import Done, Job
 from flexspline.results.studio.server import LARGEST_MESSAGE
 
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 MUTATIONS = 200
 RAW = {"Infinity", "-Infinity", "NaN", "1e999", "-1e999", "1e-999", "9" * 400, "9" * 6000, "[" * 300,
        "[" * 150 + "]" * 150, "{" * 9000, '"\\ud800"', '"\\u0000"', '"x"', "null", "true", "-1", "{}",

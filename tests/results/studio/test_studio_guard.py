@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import aiohttp
+import aiohttp.test_utils
 import pytest
 from studio_client import heard, with_client
 
 from flexspline.results.studio.guard import HEADERS, Guard, is_loopback
 
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 EVERYWHERE = ("127.0.0.1", "localhost", "::1", "0.0.0.0", "192.168.1.5", "workstation")
 
 

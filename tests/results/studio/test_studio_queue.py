@@ -6,12 +6,11 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any
 
-import pytest
+import aiohttp.test_utils
 from studio_client import TABLES, heard, want, with_client
 
 from flexspline.results.studio.worker import Fault, Worker
 
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 TABS = 200
 
 

@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 from urllib.request import HTTPCookieProcessor, build_opener
 
+import aiohttp
+import aiohttp.test_utils
 import pytest
 from studio_client import heard, with_client
 from studio_page import running, write_design
 
 from flexspline.geometry.errors import DesignError
 from flexspline.results.studio.serve import listen_at
-
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 
 
 def test_no_path_reaches_the_file_system() -> None:
