@@ -1,7 +1,8 @@
-"""The elastic stiffness matrix in cylindrical components at every node.
+"""The elastic stiffness matrix in cylindrical components at every node, from scikit-fem's forms.
 
-∫ λ div u div v + 2μ ε(u):ε(v), from the basis gradients as one batched product
-D_ij = Σ_q w ∇φ_i ⊗ ∇φ_j, of which the block for nodes i, j is λ D + μ Dᵀ + μ tr(D) I.
+∫ λ div u div v + 2μ ε(u):ε(v). With D_ij = ∫ ∂u/∂x_j ∂v/∂x_i of scalar fields, its block for component i
+of the test function and j of the trial function is λ D_ij + μ D_ji + δ_ij μ (D_11 + D_22 + D_33). Six forms
+are enough: D_ji is D_ij transposed. One form of vector fields says the same and takes nine times as long.
 """
 
 from __future__ import annotations
@@ -10,12 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
+from skfem import BilinearForm
 
-from flexspline.fea.solid.elements import mesh_gradients
+from flexspline.fea.solid.elements import basis_of, quadratic_mesh
 from flexspline.fea.types import Elastic, TetMesh
 
 CHUNK = 20_000
-"""Elements handled at once: bounds the memory of the batched product."""
+"""Elements handled at once: bounds the memory of the gradients at quadrature points."""
+XX = BilinearForm(lambda u, v, w: u.grad[0] * v.grad[0])
+YY = BilinearForm(lambda u, v, w: u.grad[1] * v.grad[1])
+ZZ = BilinearForm(lambda u, v, w: u.grad[2] * v.grad[2])
+XY = BilinearForm(lambda u, v, w: u.grad[1] * v.grad[0])
+XZ = BilinearForm(lambda u, v, w: u.grad[2] * v.grad[0])
+YZ = BilinearForm(lambda u, v, w: u.grad[2] * v.grad[1])
+FORMS = {(0, 0): XX, (1, 1): YY, (2, 2): ZZ, (0, 1): XY, (0, 2): XZ, (1, 2): YZ}
 
 
 @dataclass(frozen=True)
@@ -49,37 +58,40 @@ class NodeFrames:
 def stiffness_matrix(mesh: TetMesh, material: Elastic, frames: NodeFrames) -> csr_matrix:
     """Symmetric matrix (3n, 3n) N/mm; unknown 3·node + component."""
     n = len(mesh.nodes)
-    rows = np.repeat(mesh.cells, 10, axis=1).ravel()
-    columns = np.tile(mesh.cells, (1, 10)).ravel()
-    pairs, slot = np.unique(rows * n + columns, return_inverse=True)
-    blocks = np.zeros((3, 3, len(pairs)))
-    for start in range(0, len(mesh.cells), CHUNK):
-        local = _element_blocks(mesh, slice(start, start + CHUNK), material)
-        where = slot[start * 100 : start * 100 + local[0, 0].size]
-        for a, b in np.ndindex(3, 3):
-            blocks[a, b] += np.bincount(where, local[a, b].ravel(), minlength=len(pairs))
-    _turn(blocks, frames, pairs // n, pairs % n)
-    indptr = np.searchsorted(pairs // n, np.arange(n + 1))
-    data = np.ascontiguousarray(blocks.transpose(2, 0, 1))
-    return bsr_matrix((data, pairs % n, indptr), shape=(3 * n, 3 * n)).tocsr()
-
-
-def _element_blocks(mesh: TetMesh, part: slice, material: Elastic) -> np.ndarray:
-    """(3, 3, m, 10, 10): Cartesian component pair, element, node pair."""
-    cells = mesh.cells[part]
-    g = mesh_gradients(
-        TetMesh(mesh.nodes, cells, mesh.facets, mesh.facet_patch, mesh.patches, mesh.sector_deg)
-    )
-    m, q = g.weights.shape
-    flat = g.gradients.transpose(0, 1, 3, 2).reshape(m, q, 30)
-    d = np.matmul((flat * g.weights[..., None]).transpose(0, 2, 1), flat)
-    # one contiguous (m, 10, 10) for every component pair: all that follows is plain sums
-    d = np.ascontiguousarray(d.reshape(m, 3, 10, 3, 10).transpose(1, 3, 0, 2, 4))
-    local = material.lam * d + material.mu * d.swapaxes(0, 1)
+    pairs, d = _derivatives(mesh)
+    row, column = pairs // n, pairs % n
+    blocks = np.empty((3, 3, len(pairs)))
     trace = material.mu * (d[0, 0] + d[1, 1] + d[2, 2])
-    for a in range(3):
-        local[a, a] += trace
-    return local
+    for i, j in np.ndindex(3, 3):
+        blocks[i, j] = material.lam * d[i, j] + material.mu * d[j, i]
+    for i in range(3):
+        blocks[i, i] += trace
+    _turn(blocks, frames, row, column)
+    data = np.ascontiguousarray(blocks.transpose(2, 0, 1))
+    starts = np.searchsorted(row, np.arange(n + 1))
+    return bsr_matrix((data, column, starts), shape=(3 * n, 3 * n)).tocsr()
+
+
+def _derivatives(mesh: TetMesh) -> tuple[np.ndarray, dict[tuple[int, int], np.ndarray]]:
+    """Pairs of nodes (p,) that share an element, row·n + column rising, and D_ij (p,) for each.
+
+    All forms have this one pattern, so the elements' entries find their places once.
+    """
+    n, m = len(mesh.nodes), len(mesh.cells)
+    # as scikit-fem's element matrices: trial function (column), test function (row), element
+    numbers = mesh.cells.T[None] * n + mesh.cells.T[:, None]
+    pairs, place = np.unique(numbers, return_inverse=True)
+    place = place.reshape(numbers.shape)
+    curved = quadratic_mesh(mesh.nodes, mesh.cells)
+    d = {ij: np.zeros(len(pairs)) for ij in FORMS}
+    for start in range(0, m, CHUNK):
+        part = np.arange(start, min(start + CHUNK, m))
+        basis, where = basis_of(curved, elements=part), place[..., part].ravel()
+        for ij, form in FORMS.items():
+            d[ij] += np.bincount(where, form.elemental(basis).data, len(pairs))
+    opposite = np.empty(len(pairs), int)
+    opposite[place] = place.swapaxes(0, 1)
+    return pairs, d | {(j, i): entries[opposite] for (i, j), entries in d.items() if i != j}
 
 
 def _turn(blocks: np.ndarray, frames: NodeFrames, row: np.ndarray, column: np.ndarray) -> None:

@@ -18,12 +18,33 @@ def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
 
 
 def quadratic_mesh(nodes: np.ndarray, cells: np.ndarray) -> Any:
-    """scikit-fem's curved MeshTet2; its node order is TetMesh's (corners, then edges)."""
+    """scikit-fem's curved MeshTet2; it numbers the middle nodes by its own edges."""
     from skfem import MeshTet2
 
-    return MeshTet2(
-        np.ascontiguousarray(nodes.T), np.ascontiguousarray(cells[:, :4].T), sort_t=False
-    )
+    return MeshTet2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(cells.T), sort_t=False)
+
+
+def basis_of(
+    curved: Any,
+    elements: np.ndarray | None = None,
+    quadrature: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Any:
+    """scikit-fem's basis on all or some elements of a `quadratic_mesh`.
+
+    `quadrature` is points (q, 3) and weights (q,); degree 4 when absent, exact for P2 on straight edges.
+    The nodes have scikit-fem's numbers; an element's ten are in the order of `TetMesh.cells`.
+    """
+    from skfem import Basis, ElementTetP2, ElementTriP2
+
+    from flexspline.fea.mapping import KeptMapping
+
+    points, weights = quadrature or tet_rule(4)
+    element = ElementTetP2()
+    return Basis(
+        curved, element, mapping=KeptMapping(curved, element, ElementTriP2()),
+        quadrature=(np.ascontiguousarray(points.T), weights), elements=elements,
+        dofs=curved.dofs, disable_doflocs=True,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
