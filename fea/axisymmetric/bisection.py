@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_middles
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths, edge_middles
 
 
 def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
@@ -43,8 +43,7 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
 
 def _longest_first(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Triangles turned so that their longest edge runs from corner 0 to corner 1."""
-    corner = points[triangles]
-    longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).argmax(axis=1)
+    longest = edge_lengths(points, triangles).argmax(axis=1)
     return np.take_along_axis(triangles, (longest[:, None] + np.arange(3)) % 3, axis=1)
 
 

@@ -26,7 +26,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
-HALF_WIDTH = pi / 6
+LOBE_HALF_WIDTH = pi / 6
 """φ0: torque enters over ±30° about each end of the major axis (docs/contract.md)."""
 TORQUE = NMM_PER_NM
 """Applied torque [N·mm]: 1 N·m."""
@@ -76,12 +76,12 @@ def lobe_coefficient(n: int) -> float:
 
     One bump's integral is p² sin nφ0 / (n (p² - n²)) with p = π/φ0; φ0 for n = 0, φ0/2 for n = p.
     """
-    p = pi / HALF_WIDTH
+    p = pi / LOBE_HALF_WIDTH
     if n == 0:
-        return HALF_WIDTH / pi
+        return LOBE_HALF_WIDTH / pi
     if abs(n - p) < 1e-9:
-        return HALF_WIDTH / pi
-    return 2 / pi * p**2 * sin(n * HALF_WIDTH) / (n * (p**2 - n**2))
+        return LOBE_HALF_WIDTH / pi
+    return 2 / pi * p**2 * sin(n * LOBE_HALF_WIDTH) / (n * (p**2 - n**2))
 
 
 def lobe_stiffness(
@@ -156,8 +156,8 @@ def solve_lobes(
     radius = model.space.places[model.on("mesh"), 0]
     width = np.ptp(model.space.places[model.on("mesh"), 1])
     # torque of a traction t0·t(φ): t0 R² width ∫ t dφ = t0 R² width 2 φ0
-    peak = TORQUE / (radius[0] ** 2 * width * 2 * HALF_WIDTH)
-    square = 2 * 3 / 4 * HALF_WIDTH / pi  # Σ t_n² over n > 0, + 2 t_0²: 1/π ∫ t² of two bumps
+    peak = TORQUE / (radius[0] ** 2 * width * 2 * LOBE_HALF_WIDTH)
+    square = 2 * 3 / 4 * LOBE_HALF_WIDTH / pi  # Σ t_n² over n > 0, + 2 t_0²: 1/π ∫ t² of two bumps
     left = square - 2 * lobe_coefficient(0) ** 2
     energies: list[float] = []
     error = np.zeros(len(model.mesh.triangles))

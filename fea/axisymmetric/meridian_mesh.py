@@ -11,6 +11,12 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME, Meridian
 
 
+def edge_lengths(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(m, 3) from each corner to the next, of `points` (n, 2) and `triangles` (m, 3)."""
+    corner = points[triangles]
+    return np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
+
+
 class MeshingError(ComputationError):
     """The meridian could not be meshed; the message carries the numbers."""
 

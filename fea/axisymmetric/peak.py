@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.recovery import mises_parts
 from flexspline.fea.axisymmetric.space import shape_functions
 from flexspline.fea.stress_rule import Largest
@@ -121,7 +121,7 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     along; so those near by may be no larger than half of it.
     """
     corner = mesh.points[mesh.triangles]
-    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+    longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
     near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
     return near & (longest > exclusion_mm / 2)
 

@@ -14,7 +14,7 @@ import numpy as np
 from skfem import condense
 
 from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicModel, Wave
-from flexspline.fea.axisymmetric.lobes import HALF_WIDTH, TORQUE, lobe_coefficient
+from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
 from flexspline.fea.axisymmetric.space import factorised
 from flexspline.fea.types import NMM_PER_NM
 
@@ -69,7 +69,7 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
     spread = _spread(model, seat, most_places)
     phi = np.arange(angles) * pi / angles
     ring = model.space.places[model.on("mesh")]
-    peak = TORQUE / (ring[0, 0] ** 2 * np.ptp(ring[:, 1]) * 2 * HALF_WIDTH)
+    peak = TORQUE / (ring[0, 0] ** 2 * np.ptp(ring[:, 1]) * 2 * LOBE_HALF_WIDTH)
     push = np.zeros((3 * model.space.count, spread.shape[1]))
     push[3 * seat + RADIAL] = spread
     free = np.zeros((angles, spread.shape[1]))

@@ -19,6 +19,7 @@ from scipy.spatial import Delaunay, cKDTree
 from flexspline.fea.axisymmetric.meridian_mesh import (
     MeridianMesh,
     MeshingError,
+    edge_lengths,
     edge_middles,
     signed_areas,
 )
@@ -123,8 +124,7 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     own, corner = np.nonzero((across >= 0) & ~forward & ~backward)
     links = coo_matrix((np.ones(len(own)), (own, across[own, corner])), shape=2 * (len(side),))
     _, region = connected_components(links, directed=False)
-    corner = points[triangles]
-    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+    longest = edge_lengths(points, triangles).max(axis=1)
     inside = forward.any(axis=1) & (np.abs(area) > FLAT * longest**2)
     return triangles[np.isin(region, region[inside])]
 

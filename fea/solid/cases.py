@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.errors import SolveError
@@ -21,8 +22,6 @@ from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
-LOBE_HALF_WIDTH = pi / 6
-"""φ0: the mesh carries torque over ±30° about each end of the major axis (docs/contract.md)."""
 BALANCE_LIMIT = 1e-6
 """Energy and reaction give the same K to this; measured 1e-12 to 1e-10."""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, Column
 from flexspline.fea.solid.errors import MeshQualityError, SolidError
@@ -87,7 +87,7 @@ def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> Me
     """No edge longer than `wanted` at its triangle's centre."""
     for _ in range(ROUNDS):
         corner = mesh.points[mesh.triangles]
-        longest = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max(axis=1)
+        longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
         large = longest > wanted(corner.mean(axis=1))
         if not large.any():
             return mesh

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.toothed_ring import plain
 from flexspline.fea.toothed_ring.cell import CellModel, ToothedRingError
@@ -98,8 +98,7 @@ def _finer(mesh: MeridianMesh, cell: ToothCell, size: float, at_notch: float) ->
     """No edge longer than `size`, nor than `at_notch` on triangles that touch the root's notch."""
     notch = np.linalg.norm(mesh.points - np.array(cell.root_corner), axis=1).argmin()
     while True:
-        corner = mesh.points[mesh.triangles]
-        longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+        longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
         touching = (mesh.triangles == notch).any(axis=1)
         long = longest > np.where(touching, at_notch, size)
         if not long.any():

@@ -20,7 +20,7 @@ from flexspline.fea.axisymmetric.harmonics import (
     Wave,
 )
 from flexspline.fea.axisymmetric.lobes import (
-    HALF_WIDTH,
+    LOBE_HALF_WIDTH,
     lobe_coefficient,
     lobe_stiffness,
     solve_lobes,
@@ -170,7 +170,7 @@ def test_lobe_coefficients_against_quadrature_and_parseval():
     """docs/contract.md: cos²(π(φ-φk)/2φ0) within 30° of 0 and 180°."""
     phi = (np.arange(36000) + 0.5) * 2 * pi / 36000
     off = np.minimum.reduce([np.abs(phi - k * pi) for k in range(3)])
-    bump = np.where(off < HALF_WIDTH, np.cos(pi * off / (2 * HALF_WIDTH)) ** 2, 0.0)
+    bump = np.where(off < LOBE_HALF_WIDTH, np.cos(pi * off / (2 * LOBE_HALF_WIDTH)) ** 2, 0.0)
     for n in (0, 2, 4, 6, 8, 12, 40):
         by_sum = (bump * np.cos(n * phi)).mean() * (1 if n == 0 else 2)
         assert lobe_coefficient(n) == pytest.approx(by_sum, abs=1e-9)  # midpoint rule, smooth

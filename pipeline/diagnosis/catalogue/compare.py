@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.catalogue.soft import (
     TOP,
     SoftShape,
@@ -17,7 +18,6 @@ from flexspline.pipeline.diagnosis.catalogue.soft import (
     torques,
 )
 from flexspline.pipeline.diagnosis.catalogue.table import (
-    ARCSEC_PER_RAD,
     CatalogueRow,
     read_catalogue,
     twist_rad,

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
-from math import pi
 from pathlib import Path
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 
-ARCSEC_PER_RAD = 180 * 3600 / pi
 K_UNIT = 1e4
 """The file's K are in 1e4 N·m/rad."""
 SLOPES = ("K1_1e4_Nm_per_rad", "K2_1e4_Nm_per_rad", "K3_1e4_Nm_per_rad")

@@ -11,6 +11,7 @@ from scipy.signal import lfilter
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
@@ -173,7 +174,7 @@ def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
         coefficients = np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0]
         fitted = basis @ coefficients
         off = np.abs(y - fitted)
-        scale = 1.4826 * np.median(off) + 1e-12
+        scale = SIGMA_PER_MAD * np.median(off) + 1e-12
         weight = 1 / np.maximum(1, off / (3 * scale))
     return fitted
 

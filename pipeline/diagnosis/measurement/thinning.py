@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 MOST_ROWS = 6000
 FEWEST_PER_CYCLE = 150
@@ -71,7 +72,7 @@ def _spikes(angle: np.ndarray) -> np.ndarray:
     if len(angle) < 5:
         return np.zeros(len(angle), bool)
     off = angle[1:-1] - (angle[:-2] + angle[2:]) / 2
-    scale = 1.4826 * np.median(np.abs(off - np.median(off))) + 1e-12
+    scale = SIGMA_PER_MAD * np.median(np.abs(off - np.median(off))) + 1e-12
     far = np.zeros(len(angle), bool)
     far[1:-1] = np.abs(off - np.median(off)) > SPIKE * scale
     # a spike pulls its neighbours' differences too: only the largest of three is the spike

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from flexspline.geometry.errors import one_line
 from flexspline.geometry.toml_text import quoted
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -67,7 +68,7 @@ def _provenance(p: Provenance, gain: Gain | None) -> list[str]:
 
 
 def _calibrated(model: ExtendedModel) -> list[str]:
-    stiffness = 206264.80624709636 / model.compliance
+    stiffness = ARCSEC_PER_RAD / model.compliance
     return [
         "[calibrated]   # the simulation, within the design's stated uncertainty",
         f"compliance_arcsec_per_Nm = {number(model.compliance)}   # {stiffness:.0f} N·m/rad",

@@ -17,6 +17,7 @@ from math import hypot
 
 import numpy as np
 
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.decision import Decision, chance, decided, is_rival, probability
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
@@ -25,7 +26,6 @@ from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""
-ARCSEC_PER_RAD = 180 * 3600 / np.pi
 UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", "load_zone": "1"}
 
 

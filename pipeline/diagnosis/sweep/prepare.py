@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.measurement.noise import (
 )
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, design_matrix
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 
@@ -80,7 +81,7 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     if int(kept.sum()) < wanted:
         raise TooFewRowsError(int(kept.sum()), wanted)
     rough = rough_residual(target, history, kept, per_cycle)
-    spread = 1.4826 * float(np.median(np.abs(rough))) + 1e-9
+    spread = SIGMA_PER_MAD * float(np.median(np.abs(rough))) + 1e-9
     outlier = np.zeros(len(kept), bool)
     outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
     good = ~outlier[kept]

@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.measurement.noise import (
     stretches_of,
 )
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.evidence import (
     GaussianEvidence,
     gaussian_evidence,
@@ -129,7 +130,7 @@ def _evidence(prepared: PreparedSweep) -> GaussianEvidence:
 def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> PreparedSweep:
     history = prepared.rig.history
     inside = naming_rows(history, prepared.band_Nm)
-    spread = 1.4826 * float(np.median(np.abs(left[inside & ~prepared.outlier])))
+    spread = SIGMA_PER_MAD * float(np.median(np.abs(left[inside & ~prepared.outlier])))
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
     kept = inside & ~outlier

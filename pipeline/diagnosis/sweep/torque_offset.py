@@ -13,6 +13,7 @@ from scipy.special import erf
 
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 REACH = 0.35
 """Offsets searched, as a share of the largest torque."""
@@ -60,7 +61,7 @@ def crossing(
     torque, left = torque_Nm[near], left_arcsec[near]
     # what the model misses near zero is not evidence of an offset
     beside = np.abs(np.abs(left) - gap_arcsec / 2)
-    noise_arcsec = max(noise_arcsec, MISFIT * 1.4826 * float(np.median(beside)))
+    noise_arcsec = max(noise_arcsec, MISFIT * SIGMA_PER_MAD * float(np.median(beside)))
     offsets = np.linspace(-REACH, REACH, STEPS) * largest * 0.9
     floor = max(torque_noise_Nm, 1e-4 * largest)
     best = [
@@ -150,7 +151,7 @@ def first_offset(
                 basis * weight[:, None], angle_arcsec[rows] * weight, rcond=None
             )[0]
             left = angle_arcsec[rows] - basis @ found
-            scale = 1.4826 * np.median(np.abs(left)) + 1e-9
+            scale = SIGMA_PER_MAD * np.median(np.abs(left)) + 1e-9
             weight = 1 / np.maximum(1, np.abs(left) / (ROBUST * scale))
         if found[-1] < 0.15 * gap_arcsec:
             return np.inf

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from catalogue_page import DATA, PAGE, page
 
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.catalogue.compare import compare, lost_motion
 from flexspline.pipeline.diagnosis.catalogue.soft import (
     hardening_elements,
@@ -14,7 +15,6 @@ from flexspline.pipeline.diagnosis.catalogue.soft import (
     torques,
 )
 from flexspline.pipeline.diagnosis.catalogue.table import (
-    ARCSEC_PER_RAD,
     CatalogueRow,
     read_catalogue,
     twist_rad,
