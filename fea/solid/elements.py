@@ -36,7 +36,7 @@ def basis_of(
     """
     from skfem import Basis, ElementTetP2, ElementTriP2
 
-    from flexspline.fea.mapping import KeptMapping
+    from flexspline.fea.solid.mapping import KeptMapping
 
     points, weights = quadrature or tet_rule(4)
     element = ElementTetP2()
