@@ -7,8 +7,8 @@ a study gives one (`pipeline.study.holes`).
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -53,7 +53,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Figures by result.json key, or the reason why there are none; seconds of work."""
+    """Figures by result.json key, the reason why some or all are missing, and seconds of work."""
 
     figures: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
@@ -65,47 +65,62 @@ def evaluate(task: Task) -> Outcome:
     began = time.perf_counter()
     try:
         design = with_values(design_from(task.tables), task.values)
-        figures = figures_of(design, task.solves, task.holes)
+        found = figures_of(design, task.solves, task.holes)
     except OUR_ERRORS as fault:
-        return Outcome(reason=str(fault), seconds=time.perf_counter() - began)
-    return Outcome(figures, seconds=time.perf_counter() - began)
+        found = Outcome(reason=str(fault))
+    return replace(found, seconds=time.perf_counter() - began)
 
 
 def figures_of(
     design: Design, solves: tuple[Solve, ...], holes: Holes = MappingProxyType({})
-) -> dict[str, float]:
+) -> Outcome:
     """All figures that the solves give, and the sizes; K_b and K_e corrected for `holes`.
+
+    A solve that fails leaves the others' figures; the reason names it.
 
     Raises
     ------
-    DesignError, ComputationError, BearingPlayDomainError
+    DesignError, ComputationError : the plain ring of drawn teeth does not fit, or was not found.
     """
     flexspline, shaft = revolved(design).parts
-    found: dict[str, float] = {}
-    in_sum = design.solver.K_b_in_sum
+    in_sum, w0, torque = (
+        design.solver.K_b_in_sum, design.gear.centre_distance_mm, design.load.torque_Nm,
+    )  # fmt: skip
+    asked: dict[str, Callable[[], Stiffness | StressPeak]] = {}
     if "lobes" in solves or in_sum != "K_b":
-        found |= _stiffness("K_b_lobes", lobes(flexspline, True, LOBE_TOLERANCE))
+        asked["K_b_lobes"] = lambda: lobes(flexspline, True, LOBE_TOLERANCE)
     if "unsupported" in solves:
-        found |= _stiffness("K_b_lobes_unsupported", lobes(flexspline, False, LOBE_TOLERANCE))
+        asked["K_b_lobes_unsupported"] = lambda: lobes(flexspline, False, LOBE_TOLERANCE)
     if "contact" in solves:
-        found |= _stiffness("K_b_lobes_contact", contact(flexspline, LOBE_TOLERANCE))
+        asked["K_b_lobes_contact"] = lambda: contact(flexspline, LOBE_TOLERANCE)
     if "ellipse" in solves:
-        w0 = design.gear.centre_distance_mm
-        found |= _peak("wave_generator_peak", ellipse_peak(flexspline, w0, STRESS_TOLERANCE))
+        asked["wave_generator_peak"] = lambda: ellipse_peak(flexspline, w0, STRESS_TOLERANCE)
     if "torque" in solves:
-        torque = design.load.torque_Nm
-        found |= _peak("torque_peak", torque_peak(flexspline, torque, STRESS_TOLERANCE))
-        found |= _peak("shaft_torque_peak", torque_peak(shaft, torque, STRESS_TOLERANCE))
+        asked["torque_peak"] = lambda: torque_peak(flexspline, torque, STRESS_TOLERANCE)
+        asked["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STRESS_TOLERANCE)
     if "torsion" in solves:
-        found |= _stiffness("K_b", torsion(flexspline, TORSION_TOLERANCE))
-        found |= _stiffness("K_e", torsion(shaft, TORSION_TOLERANCE))
+        asked["K_b"] = lambda: torsion(flexspline, TORSION_TOLERANCE)
+        asked["K_e"] = lambda: torsion(shaft, TORSION_TOLERANCE)
+    found: dict[str, float] = {}
+    missing: dict[str, str] = {}
+    for name, solve in asked.items():
+        try:
+            found |= _figures(name, solve())
+        except OUR_ERRORS as fault:
+            missing[name] = str(fault)
+    if "torsion" in solves:
         found = with_holes(found, design, holes)
-        found |= _sum(design, found)
+        if not {in_sum, "K_e"} & set(missing):
+            try:
+                found |= _sum(design, found)
+            except OUR_ERRORS as fault:
+                missing["backlash_arcsec"] = str(fault)
     mass = masses(design)
     sizes = (
         mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
     )  # fmt: skip
-    return found | dict(zip(SIZES, sizes, strict=True))
+    found |= dict(zip(SIZES, sizes, strict=True))
+    return Outcome(found, "; ".join(f"{name}: {why}" for name, why in missing.items()))
 
 
 def revolved_torsion(design: Design, name: PartName) -> tuple[float, float, float]:
@@ -125,16 +140,14 @@ def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
     }
 
 
-def _peak(name: str, found: StressPeak) -> dict[str, float]:
-    """The figure, and 1 where it lies at the border of the excluded zone, else 0."""
-    peak = settled_peak(found)
-    return {
-        f"{name}_mises_MPa": peak.mises_MPa,
-        f"{name}_at_excluded_border": float(peak.at_excluded_border),
-    }
-
-
-def _stiffness(name: str, found: Stiffness) -> dict[str, float]:
+def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:
+    """A stiffness with its bounds; or a peak, and 1 where it lies at the excluded border, else 0."""
+    if isinstance(found, StressPeak):
+        peak = settled_peak(found)
+        return {
+            f"{name}_mises_MPa": peak.mises_MPa,
+            f"{name}_at_excluded_border": float(peak.at_excluded_border),
+        }
     bounds = f"{name}_bounds_Nm_per_rad"
     return {
         f"{name}_Nm_per_rad": found.K_Nm_per_rad,

@@ -51,7 +51,7 @@ def with_holes(found: Mapping[str, float], design: Design, holes: Holes) -> dict
     """Figures with K and its bounds corrected where the part has holes, and the factor beside them."""
     out = dict(found)
     for name in pierced(design):
-        if name not in holes:
+        if name not in holes or f"{name}_Nm_per_rad" not in found:
             continue
         factor = holes[name]
         bounds = f"{name}_bounds_Nm_per_rad"

@@ -39,6 +39,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_stress import draw_best_stress
         from flexspline.results.study.figures import write_figures
+        from flexspline.results.study.notes import border_warnings
         from flexspline.results.study.progress import Watch
         from flexspline.results.study.record import summary, words
         from flexspline.results.study.report import write_study_reports
@@ -67,6 +68,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         pool = partial(worker_pool, run.workers, run.scheduler)
         holes = nominal_holes(asked, store, tell)
         result = run_study(asked, store, pool, Watch(asked), say=tell, holes=holes)
+        for line in border_warnings(result):
+            tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)
         tables = [folder / "study.csv"]

@@ -32,11 +32,29 @@ def notes(result: StudyResult) -> list[str]:
 
 
 def _borders(result: StudyResult) -> Iterable[str]:
-    """Which peaks hang on the stress rule, and in how many designs."""
+    """Which peaks hang on the stress rule, in how many designs, and what the study does with them."""
     for key in PEAKS:
         rows = [r for r in result.built if key in r.outcome.figures]
         if count := sum(at_border(key, r.outcome.figures) for r in rows):
-            yield f"{entry(key).name}: in {count} of {len(rows)} designs {BORDER} (†): {MEANING}."
+            used = _used(result, key)
+            name = f"{entry(key).name} ({used})" if used else entry(key).name
+            yield f"{name}: in {count} of {len(rows)} designs {BORDER} (†): {MEANING}."
+
+
+def border_warnings(result: StudyResult) -> Iterable[str]:
+    """Lines for the terminal: objectives and constraints on such peaks."""
+    for key in PEAKS:
+        count = sum(at_border(key, r.outcome.figures) for r in result.built)
+        if count and (used := _used(result, key)):
+            yield f"{key} ({used}): in {count} of {len(result.built)} designs {BORDER}: {MEANING}"
+
+
+def _used(result: StudyResult, key: str) -> str:
+    """Whether a figure is an objective or a constraint of the study; "" for neither."""
+    file = result.study.file
+    roles = {"an objective": file.objective, "a constraint": file.constraint}
+    said = " and ".join(role for role, keys in roles.items() if key in keys)
+    return f"{said} of this study" if said else ""
 
 
 def _mass(design: Design) -> str:

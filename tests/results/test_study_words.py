@@ -13,7 +13,7 @@ from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Check, Verified
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
-from flexspline.results.study.notes import notes
+from flexspline.results.study.notes import border_warnings, notes
 from flexspline.results.study.report import study_document
 from flexspline.results.study.why import disagreement, influences, misses, unfollowed
 
@@ -90,6 +90,20 @@ def test_the_report_says_how_holes_entered() -> None:
     assert "change K_e by −3.0 %" in with_factor
     assert "K_b: of the part without its holes" in with_factor
     assert "K_b and K_e: of the part without its holes" in " ".join(notes(result))
+
+
+def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
+    result = result_of()
+    assert not list(border_warnings(result))
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, FLAG: float(r.slot < 3)}))
+        for r in result.rows
+    )
+    (line,) = border_warnings(replace(result, rows=rows))
+    assert line.startswith(f"{STRESS} (a constraint of this study): in 3 of 10 designs at excluded")
+    assert "(a constraint of this study): in 3 of 10" in " ".join(notes(replace(result, rows=rows)))
+    unasked = STUDY.replace(f'"{STRESS}" = {{ max = 300.0 }}\n', "")
+    assert not list(border_warnings(replace(result_of(unasked), rows=rows)))
 
 
 def test_keys_of_holes_are_named_as_not_followed() -> None:

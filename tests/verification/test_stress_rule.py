@@ -96,7 +96,7 @@ def test_the_edge_of_the_seat_is_singular() -> None:
 def test_the_shafts_peak_stands_still_while_the_flexsplines_wall_moves() -> None:
     design = load_design(EXAMPLES / "xb1-40.toml")
     found = [
-        figures_of(with_values(design, {"flexspline.wall_thickness_mm": wall}), ("torque",))
+        figures_of(with_values(design, {"flexspline.wall_thickness_mm": wall}), ("torque",)).figures
         for wall in (0.25, 0.45, 0.55)
     ]
     first, *others = (f["shaft_torque_peak_mises_MPa"] for f in found)

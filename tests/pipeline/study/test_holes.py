@@ -19,7 +19,7 @@ HOLES = {"K_e": Factor(0.97, 0.02)}
 
 def test_the_figures_follow_from_the_corrected_K() -> None:
     design = load_design(EXAMPLES / "xb1-40.toml")
-    plain, corrected = (figures_of(design, ("torsion",), h) for h in ({}, HOLES))
+    plain, corrected = (dict(figures_of(design, ("torsion",), h).figures) for h in ({}, HOLES))
     assert corrected["K_e_Nm_per_rad"] == pytest.approx(0.97 * plain["K_e_Nm_per_rad"])
     low, high = (corrected[f"K_e_bounds_Nm_per_rad[{i}]"] for i in (0, 1))
     assert low == pytest.approx(0.95 * plain["K_e_bounds_Nm_per_rad[0]"])
@@ -56,7 +56,9 @@ def nominal(tmp_path_factory: pytest.TempPathFactory) -> Figures:
     study = study_of(STUDY)
     store = trial_store_of(study, tmp_path_factory.mktemp("nominal"))
     holes = nominal_holes(study, store, lambda line: None)
-    plain, corrected = (figures_of(study.design, ("torsion",), h) for h in ({}, holes))
+    plain, corrected = (
+        dict(figures_of(study.design, ("torsion",), h).figures) for h in ({}, holes)
+    )
     tables = study.design.model_dump(mode="json", exclude_none=True)
     solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
     assert not solid.reason
@@ -98,7 +100,7 @@ def test_a_design_without_holes_among_others_keeps_its_K() -> None:
     design = load_design(EXAMPLES / "xb1-40.toml")
     holes = {"K_b": Factor(0.9, 0.02), **HOLES}
     bare = design.model_copy(update={"flexspline": without_holes(design).flexspline})
-    plain, corrected = (figures_of(bare, ("torsion",), h) for h in ({}, holes))
+    plain, corrected = (dict(figures_of(bare, ("torsion",), h).figures) for h in ({}, holes))
     assert corrected["K_b_Nm_per_rad"] == plain["K_b_Nm_per_rad"]
     assert corrected["K_e_Nm_per_rad"] != plain["K_e_Nm_per_rad"]
 
