@@ -52,8 +52,8 @@ def border_warnings(result: StudyResult) -> Iterable[str]:
 def _used(result: StudyResult, key: str) -> str:
     """Whether a figure is an objective or a constraint of the study; "" for neither."""
     file = result.study.file
-    roles = {"an objective": file.objective, "a constraint": file.constraint}
-    said = " and ".join(role for role, keys in roles.items() if key in keys)
+    roles = (("an objective", [*file.objective]), ("a constraint", [*file.constraint]))
+    said = " and ".join(role for role, keys in roles if key in keys)
     return f"{said} of this study" if said else ""
 
 
