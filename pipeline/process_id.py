@@ -56,7 +56,7 @@ class ProcessId:
             return "unknown"
         if not _exists(self.pid):
             return "gone"
-        born = _born(self.pid)
+        born = started(self.pid)
         if born is None:
             return "gone"
         return "gone" if UNKNOWN not in (born, self.born) and born != self.born else "alive"
@@ -65,7 +65,7 @@ class ProcessId:
 def this_process() -> ProcessId:
     """The process that asks."""
     pid = os.getpid()
-    return ProcessId(_machine(), _space(), pid, _born(pid) or UNKNOWN)
+    return ProcessId(_machine(), _space(), pid, started(pid) or UNKNOWN)
 
 
 def parsed(text: str) -> ProcessId | None:
@@ -111,7 +111,7 @@ def _exists(pid: int) -> bool:
     return True
 
 
-def _born(pid: int) -> str | None:
+def started(pid: int) -> str | None:
     """When a process started; None if it is no more, a zombie among them.
 
     On Linux the kernel's own count: psutil adds the time of the boot, which moves with the clock.

@@ -77,7 +77,7 @@ def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
 
 def available_bytes() -> float:
     """Memory that this process may still take: of the machine, its container, its own limit."""
-    return min(_of_machine(), _of_container(), _of_process())
+    return min(_of_machine(), container_free_bytes(), _of_process())
 
 
 def _of_machine() -> float:
@@ -93,8 +93,11 @@ def _of_machine() -> float:
         return inf
 
 
-def _of_container(folder: Path = Path("/sys/fs/cgroup")) -> float:
-    """What the control group allows less what it holds; file pages that nobody uses will give way."""
+def container_free_bytes(folder: Path = Path("/sys/fs/cgroup")) -> float:
+    """What the control group allows less what it holds [bytes], inf where there is none.
+
+    File pages that nobody uses will give way.
+    """
     try:
         most = (folder / "memory.max").read_text(encoding="ascii").strip()
         used = float((folder / "memory.current").read_text(encoding="ascii"))

@@ -109,7 +109,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
 
             held, why = None, ""
             try:
-                held = _held(moved, key, p)
+                held = slope_with_field_held(moved, key, p)
             except OUR_ERRORS as fault:
                 why = str(fault)
             again, error, no_room = _richardson(K, key, p, here)
@@ -124,7 +124,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     return tuple(found)
 
 
-def _held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
+def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
     """A difference over a step so small that one side does where the other cannot be built.
 
     Raises

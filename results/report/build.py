@@ -39,7 +39,7 @@ def write_run_report(
     attached: tuple[Attachment, ...] = (),
 ) -> None:
     """`report.pdf` of `flexspline run`."""
-    write_report(path, _content(result, pictures, extended_model, attached))
+    write_report(path, report_content(result, pictures, extended_model, attached))
 
 
 def write_run_page(
@@ -54,7 +54,7 @@ def write_run_page(
 
     Shrunk pictures are kept in the context's cache.
     """
-    content = _content(result, pictures, extended_model, attached)
+    content = report_content(result, pictures, extended_model, attached)
     images = {}
     for name, source in pictures_of(content).items():
         image = png(source)
@@ -63,12 +63,13 @@ def write_run_page(
         write_bytes(path, page_of(run_document(content), images, pictures.views))
 
 
-def _content(
+def report_content(
     result: RunResult,
     pictures: RunPictures,
     extended_model: str,
     attached: tuple[Attachment, ...],
 ) -> ReportContent:
+    """What a run's report says, before any layout."""
     found, design = result.stiffnesses, result.design
     peaks = {name: solved.peak for name, solved in result.fields.items()}
     return ReportContent(

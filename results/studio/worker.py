@@ -47,7 +47,7 @@ class Worker:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(
-            target=_serve, args=(theirs, self.niceness), name=self.name, daemon=True
+            target=serve, args=(theirs, self.niceness), name=self.name, daemon=True
         )
         before = {key: os.environ.get(key) for key in _ONE_THREAD}
         os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))  # several workers share few cores
@@ -107,7 +107,7 @@ def _exchange(pipe: Connection, question: str, tables: Mapping[str, Any]) -> Any
         return Fault("", "the process of the fast model ended; move a slider to try again")
 
 
-def _serve(pipe: Connection, niceness: int) -> None:
+def serve(pipe: Connection, niceness: int) -> None:
     """The process: load everything, then answer until the other end closes."""
     if hasattr(os, "nice"):  # Windows has none: there slow questions share evenly with quick ones
         os.nice(niceness)

@@ -162,9 +162,9 @@ def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) ->
         ("memory.stat", "anon 3000\ninactive_file 1500\n"),
     ):
         (tmp_path / name).write_text(text, encoding="ascii")
-    assert memory._of_container(tmp_path) == 8000 - 5000 + 1500
+    assert memory.container_free_bytes(tmp_path) == 8000 - 5000 + 1500
     (tmp_path / "memory.max").write_text("max\n", encoding="ascii")
-    assert memory._of_container(tmp_path) == float("inf")
+    assert memory.container_free_bytes(tmp_path) == float("inf")
 
 
 def test_memory_left_is_bounded_by_the_address_space() -> None:

@@ -47,10 +47,10 @@ for name in NAMES:
 """
 LOW_PRIORITY = """
 from multiprocessing import Pipe
-from flexspline.results.studio.worker import _serve
+from flexspline.results.studio.worker import serve
 ours, theirs = Pipe()
 ours.close()
-_serve(theirs, 10)
+serve(theirs, 10)
 """
 STOPPED_JOB = """
 import time

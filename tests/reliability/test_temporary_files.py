@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.process_id import ProcessId, _born, parsed, this_process
+from flexspline.pipeline.process_id import ProcessId, parsed, started, this_process
 from flexspline.pipeline.temporary_files import FORGOTTEN_S, MARK, clear, mark, unfinished
 from flexspline.results.atomic import write_bytes
 from flexspline.results.job import folder_of
@@ -24,7 +24,7 @@ GONE = "from flexspline.pipeline.temporary_files import mark; print(mark())"
 
 def _of(pid: int) -> ProcessId:
     """Another process of this machine and namespace."""
-    return replace(this_process(), pid=pid, born=str(_born(pid)))
+    return replace(this_process(), pid=pid, born=str(started(pid)))
 
 
 @pytest.fixture(scope="module")
