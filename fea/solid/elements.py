@@ -1,4 +1,4 @@
-"""Quadratic tetrahedra through scikit-fem: gradients, volumes, facet integrals."""
+"""Quadratic tetrahedra through scikit-fem: bases, volumes, facet integrals."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
-from flexspline.fea.types import TetMesh
 
 
 def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
@@ -47,26 +45,10 @@ def basis_of(
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Gradients:
-    """Basis gradients (m, q, 10, 3) 1/mm and weights w·det J (m, q) mm³ at quadrature points."""
-
-    gradients: np.ndarray
-    weights: np.ndarray
-
-
-def gradients(
-    nodes: np.ndarray, cells: np.ndarray, points: np.ndarray, weights: np.ndarray
-) -> Gradients:
-    """Gradients of the ten basis functions of curved elements at reference points (q, 3)."""
-    local = reference_gradients(points)  # (q, 10, 3)
-    jacobian = _jacobians(nodes, cells, local)
-    adjugate = _adjugate3(jacobian)
-    det = _determinants(jacobian, adjugate)
-    safe = np.where(det == 0, 1.0, det)  # a folded element is found by its determinant
-    # grad_x = J^-T grad_ξ
-    global_ = np.matmul(local[None], adjugate / safe[..., None, None])
-    return Gradients(global_, det * weights)
+def displacement_gradient(basis: Any, u_cells: np.ndarray) -> np.ndarray:
+    """∂u_a/∂x_b (m, q, a, b) at the basis's points, from the elements' ten displacements (m, 10, 3)."""
+    slopes = np.stack([function.grad.transpose(1, 2, 0) for (function,) in basis.basis], axis=2)
+    return np.matmul(u_cells.transpose(0, 2, 1)[:, None], slopes)
 
 
 def _jacobians(nodes: np.ndarray, cells: np.ndarray, local: np.ndarray) -> np.ndarray:
@@ -95,7 +77,11 @@ def _determinants(j: np.ndarray, adjugate: np.ndarray) -> np.ndarray:
 def _weights(
     nodes: np.ndarray, cells: np.ndarray, points: np.ndarray, weights: np.ndarray
 ) -> np.ndarray:
-    """w·det J (m, q) mm³, without the gradients."""
+    """w·det J (m, q) mm³.
+
+    Meshes are checked with it again and again, and scikit-fem's map takes 2 to 4 times as long (12 600
+    elements: 0.12 s against 0.05, volumes 0.09 against 0.02).
+    """
     jacobian = _jacobians(nodes, cells, reference_gradients(points))
     return _determinants(jacobian, _adjugate3(jacobian)) * weights
 
@@ -178,8 +164,3 @@ def facet_points(nodes: np.ndarray, facets: np.ndarray, degree: int = 4) -> Face
 def facet_areas(nodes: np.ndarray, facets: np.ndarray) -> np.ndarray:
     """Areas (k,) mm² of six-node facets."""
     return facet_points(nodes, facets).weights.sum(axis=1)
-
-
-def mesh_gradients(mesh: TetMesh, degree: int = 4) -> Gradients:
-    """Gradients at the quadrature points of a given degree (4 is exact for P2 on straight edges)."""
-    return gradients(mesh.nodes, mesh.cells, *tet_rule(degree))

@@ -6,16 +6,23 @@ The estimator is Zienkiewicz and Zhu's (1987): stresses averaged at the nodes ag
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from flexspline.fea.solid.elements import NODES, Gradients, gradients, reference_values, tet_rule
+from flexspline.fea.solid.elements import (
+    NODES,
+    basis_of,
+    displacement_gradient,
+    quadratic_mesh,
+    reference_values,
+)
 from flexspline.fea.types import Elastic, TetMesh
 
 
-def _stress(g: Gradients, u_cells: np.ndarray, material: Elastic) -> np.ndarray:
+def _stress(basis: Any, u_cells: np.ndarray, material: Elastic) -> np.ndarray:
     """Cauchy stress (m, q, 3, 3) MPa from cell displacements (m, 10, 3) Cartesian, mm."""
-    grad = np.matmul(u_cells.transpose(0, 2, 1)[:, None], g.gradients)  # du_a/dx_b
+    grad = displacement_gradient(basis, u_cells)
     strain = 0.5 * (grad + grad.swapaxes(2, 3))
     trace = np.trace(strain, axis1=2, axis2=3)
     return 2 * material.mu * strain + material.lam * trace[..., None, None] * np.eye(3)
@@ -26,9 +33,10 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
 
     `u` is (n, 3) Cartesian, mm.
     """
-    g = gradients(mesh.nodes, mesh.cells, NODES, np.ones(len(NODES)) / len(NODES))
-    local = _stress(g, u[mesh.cells], material).reshape(-1, 9)
-    weight = np.repeat(g.weights.sum(axis=1), 10)
+    at_nodes = NODES, np.ones(len(NODES)) / len(NODES)
+    basis = basis_of(quadratic_mesh(mesh.nodes, mesh.cells), quadrature=at_nodes)
+    local = _stress(basis, u[mesh.cells], material).reshape(-1, 9)
+    weight = np.repeat(basis.dx.sum(axis=1), 10)
     nodes = mesh.cells.ravel()
     n = len(mesh.nodes)
     total = np.bincount(nodes, weight, minlength=n)
@@ -58,14 +66,13 @@ class EnergyErrorEstimate:
 
 def energy_error(mesh: TetMesh, u: np.ndarray, material: Elastic) -> EnergyErrorEstimate:
     """Recovery estimate of ∫(σ − σh):C⁻¹:(σ − σh) per element."""
-    points, weights = tet_rule(4)
-    g = gradients(mesh.nodes, mesh.cells, points, weights)
-    raw = _stress(g, u[mesh.cells], material)
+    basis = basis_of(quadratic_mesh(mesh.nodes, mesh.cells))
+    raw = _stress(basis, u[mesh.cells], material)
     nodal = nodal_stress(mesh, u, material).reshape(-1, 9)
-    smooth = np.matmul(reference_values(points)[None], nodal[mesh.cells]).reshape(raw.shape)
+    smooth = np.matmul(reference_values(basis.X.T)[None], nodal[mesh.cells]).reshape(raw.shape)
     return EnergyErrorEstimate(
-        np.einsum("mq,mq->m", _twice_energy(raw, material), g.weights),
-        np.einsum("mq,mq->m", _twice_energy(smooth - raw, material), g.weights),
+        np.einsum("mq,mq->m", _twice_energy(raw, material), basis.dx),
+        np.einsum("mq,mq->m", _twice_energy(smooth - raw, material), basis.dx),
     )
 
 

@@ -11,7 +11,13 @@ import numpy as np
 
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.cases import Model, Supports
-from flexspline.fea.solid.elements import facet_points, mesh_gradients, reference_values, tet_rule
+from flexspline.fea.solid.elements import (
+    basis_of,
+    facet_points,
+    quadratic_mesh,
+    reference_values,
+    tet_rule,
+)
 from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
@@ -42,7 +48,7 @@ def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
 
 def body_load(mesh: TetMesh, force: np.ndarray) -> np.ndarray:
     """Nodal forces (n, 3) of a constant force (3,) per volume."""
-    weights = mesh_gradients(mesh).weights
+    weights = basis_of(quadratic_mesh(mesh.nodes, mesh.cells)).dx
     shares = np.einsum("mq,qi->mi", weights, reference_values(tet_rule(4)[0]))
     load = np.zeros_like(mesh.nodes)
     np.add.at(load, mesh.cells, shares[..., None] * force)
