@@ -12,6 +12,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 REFERENCE_C = 20.0
+"""Reference temperature [°C], ISO 1:2022; the gap of a design is the one there."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from flexspline.results.diagnosis.words import (
     sure_words,
     title_of,
 )
-from flexspline.results.figures.diagnosis.draw import Drawn
+from flexspline.results.figures.diagnosis.draw import DiagnosisFigure
 from flexspline.results.quantities import grouped
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.compared import compared, measured
@@ -50,7 +50,7 @@ OPEN = ("ambiguous", "unknown", "insufficient")
 
 def diagnosis_document(
     diagnosis: Diagnosis,
-    figures: Sequence[Drawn],
+    figures: Sequence[DiagnosisFigure],
     used: StiffnessPair,
     attached: tuple[Attachment, ...] = (),
 ) -> Document:
@@ -174,7 +174,7 @@ def _after(diagnosis: Diagnosis) -> Iterable[Block]:
         )
 
 
-def _figures(figures: Sequence[Drawn]) -> Iterable[Block]:
+def _figures(figures: Sequence[DiagnosisFigure]) -> Iterable[Block]:
     if figures:
         yield Break()
     for f in figures:

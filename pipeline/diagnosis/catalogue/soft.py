@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 TOP = 2.0
 """Curves are compared up to this multiple of T2, about a gear's repeated peak torque."""
 POINTS = 200
+"""Of a curve; the straight stiffness of a catalogue row is then within 0.04 % of many points'."""
 
 
 @dataclass(frozen=True)

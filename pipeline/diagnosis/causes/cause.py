@@ -77,7 +77,7 @@ class Cause(ABC):
     """
 
     id: ClassVar[str]
-    """As in the contract."""
+    """As in docs/contract.md."""
     title: ClassVar[str]
     """What a person reads: a noun phrase."""
     unit: ClassVar[str]
@@ -125,7 +125,7 @@ class Cause(ABC):
 
     @abstractmethod
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        """The contract's magnitude of all elements together, in `unit`."""
+        """The magnitude (docs/contract.md) of all elements together, in `unit`."""
 
     def angle_arcsec(self, elements: Sequence[Element], history: History) -> np.ndarray:
         """(n,) what the elements add to the angle."""

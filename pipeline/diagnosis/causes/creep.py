@@ -17,6 +17,7 @@ SHORTEST_HOLD = 0.06
 PER_DECADE = 3
 """Kelvin elements for each decade of retardation times: the sum then follows log t to 1 %."""
 DECADE_ROWS = np.array([0.1, 1.0])
+"""The last decade of a hold, as shares of its length."""
 
 
 class Creep(Cause):

@@ -22,6 +22,7 @@ MOST_BENT = 2.0
 """Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
 NOISE_WIDTHS = 2.0
 LOOP_ROWS = 201
+"""Of a half loop; odd, so that a row lies at T = 0, where the width is read."""
 DEADBAND = 0.001
 """Reversals of torque below this share of the largest (or twice its noise) are noise."""
 VARIANTS = (

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 SATURATION = (0.2, 0.5)
 EXPONENTS = (1.0, 0.5, 1.6)
 SECONDS_PER_HOUR = 3600.0
+"""The magnitude is per hour, time is in s."""
 
 
 class SensorDrift(Cause):

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shap
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
+"""Numbers of the laws in an extended model's file; a number once given stays."""
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
 """Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
 KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.75)
@@ -25,7 +26,7 @@ LIMITS = {
 }
 """Of the parameter, by law."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
-"""Between which shares of the largest torque the contract takes chord stiffness."""
+"""Between which shares of the largest torque docs/contract.md takes chord stiffness."""
 
 
 class StiffnessHardening(Cause):

@@ -74,7 +74,7 @@ def _channels(h: Hypothesis) -> set[str]:
 
 
 def _magnitude(best: UnitEvidence, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
-    """The contract's magnitude and its standard deviation, to first order in the amplitude."""
+    """The magnitude (docs/contract.md) and its standard deviation, to first order in the amplitude."""
     term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
     if term.cause == "clearance_offset":
         return mean + best.common[0], std

@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.end_points.regressors import EndPointRegresso
 SHARES = (0.1, 0.5, 0.9)
 """ρ; even odds."""
 READINGS = 5
+"""Points of the grid of σ."""
 LARGEST_READING = 0.05
 """σ goes from the file's resolution to this share of the median total, in even steps of log σ."""
 

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
 
 LARGEST_CYCLE = 1_000_000
+"""A cycle a second for eleven days; a larger number is a slipped column."""
 
 
 @dataclass(frozen=True)

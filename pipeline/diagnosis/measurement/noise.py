@@ -18,10 +18,14 @@ LONGEST_OF_CYCLE = 0.1
 FINEST_ARCSEC = 0.005
 """No instrument reads finer; a record without any noise would make every equation singular."""
 LAGS = 24
+"""Rows over which the residual's autocovariance is matched."""
 OUTLIER_SIGMAS = 5.0
+"""One row of normal noise in 1.7 million lies further off."""
 LONGEST_OUTLIER = 2
 """Rows: three in a row are a finding."""
 BAND_SIGMAS, BAND_SHARE = 4.0, 0.035
+"""Half width of the crossing: standard deviations of the torque noise (one row in 16 000 lies further
+off), and at least this share of the largest torque; docs/diagnosis.md, "Which rows"."""
 
 
 @dataclass(frozen=True)

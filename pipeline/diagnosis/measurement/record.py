@@ -66,7 +66,7 @@ Measurement = Sweep | EndPoints | Specimens
 
 
 def read_measurement(path: Path) -> Measurement:
-    """Read a CSV file of any of the contract's three kinds.
+    """Read a CSV file of any of the three kinds of docs/contract.md.
 
     Raises
     ------

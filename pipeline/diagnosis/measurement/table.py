@@ -54,7 +54,7 @@ class MeasuredTable:
 def read_table(path: Path) -> MeasuredTable:
     """Read a measurement.
 
-    Lines beginning with # are comments. Columns whose name is no quantity of the contract are kept
+    Lines beginning with # are comments. Columns whose name is no quantity of docs/contract.md are kept
     aside as `ignored`, except dotted design keys, which are read as numbers.
 
     Raises

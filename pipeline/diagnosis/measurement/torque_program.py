@@ -17,6 +17,7 @@ BESIDE = 5
 SPAN = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
 FEWEST = 3
+"""Rows of a hold: two are a turn between samples."""
 PARTS = 60
 """Of a cycle."""
 CLEAR = 8.0

@@ -19,6 +19,7 @@ TIME: Factors = {"s": 1.0, "min": 60.0, "h": 3600.0}
 
 
 KELVIN_AT_0_C = 273.15
+"""SI Brochure, 9th edition (2019), section 2.3.1."""
 
 
 QUANTITIES: Mapping[str, tuple[str, Factors]] = {

@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.shape_check import fault_of
 
 FORMAT = 1
+"""Of the file; it grows when a key changes its meaning."""
 LARGEST_BYTES = 1_000_000
 """A model takes 5 kB; a file beyond this is some other file."""
 

@@ -103,7 +103,7 @@ def _named(
 
 
 def magnitude(race: SpecimenRace, best: LaplaceFit, cause: str) -> tuple[float, float]:
-    """The contract's magnitude and its standard deviation, doubt between alike explanations included."""
+    """The magnitude (docs/contract.md) and its deviation, doubt between alike explanations included."""
     alike = [f for f in race.fits if f.named == best.named and best.score - f.score < NAMING_NATS]
     each = [_value(race, f, cause) for f in alike]
     weight = np.exp([f.score - best.score for f in alike])

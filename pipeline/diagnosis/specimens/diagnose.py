@@ -28,6 +28,7 @@ from flexspline.pipeline.parts import AnalysisContext
 FEWEST = 3
 """One for the modulus, one for a cause, one to see noise."""
 FEWEST_HELD_OUT = 4
+"""The rest then still has FEWEST specimens."""
 PLAINLY = 0.25
 """A file that does not say its part is the series' where the flexspline alone is this far off in ln K and
 the series less than half as far."""

@@ -22,6 +22,7 @@ USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 """One percent, within a factor of two, is what torsion rigs reach."""
 ROUNDS = 8
 STEP = 1e-4
+"""Of a prior standard deviation, for forward differences: doubles round them at 1e-12 of it."""
 PAIR_NATS = -1.0
 MOST_ZONE = 1.2
 """Beyond the lobes there is nowhere to go; a fifth is allowed for noise."""

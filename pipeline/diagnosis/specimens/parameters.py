@@ -35,7 +35,7 @@ class SpecimenParameter:
 
     Attributes
     ----------
-    owner : the contract's id of the cause, or "?" and a channel.
+    owner : the id of the cause (docs/contract.md), or "?" and a channel.
     kind : "modulus", "series", "zone", "geometry" or "column".
     spread, centre : prior standard deviation and mean of the parameter.
     positive : whether it cannot be below 0. odds : log prior probability. what : in words, for columns.

@@ -63,7 +63,7 @@ class SweepFit:
         )
 
     def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
-        """The contract's magnitude of each named cause."""
+        """The magnitude of each named cause, as docs/contract.md defines it."""
         rig = self.measured_rig(mean)
         return {c: known_causes()[c].magnitude(e, rig) for c, e in self.elements(mean).items()}
 

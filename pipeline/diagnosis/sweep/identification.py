@@ -47,7 +47,7 @@ class Identification:
 
     @property
     def unnamed_rms(self) -> float:
-        """Of all competitors and minor causes in the best set [arcsec]."""
+        """Of all nuisance terms and minor causes in the best set [arcsec]."""
         return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
 
 
@@ -90,7 +90,7 @@ def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> C
 
 
 def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
-    """Whether a set with a competitor holds large effects that together are small."""
+    """Whether a set with a nuisance term holds large effects that together are small."""
     owners = c.owners(evidence)
     if not any(o.startswith("?") for o in owners):
         return False
@@ -101,7 +101,7 @@ def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
 
 
 def _without(evidence: GaussianEvidence, best: Candidate, cause: str) -> Candidate:
-    """The best set that does without a cause: competitors and other causes may stand in."""
+    """The best set that does without a cause: nuisance terms and other causes may stand in."""
     start = [i for i in best.terms if evidence.terms[i].owner != cause]
     search = Search(evidence, lambda t: t.owner != cause)
     return _plausible(evidence, search, search.run([start, ()], most=len(best.terms) + 2))

@@ -21,8 +21,10 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 ROWS = 64
 """Of one triangular cycle."""
 DEFAULT_RAMP_S = 30.0
+"""Time of a ramp where the record has none."""
 WARMER_K = 20.0
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
+"""Steps of 50° tell the harmonics 1, 2 and 4 per turn apart; at steps of 60° 4 is an alias of 2."""
 MORE_CYCLES = 40
 
 

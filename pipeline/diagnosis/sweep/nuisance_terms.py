@@ -21,22 +21,27 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import (
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
 NEW_SHARE = 0.25
-"""Of a column's own size: one of which less is new beside torque and gap is no competitor."""
+"""Of a column's own size: one of which less is new beside torque and gap is no nuisance term."""
 SPLINE = 6
+"""Degree of a smooth function over a channel, Legendre polynomials."""
 LEADS = "output leads torque"
 OPPOSITE = {
     "_leading": frozenset({"friction_hysteresis", "rate_dependence"}),
     "_softening": frozenset({"stiffness_hardening"}),
 }
-"""What a competitor is the reverse of: beside it the two would cancel."""
+"""What a nuisance term is the reverse of: beside it the two would cancel."""
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
+"""Shares of the largest torque, within those of `friction_hysteresis`, which they reverse."""
 LEADING_LAGS = (0.05, 0.15, 0.4)
+"""Time constants as shares of a ramp, within those of `rate_dependence`, which they reverse."""
 SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
+"""Powers of torque, all above 1: twist grows faster than torque."""
 STEPS = 25
+"""Places of a step in time, evenly over a unit's rows."""
 TELLING = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 MOST_LEVELS = 8
-"""Columns of one competitor at most."""
+"""Columns of one nuisance term at most."""
 RIPPLES = range(3, 33)
 """Half periods over the range of torque or angle."""
 WAVES = range(3, 61)

@@ -33,6 +33,7 @@ from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
 
 TUNINGS, KINDS = 3, 3
+"""Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,8 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
 def _with_tuned_shapes(now: GaussianEvidence) -> GaussianEvidence:
     """The race with tuned shapes: of the best named set, of each cause alone, of the best of all.
 
-    Named causes are tuned before any competitor is let in: a shape from a coarse grid leaves a
-    misfit, which a competitor would fill.
+    Named causes are tuned before any nuisance term is let in: a shape from a coarse grid leaves a
+    misfit, which a nuisance term would fill.
     """
     named = Search(now, lambda t: t.cause is not None)
     best = named.run()

@@ -1,4 +1,4 @@
-"""Every term of the race evaluated on one record: shapes of the causes, competitors, calibration."""
+"""Every term of the race evaluated on one record: shapes of the causes, nuisance terms, calibration."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nui
 
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""
-UNNAMED_SPREAD = 0.15
+NUISANCE_SPREAD = 0.15
 """Prior size of an unnamed term, as a share of the predicted angle."""
 
 
 @dataclass(frozen=True)
 class Regressor:
-    """One shape of a cause, or one competitor (`cause` None); `at` its columns among all."""
+    """One shape of a cause, or one nuisance term (`cause` None); `at` its columns among all."""
 
     cause: Cause | None
     shape: Shape
@@ -33,9 +33,9 @@ class Regressor:
     positive: bool
     """Whether its amplitudes may not be negative."""
     log_share: float
+    """Log of the share of its cause's (or channel's) prior that this shape has."""
     against: frozenset[str] = frozenset()
     """Owners beside which it does not stand."""
-    """Log of the share of its cause's (or channel's) prior that this shape has."""
 
     @property
     def owner(self) -> str:
@@ -56,7 +56,7 @@ class DesignMatrix:
 
 
 def design_matrix(rig: Rig, known: dict[str, Cause]) -> DesignMatrix:
-    """Evaluate every shape of every cause, and every competitor, on a rig's record."""
+    """Evaluate every shape of every cause, and every nuisance term, on a rig's record."""
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
     terms: list[Regressor] = []
@@ -75,18 +75,18 @@ def design_matrix(rig: Rig, known: dict[str, Cause]) -> DesignMatrix:
             width += k
     rivals = nuisance_terms(rig)
     for rival in rivals:
-        terms.append(_competitor(rival, rivals, width, rig))
+        terms.append(_nuisance_regressor(rival, rivals, width, rig))
         blocks.append(rival.columns.astype(np.float32))
         width += rival.columns.shape[1]
     return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms))
 
 
-def _competitor(
+def _nuisance_regressor(
     rival: NuisanceTerm, rivals: Sequence[NuisanceTerm], at: int, rig: Rig
 ) -> Regressor:
     alike = sum(r.channel == rival.channel for r in rivals)
     k = rival.columns.shape[1]
-    prior = np.full(k, UNNAMED_SPREAD * rig.scale_arcsec)
+    prior = np.full(k, NUISANCE_SPREAD * rig.scale_arcsec)
     return Regressor(
         None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike),
         rival.against,
@@ -94,6 +94,7 @@ def _competitor(
 
 
 CORNER = 4.0
+"""Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
 NOISE_WINDOWS = (2, 7)
 """Rows on each side over which the torque is taken as a parabola."""
 

@@ -16,6 +16,7 @@ RANK = 1e-3
 """Of the largest singular value: bins that the model's terms can be count for nothing."""
 BINS = 12
 FEWEST_PER_BIN = 5
+"""Usual least count of a bin in a χ² test (Cochran, Biometrics 10, 417 (1954))."""
 SIGNIFICANT = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested."""
 SURE = 1e-8
@@ -61,7 +62,7 @@ def channel_tests(prepared: PreparedSweep, fit: SweepFit) -> list[ChannelTest]:
 
 
 def _wave(prepared: PreparedSweep, left: np.ndarray) -> ChannelTest:
-    """The strongest wave in time of any period: too fast for the competitors, or too slow.
+    """The strongest wave in time of any period: too fast for the nuisance terms, or too slow.
 
     In white noise each frequency's power is exponential with mean 1, and there are about as many
     independent frequencies as half the rows. Source: Scargle, Astrophysical Journal 263, 835 (1982).

@@ -12,8 +12,8 @@ from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
-UNNAMED_COST = 9.0
-"""Against each competitor: at equal evidence a named cause is preferred."""
+NUISANCE_COST = 9.0
+"""Against each nuisance term: at equal evidence a named cause is preferred."""
 ELEMENT_COST = 1.0
 """Against a further element of a cause already named."""
 BEAM, PER_OWNERS, PER_SINGLE = 18, 3, 8
@@ -96,7 +96,7 @@ class Search:
             term = self.evidence.terms[i]
             total += term.log_share
             if term.cause is None:
-                total -= UNNAMED_COST
+                total -= NUISANCE_COST
             else:
                 total -= ELEMENT_COST if term.cause.id in seen else NAMED_COST
                 seen.add(term.cause.id)
@@ -126,7 +126,7 @@ class Search:
         for group in self._groups:
             gain, valid = group.gains(evidence, cross, pull, mean, held)
             prior = group.log_share - np.where(
-                group.unnamed, UNNAMED_COST,
+                group.unnamed, NUISANCE_COST,
                 np.where([o in present for o in group.owners], ELEMENT_COST, NAMED_COST),
             )  # fmt: skip
             barred = group.barred(present, shut)

@@ -15,7 +15,9 @@ STEPS = 4
 STEP_STD = 0.4
 """Prior standard deviation of the log of a shape parameter, about where a step starts."""
 LONGEST = 0.5
+"""Largest change of the log of a parameter in a step; shapes of a grid are less than two such apart."""
 DIFFERENCE = 0.03
+"""Of the log of a parameter, for slopes."""
 ENOUGH = 0.05
 """Nats: a step that gains less is the last."""
 

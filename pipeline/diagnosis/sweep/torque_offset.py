@@ -18,11 +18,15 @@ from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 REACH = 0.35
 """Offsets searched, as a share of the largest torque."""
 STEPS = 141
+"""Odd, so that one of the offsets tried is 0; the best is refined between its neighbours."""
 WIDTHS = (0.5, 1.0, 2.0, 4.0)
 """Width of the crossing, in units of the torque noise."""
 MISFIT = 1.5
+"""Times the scatter beside the gap: noise is at least this, where the model misses more than noise."""
 UNSEEN = 3.0
+"""Standard deviations of the torque noise: an offset within is none."""
 EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
+"""Share of the largest torque that must be passed both ways, by so many rows each."""
 OUTLIER_SHARE = 0.01
 """Rows that the crossing's model does not claim."""
 
@@ -111,6 +115,7 @@ def _log_likelihood(
 
 
 MOST_ZEROS = 40
+"""Cycles with a zero of their own each; where there are more, each unit has one."""
 FIRST_STEPS = 81
 FIRST_NATS = 12.0
 ROBUST = 4.0

@@ -18,7 +18,7 @@ from flexspline.results.diagnosis.words import (
     sure_words,
 )
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
-from flexspline.results.figures.diagnosis.seen import Channel, Seen, thinned
+from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData, thinned
 from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -61,7 +61,7 @@ class Part:
     view: str = "angle"
 
 
-def parts(shown: Seen) -> list[Part]:
+def parts(shown: SweepPictureData) -> list[Part]:
     """Named causes, then structure that has no name."""
     identified = shown.explained.identified
     found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
@@ -83,7 +83,7 @@ def parts(shown: Seen) -> list[Part]:
     return found
 
 
-def _named(shown: Seen, cause: NamedCause) -> Part:
+def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
     key, view = VIEWS.get(cause.id, ("torque_Nm", "angle"))
     channel = shown.channel(key)
     lines = [
@@ -112,7 +112,7 @@ def _size(line: str) -> float:
     return 10.5 * min(1.0, BESIDE / len(line))
 
 
-def write_contributions(path: Path, shown: Seen) -> None:
+def write_contributions(path: Path, shown: SweepPictureData) -> None:
     """One panel per part: pale, what was measured with all other parts taken off; dark, the model."""
     found = parts(shown)
     height = TOP + len(found) * PANEL + (len(found) - 1) * BETWEEN + BOTTOM
@@ -155,7 +155,7 @@ def write_contributions(path: Path, shown: Seen) -> None:
         save_png(figure, path)
 
 
-def _panel(axes: Axes, shown: Seen, part: Part) -> None:
+def _panel(axes: Axes, shown: SweepPictureData, part: Part) -> None:
     if part.owner == OFFSET:
         _offset(axes, shown)
         return
@@ -190,7 +190,7 @@ def _panel(axes: Axes, shown: Seen, part: Part) -> None:
         axes.xaxis.set_major_locator(MaxNLocator(nbins="auto", integer=True))
 
 
-def _offset(axes: Axes, shown: Seen) -> None:
+def _offset(axes: Axes, shown: SweepPictureData) -> None:
     """Near zero torque: where the gap is crossed, by the reading and by the torque put right."""
     prepared = shown.explained.prepared
     read, history = prepared.sweep.history.torque_Nm, shown.history

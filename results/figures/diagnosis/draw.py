@@ -23,7 +23,7 @@ from flexspline.results.figures.diagnosis.end_points import (
 from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.panels import write_channels
-from flexspline.results.figures.diagnosis.seen import Seen, seen
+from flexspline.results.figures.diagnosis.seen import SweepPictureData, seen
 from flexspline.results.figures.diagnosis.specimens import (
     write_dimensions,
     write_held_out_specimens,
@@ -36,7 +36,7 @@ SIGNIFICANT = 1e-4
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DiagnosisFigure:
     """A figure: its file, and a caption that says what to see."""
 
     path: Path
@@ -48,15 +48,15 @@ class _Sheet:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.drawn: list[Drawn] = []
+        self.drawn: list[DiagnosisFigure] = []
 
     def place(self, name: str, words: str | None = None) -> Path:
         path = self.folder / f"{name}.png"
-        self.drawn.append(Drawn(path, words or caption(name)))
+        self.drawn.append(DiagnosisFigure(path, words or caption(name)))
         return path
 
 
-def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[Drawn]:
+def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[DiagnosisFigure]:
     """Draw every figure that has something to show into `folder`."""
     sheet = _Sheet(folder)
     measurement = diagnosis.measurement
@@ -71,7 +71,7 @@ def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[Drawn]:
     return sheet.drawn
 
 
-def _sweep(shown: Seen, sheet: _Sheet) -> None:
+def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
     outcome = shown.diagnosis.outcome
     write_overview(sheet.place("measured_and_predicted"), shown)
     write_channels(
@@ -101,7 +101,7 @@ def _sweep(shown: Seen, sheet: _Sheet) -> None:
     )
 
 
-def _told(shown: Seen) -> dict[str, str]:
+def _told(shown: SweepPictureData) -> dict[str, str]:
     """Of each channel, whether structure is left in it."""
     return {
         t.channel: f"structure left, {t.rms_arcsec:.2g}″"

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
-from flexspline.results.figures.diagnosis.seen import Seen, thinned
+from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import keep_inside
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 
-def write_overview(path: Path, shown: Seen) -> None:
+def write_overview(path: Path, shown: SweepPictureData) -> None:
     """Two panels over the torque that was read: angle, and measured less simulated."""
     prediction, history = shown.diagnosis.prediction, shown.history
     torque = history.torque_Nm

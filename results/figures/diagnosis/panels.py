@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.results.figures.diagnosis.seen import Channel, Seen, thinned
+from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData, thinned
 from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -33,7 +33,7 @@ APART = 0.04
 
 def write_channels(
     path: Path,
-    shown: Seen,
+    shown: SweepPictureData,
     left_arcsec: np.ndarray,
     title: str,
     told: Mapping[str, str] | None = None,
@@ -72,7 +72,7 @@ def write_channels(
         save_png(figure, path)
 
 
-def branch_legend(figure: Figure, y: float, shown: Seen) -> None:
+def branch_legend(figure: Figure, y: float, shown: SweepPictureData) -> None:
     """One legend for all panels: branches, sides of the gap, noise."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -93,7 +93,9 @@ def branch_legend(figure: Figure, y: float, shown: Seen) -> None:
     )  # fmt: skip
 
 
-def _panel(axes: Axes, shown: Seen, channel: Channel, left: np.ndarray, high: float) -> None:
+def _panel(
+    axes: Axes, shown: SweepPictureData, channel: Channel, left: np.ndarray, high: float
+) -> None:
     noise = 2 * shown.noise_arcsec
     axes.axhspan(-noise, noise, color="#e4e7ea", lw=0, zorder=0)
     axes.axhline(0, color=MUTED, lw=0.8)
@@ -151,6 +153,6 @@ def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarr
     return mean_x[good], mean_y[good]
 
 
-def _reach(shown: Seen, left: np.ndarray) -> float:
+def _reach(shown: SweepPictureData, left: np.ndarray) -> float:
     size = float(np.quantile(np.abs(left[shown.kept]), 0.998))
     return 1.15 * max(size, 3 * shown.noise_arcsec)

@@ -42,7 +42,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Seen:
+class SweepPictureData:
     """A sweep's diagnosis as arrays over its rows."""
 
     diagnosis: Diagnosis
@@ -121,9 +121,9 @@ class Seen:
         return next((c for c in self.channels if c.key == key), self.channels[0])
 
 
-def seen(diagnosis: Diagnosis) -> Seen | None:
+def seen(diagnosis: Diagnosis) -> SweepPictureData | None:
     """None where no race was run."""
-    return None if diagnosis.sweep is None else Seen(diagnosis, diagnosis.sweep)
+    return None if diagnosis.sweep is None else SweepPictureData(diagnosis, diagnosis.sweep)
 
 
 def thinned(rows: np.ndarray) -> np.ndarray:

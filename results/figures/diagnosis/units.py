@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
 from flexspline.results.diagnosis.words import capital, cause_title
 from flexspline.results.figures.diagnosis.panels import DPI
-from flexspline.results.figures.diagnosis.seen import Seen, plain_names
+from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
 from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -17,14 +17,14 @@ MOST_CAUSES = 4
 PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
 
 
-def shared_causes(shown: Seen) -> dict[str, UnitAmplitudes]:
+def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:
     """Shares of each cause that the race named, by its title; none for a single unit."""
     shares = shown.explained.shares
     named = [c for c in shown.diagnosis.outcome.causes if c.id in shares]
     return {capital(cause_title(c)).partition(" (")[0]: shares[c.id] for c in named[:MOST_CAUSES]}
 
 
-def write_units(path: Path, shown: Seen, shares: dict[str, UnitAmplitudes]) -> None:
+def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmplitudes]) -> None:
     """One panel per cause: 1 is as much as all units together show, 0 nothing."""
     names = plain_names(shown.explained.prepared.sweep.units)
     height = TOP + len(shares) * PANEL + (len(shares) - 1) * BETWEEN + BOTTOM
