@@ -25,7 +25,8 @@ DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The des
 def _folder(word: str) -> Path:
     """As pathlib reads it, which would take an empty word for the current folder."""
     if not word:
-        raise typer.BadParameter("names no folder; . is the current one")
+        tell('flexspline: --out = "" names no folder; "." is the current one')
+        raise typer.Exit(2)
     return Path(word)
 
 
