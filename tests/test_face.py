@@ -115,3 +115,15 @@ def test_the_page_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     names: dict[str, object] = {"__name__": "__main__"}
     for block in blocks:
         exec(compile(block, "docs/python.md", "exec"), names)
+
+
+def test_solid_and_axisymmetric_model_agree_on_a_free_rim_without_holes() -> None:
+    """Two discretisations of one case, each to 5 %: their bounds overlap."""
+    text = {"flexspline.bolt_count": 0, "solver.tolerance_pct": 5.0}
+    plain = flexspline.load_design(ROOT / "examples" / "xb1-40.toml").changed(text)
+    solid = plain.changed({"solver.model": "solid"})
+    (low, high), (lower, upper) = (
+        flexspline.stiffness(design, "flexspline", "lobes_unsupported").bounds_Nm_per_rad
+        for design in (plain, solid)
+    )
+    assert max(low, lower) <= min(high, upper)

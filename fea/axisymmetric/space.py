@@ -59,8 +59,8 @@ class Space:
         return np.asarray(self.basis.global_coordinates())[0]
 
     def on(self, boundary: str) -> np.ndarray:
-        """Sorted numbers on a named boundary, its ends included."""
-        return self.numbers[boundary]
+        """Sorted numbers on a named boundary, its ends included; none where the part has no such boundary."""
+        return self.numbers.get(boundary, np.empty(0, int))
 
     def values(self, field: np.ndarray) -> np.ndarray:
         """A field (count,) at the quadrature points (m, q), where no gradient is asked for."""

@@ -1,6 +1,6 @@
 """The text of docs/catalogue.md. To write it anew:
 
-python3 tests/pipeline/diagnosis_catalogue/catalogue_page.py
+python3 tests/helpers/catalogue_page.py
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def page(finding: CatalogueFinding) -> str:
     return f"""\
 # What a straight line gets wrong about a catalogue's K1, K2, K3
 
-Written by `python3 tests/pipeline/diagnosis_catalogue/catalogue_page.py`; a test compares it with what
+Written by `python3 tests/helpers/catalogue_page.py`; a test compares it with what
 the program finds. Data and sources: `examples/catalogue/SOURCES.md`. Catalogue figures are nominal
 averages, not one gear's measurement.
 

@@ -58,8 +58,9 @@ def answers(
         for kind in KINDS:
             for _ in range(each * (3 if kind == "clean" else 1)):
                 h = hidden(name, seed, kind, rng)
-                _, decision = weighed(bench, data_of(fe, h.specimens), h.specimens, made.design)
-                yield Answer(kind, h.cause, h.size, decision.verdict, decision.found)
+                _, explained = weighed(bench, data_of(fe, h.specimens), h.specimens, made.design)
+                found = explained.decision
+                yield Answer(kind, h.cause, h.size, found.verdict, found.causes)
 
 
 def data_of(fe, specimens: Specimens) -> SpecimenData:
