@@ -29,6 +29,10 @@ PICTURES = {
     "backlash_budget", "torque_angle",
 }  # fmt: skip
 DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
+MARKS = {
+    "keyed-shaft": pytest.mark.cad,  # its keyway is cut by the CAD kernel
+    "hat-25": pytest.mark.long,  # two minutes, twelve holes on a free rim
+}
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -69,8 +73,7 @@ def test_readme_names_every_command() -> None:
 
 @pytest.mark.parametrize(
     "path",
-    # a keyway is cut by the CAD kernel; the others are meshed from their meridian
-    [pytest.param(p, marks=pytest.mark.cad) if p.stem == "keyed-shaft" else p for p in DESIGNS],
+    [pytest.param(p, marks=MARKS.get(p.stem, ())) for p in DESIGNS],
     ids=lambda p: p.stem,
 )
 def test_example_runs(path: Path, tmp_path: Path) -> None:
