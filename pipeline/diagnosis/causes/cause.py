@@ -134,6 +134,6 @@ class Cause(ABC):
             total += self.columns(e.shape, history) @ np.array(e.amplitudes)
         return total
 
-    def felt(self, elements: Sequence[Element], history: History) -> History:
-        """The history that the gear felt, where the cause is in the reading of it."""
+    def corrected(self, elements: Sequence[Element], history: History) -> History:
+        """The true history, where the cause is an error of the reading."""
         return history

@@ -35,5 +35,5 @@ class TorqueOffset(Cause):
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)
 
-    def felt(self, elements: Sequence[Element], history: History) -> History:
+    def corrected(self, elements: Sequence[Element], history: History) -> History:
         return history.shifted(sum(e.amplitudes[0] for e in elements))

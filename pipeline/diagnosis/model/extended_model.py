@@ -19,7 +19,7 @@ Channel = Sequence[float] | np.ndarray
 
 @dataclass(frozen=True)
 class ExtendedModel:
-    """θ = θ0 + T·compliance + sign(T)·gap/2 + what each cause adds; T is the torque that the gear felt.
+    """θ = θ0 + T·compliance + sign(T)·gap/2 + what each cause adds; T is the true torque.
 
     Attributes
     ----------
@@ -80,21 +80,21 @@ class ExtendedModel:
         ------
         ValueError : the history lacks a channel that a cause needs.
         """
-        felt = self.felt(history)
-        angle = felt.torque_Nm * self.compliance + felt.sign * self.gap_arcsec / 2
+        true = self.true_history(history)
+        angle = true.torque_Nm * self.compliance + true.sign * self.gap_arcsec / 2
         for cause_id, elements in self.elements.items():
-            angle += known_causes()[cause_id].angle_arcsec(elements, felt)
+            angle += known_causes()[cause_id].angle_arcsec(elements, true)
         for code, name in enumerate(units):
-            rows = felt.unit == code
+            rows = true.unit == code
             compliance, gap = self.own.get(name, (0.0, 0.0))
             angle[rows] += self.zeros_arcsec.get(name, 0.0)
-            angle[rows] += compliance * felt.torque_Nm[rows] + gap * felt.sign[rows] / 2
+            angle[rows] += compliance * true.torque_Nm[rows] + gap * true.sign[rows] / 2
         return angle
 
-    def felt(self, history: History) -> History:
-        """The history that the gear felt."""
+    def true_history(self, history: History) -> History:
+        """The true history: the reading less what the causes find wrong in it."""
         for cause_id, elements in self.elements.items():
-            history = known_causes()[cause_id].felt(elements, history)
+            history = known_causes()[cause_id].corrected(elements, history)
         return history
 
 

@@ -247,10 +247,10 @@ def _sensitivities(
                 # least squares of least norm: dimensions that do not vary get no weight
                 values[rows] = plane @ np.linalg.lstsq(plane[at], values[solved], rcond=1e-6)[0]
         s = Sensitivity(key, part, nominal, tolerance, slope, curvature)
-        felt = max(
+        change = max(
             np.abs(s.log_change(5 * tolerance)).max(), np.abs(s.log_change(-tolerance)).max()
         )
-        if keys is not None or felt > FEELS:
+        if keys is not None or change > FEELS:
             found.append(s)
     return found
 

@@ -63,7 +63,7 @@ class SweepPictureData:
 
     @property
     def history(self) -> History:
-        """As the gear felt it: a shifted torque reading is put right."""
+        """The true history: a shifted torque reading is corrected."""
         return self.explained.prepared.rig.history
 
     @property

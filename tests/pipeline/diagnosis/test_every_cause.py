@@ -225,5 +225,5 @@ def test_torque_offset_is_the_reading_s() -> None:
     offset = known_causes()["torque_offset"]
     elements = [Element({}, (0.05,))]
     assert offset.magnitude(elements, RIG) == pytest.approx(0.05)
-    felt = offset.felt(elements, RIG.history)
-    np.testing.assert_allclose(felt.torque_Nm, RIG.history.torque_Nm - 0.05)
+    true = offset.corrected(elements, RIG.history)
+    np.testing.assert_allclose(true.torque_Nm, RIG.history.torque_Nm - 0.05)
