@@ -108,14 +108,14 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
     torque, doubt = design.load.torque_Nm, design.uncertainty
     shaft = windup(torque, K_e_Nm_per_rad)
     flexspline = windup(torque, K_b_Nm_per_rad)
-    flank = _gap(design, design.gear.flank_clearance_um * MM_PER_UM)
-    play = _gap(design, play_clearance(design))
+    flank = clearance_angle(design, design.gear.flank_clearance_um * MM_PER_UM)
+    play = clearance_angle(design, play_clearance(design))
     total = shaft + flexspline + flank + play
     play_std, beyond = play_spread(design.gear, design.bearing, doubt.radial_clearance_um)
     every = {
         "youngs_modulus": (shaft + flexspline) * doubt.youngs_modulus_pct / 100,
-        "flank_clearance": _gap(design, doubt.flank_clearance_um * MM_PER_UM),
-        "radial_clearance": _gap(design, play_std),
+        "flank_clearance": clearance_angle(design, doubt.flank_clearance_um * MM_PER_UM),
+        "radial_clearance": clearance_angle(design, play_std),
     }
     std = {source: every[source] for source in doubt.stated}
     other = _other_play_clearance(design)
@@ -128,18 +128,20 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
         std_arcsec=hypot(*std.values()) * ARCSEC_PER_RAD if std else None,
         std_by_source_arcsec={k: v * ARCSEC_PER_RAD for k, v in std.items()},
         play_beyond_limit=beyond,
-        model_form_arcsec=None if other is None else (_gap(design, other) - play) * ARCSEC_PER_RAD,
+        model_form_arcsec=None
+        if other is None
+        else (clearance_angle(design, other) - play) * ARCSEC_PER_RAD,
     )
 
 
-def play_clearance(design: Design, model: str | None = None) -> float:
-    """Normal clearance j′ [mm] of the design's bearing play, by its model or by the one named.
+def play_clearance(design: Design, model: str | None = None, play_um: float | None = None) -> float:
+    """Normal clearance j′ [mm] of bearing play: the design's or `play_um`, by its model or by the one named.
 
     Raises
     ------
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    play = design.bearing.radial_clearance_um * MM_PER_UM
+    play = (design.bearing.radial_clearance_um if play_um is None else play_um) * MM_PER_UM
     alpha = radians(design.gear.pressure_angle_deg)
     if (model or design.bearing.bearing_play_model) == "small_displacement":
         return small_displacement_clearance(play, alpha)
@@ -153,7 +155,9 @@ def gap_rad(design: Design) -> float:
     ------
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    return _gap(design, design.gear.flank_clearance_um * MM_PER_UM + play_clearance(design))
+    return clearance_angle(
+        design, design.gear.flank_clearance_um * MM_PER_UM + play_clearance(design)
+    )
 
 
 def angle_rad(
@@ -178,7 +182,8 @@ def angle_rad(
     return torque * compliance + np.sign(torque) * gap_rad(design) / 2
 
 
-def _gap(design: Design, normal_clearance: float) -> float:
+def clearance_angle(design: Design, normal_clearance: float) -> float:
+    """Output angle [rad] that a normal flank clearance [mm] leaves free in a design."""
     g = design.gear
     return gap_angle(
         normal_clearance, g.module_mm, g.teeth_flexspline, radians(g.pressure_angle_deg)

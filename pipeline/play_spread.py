@@ -1,18 +1,43 @@
-"""How far the clearance opened by bearing play may be off, up to the end of the model."""
+"""Bearing play as a random number, and how far the clearance that it opens may be off.
+
+Play is normal about the stated clearance, and cut off at c_max, where the involute model ends.
+"""
 
 from __future__ import annotations
 
-from math import erfc, radians, sin, sqrt
+from math import erfc, inf, radians, sin, sqrt
 
 import numpy as np
 
 from flexspline.geometry.design import Bearing, Gear
-from flexspline.pipeline.bearing_play import involute_clearance, play_limit
+from flexspline.pipeline.bearing_play import involute_clearance
 
 REACH = 8.0
 """Standard deviations on each side that are integrated: beyond lies 1e-15 of the probability."""
 NODES = 48
 """Gauss-Legendre points: 1e-8 of the result, also against the root at c_max."""
+
+
+def play_distribution(
+    gear: Gear, bearing: Bearing, play_std_um: float, reach: float = REACH, nodes: int = NODES
+) -> tuple[np.ndarray, np.ndarray]:
+    """The play's truncated normal as a quadrature: steps (k,) from c in standard deviations, weights (k,).
+
+    Weights sum to 1; no step leads beyond c_max. The small-displacement model has no end, so its
+    normal is whole. `play_std_um` above 0; `reach` standard deviations on each side are covered.
+    """
+    top = min(reach, _steps_to_end(gear, bearing, play_std_um))
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    steps = -reach + (top + reach) * (x + 1) / 2
+    density = w * np.exp(-(steps**2) / 2)
+    return steps, density / density.sum()
+
+
+def _steps_to_end(gear: Gear, bearing: Bearing, play_std_um: float) -> float:
+    """Standard deviations from c to c_max; inf for the small-displacement model."""
+    if bearing.bearing_play_model == "small_displacement":
+        return inf
+    return (gear.bearing_play_limit_um - bearing.radial_clearance_um) / play_std_um
 
 
 def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float, float]:
@@ -30,13 +55,9 @@ def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float
         return 0.0, 0.0
     if bearing.bearing_play_model == "small_displacement":
         return s * sin(alpha), 0.0
-    a = gear.centre_distance_mm
-    play, limit = bearing.radial_clearance_um * 1e-3, play_limit(a, alpha)
-    top = min(REACH, (limit - play) / s)
-    x, w = np.polynomial.legendre.leggauss(NODES)
-    t = -REACH + (top + REACH) * (x + 1) / 2
-    density = w * np.exp(-t * t / 2)
+    a, play = gear.centre_distance_mm, bearing.radial_clearance_um * 1e-3
+    steps, weight = play_distribution(gear, bearing, play_std_um)
     here = involute_clearance(play, a, alpha)
-    off = np.array([involute_clearance(play + s * ti, a, alpha) - here for ti in t])
-    spread = sqrt(float(density @ off**2 / density.sum()))
-    return spread, 0.5 * erfc((limit - play) / s / sqrt(2))
+    off = np.array([involute_clearance(play + s * t, a, alpha) - here for t in steps])
+    beyond = 0.5 * erfc(_steps_to_end(gear, bearing, play_std_um) / sqrt(2))
+    return sqrt(float(weight @ off**2)), beyond
