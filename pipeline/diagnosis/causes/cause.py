@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 
 Shape = Mapping[str, float]
 """Shape parameters by name, each with its unit in the name."""
+Effect = Literal["angle", "gap", "compliance"]
+"""What of the torque-angle curve a cause changes."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,10 @@ class Cause(ABC):
     vary: ClassVar[str] = "torque_Nm"
     """What to vary to see it, where the rivals' predictions do not decide: a channel, or torque_rate,
     torque_amplitude, hold."""
+    shows_over: ClassVar[str] = "torque_Nm"
+    """The channel over which a chart shows it best."""
+    shows_as: ClassVar[Effect] = "angle"
+    """What that chart draws: the added angle, gap or compliance."""
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes`."""
     reveals: ClassVar[str]

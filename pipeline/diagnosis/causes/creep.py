@@ -35,6 +35,7 @@ class Creep(Cause):
     shape_doubt = 0.05
     vary = "hold"
     needs_time = True
+    shows_over = "time_s"
     reveals = "a hold of ten minutes or more at the largest torque, and one at zero after it"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -24,6 +24,7 @@ class KinematicError(Cause):
     exact = True
     shape_doubt = 0.005
     vary = "input_angle_deg"
+    shows_over = "input_angle_deg"
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def shapes(self, rig: Rig) -> list[Shape]:

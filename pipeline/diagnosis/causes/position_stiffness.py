@@ -24,6 +24,8 @@ class PositionStiffness(Cause):
     exact = True
     shape_doubt = 0.005
     vary = "input_angle_deg"
+    shows_over = "input_angle_deg"
+    shows_as = "compliance"
     reveals = "the same sweep at many wave generator angles"
 
     def shapes(self, rig: Rig) -> list[Shape]:

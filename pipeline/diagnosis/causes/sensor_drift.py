@@ -28,6 +28,7 @@ class SensorDrift(Cause):
     shape_doubt = 0.02
     vary = "time_s"
     needs_time = True
+    shows_over = "time_s"
     reveals = "the same torque held, or returned to, over hours with the wave generator untouched"
 
     def shapes(self, rig: Rig) -> list[Shape]:

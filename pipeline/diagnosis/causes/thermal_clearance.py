@@ -23,6 +23,8 @@ class ThermalClearance(Cause):
     unit = "arcsec/K"
     tunable = ("lag_s",)
     vary = "temperature_C"
+    shows_over = "temperature_C"
+    shows_as = "gap"
     reveals = "the same sweep at another temperature, the gear soaked, in the same cycle"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -27,6 +27,8 @@ class Wear(Cause):
     tunable = ("exponent", "run_in_cycles")
     shape_doubt = 0.03
     vary = "cycle"
+    shows_over = "cycle"
+    shows_as = "gap"
     reveals = "many more cycles at constant temperature"
 
     def shapes(self, rig: Rig) -> list[Shape]:

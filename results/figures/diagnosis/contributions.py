@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Effect
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
     capital,
@@ -25,17 +28,7 @@ from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-VIEWS = {
-    "thermal_clearance": ("temperature_C", "gap"),
-    "wear": ("cycle", "gap"),
-    "sensor_drift": ("time_s", "angle"),
-    "creep": ("time_s", "angle"),
-    "kinematic_error": ("input_angle_deg", "angle"),
-    "position_stiffness": ("input_angle_deg", "compliance"),
-    "?unit": ("torque_Nm", "angle"),
-}
-"""Channel in which a cause shows best, and as what; all others as angle over torque."""
-YLABELS = {
+YLABELS: Mapping[Effect, str] = {
     "angle": "added angle in arcsec",
     "gap": "added gap in arcsec",
     "compliance": "added arcsec per N·m",
@@ -58,7 +51,7 @@ class Part:
     title: str
     lines: tuple[str, ...]
     channel: Channel
-    view: str = "angle"
+    view: Effect = "angle"
 
 
 def parts(shown: SweepPictureData) -> list[Part]:
@@ -77,15 +70,22 @@ def parts(shown: SweepPictureData) -> list[Part]:
                 owner,
                 f"Without a name: structure in {words}",
                 lines,
-                shown.channel(VIEWS.get(owner, (key, ""))[0]),
+                shown.channel(_channel_of(owner)),
             )
         )
     return found
 
 
+def _channel_of(owner: str) -> str:
+    """Where a minor cause shows best; structure in a channel shows over it, that of units over torque."""
+    if owner in known_causes():
+        return known_causes()[owner].shows_over
+    return "torque_Nm" if owner == "?unit" else owner.removeprefix("?")
+
+
 def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
-    key, view = VIEWS.get(cause.id, ("torque_Nm", "angle"))
-    channel = shown.channel(key)
+    known = known_causes()[cause.id]
+    channel = shown.channel(known.shows_over)
     lines = [
         magnitude_words(cause),
         f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
@@ -99,7 +99,7 @@ def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
         _short(cause_title(cause)),
         tuple(lines),
         channel,
-        view if channel.key == key else "angle",
+        known.shows_as if channel.key == known.shows_over else "angle",
     )
 
 
