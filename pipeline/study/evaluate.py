@@ -141,7 +141,8 @@ def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
 
 
 def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:
-    """A stiffness with its bounds; or a peak, and 1 where it lies at the excluded border, else 0."""
+    """A stiffness, its bounds, and 1 where these are theorems, else 0; or a peak, and 1 where it lies at
+    the excluded border, else 0."""
     if isinstance(found, StressPeak):
         peak = settled_peak(found)
         return {
@@ -153,4 +154,5 @@ def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:
         f"{name}_Nm_per_rad": found.K_Nm_per_rad,
         f"{bounds}[0]": found.lower_Nm_per_rad,
         f"{bounds}[1]": found.upper_Nm_per_rad,
+        f"{name}_bounds_guaranteed": float(found.guaranteed),
     }

@@ -58,6 +58,7 @@ def with_holes(found: Mapping[str, float], design: Design, holes: Holes) -> dict
         out[f"{name}_Nm_per_rad"] *= factor.value
         out[f"{bounds}[0]"] *= factor.value - factor.doubt
         out[f"{bounds}[1]"] *= factor.value + factor.doubt
+        out[f"{name}_bounds_guaranteed"] = 0.0
         out[f"{name}_holes_factor"] = factor.value
     return out
 

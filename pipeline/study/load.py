@@ -15,7 +15,7 @@ from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.keys import STEP, value_at
 from flexspline.geometry.load import load_design, read_toml
 from flexspline.geometry.schema import Location, allowed, node_at
-from flexspline.pipeline.study.figures import FIGURES, not_a_figure
+from flexspline.pipeline.study.figures import FIGURES, TOTAL, USUAL_FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import KEYS, WORDS, Span, Spread, StudyFile, pattern
 
 SPREAD = "backlash_arcsec.std"
@@ -41,6 +41,22 @@ class Study:
     def whole(self) -> frozenset[str]:
         """Keys that hold whole numbers."""
         return frozenset(k for k in self.file.vary if is_whole(self.design, k))
+
+    @property
+    def asked(self) -> frozenset[str]:
+        """The figures that a design must have: objectives and constraints, else the usual ones."""
+        if self.file.run.method == "tolerance":
+            return frozenset(self.outputs)
+        return frozenset({**self.file.objective, **self.file.constraint} or USUAL_FIGURES)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The figures whose scatter a tolerance study tells: the objectives, or the backlash."""
+        return tuple(self.file.objective) or (TOTAL,)
+
+    def is_answered(self, figures: Mapping[str, float]) -> bool:
+        """Whether a design has every figure asked for; what else could not be solved costs only itself."""
+        return self.asked <= figures.keys()
 
 
 def load_study(path: Path) -> Study:

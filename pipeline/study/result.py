@@ -8,15 +8,12 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
+from flexspline.pipeline.study.figures import USUAL_FIGURES
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import linked
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Verified
-
-USUAL_FIGURES = (
-    "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -60,12 +57,17 @@ class StudyResult:
 
     @property
     def built(self) -> tuple[Row, ...]:
-        """Rows with figures."""
-        return tuple(r for r in self.rows if not r.outcome.reason)
+        """Rows with every figure that the study asks for (`Study.is_answered`)."""
+        return tuple(r for r in self.rows if self.study.is_answered(r.outcome.figures))
+
+    @property
+    def incomplete(self) -> tuple[Row, ...]:
+        """Of those built, the rows that lack a figure which nothing asks for; `reason` says why."""
+        return tuple(r for r in self.built if r.outcome.reason)
 
     @property
     def feasible(self) -> tuple[Row, ...]:
-        """Rows with figures that keep to every constraint."""
+        """Of those built, the rows that keep to every constraint."""
         limits = self.study.file.constraint
         return tuple(
             r for r in self.built

@@ -22,7 +22,7 @@ from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
 from flexspline.pipeline.study.store import TrialStore, TrialStoreError
-from flexspline.pipeline.study.tolerance import Scattered, outputs_of, scattered
+from flexspline.pipeline.study.tolerance import Scattered, scattered
 from flexspline.pipeline.study.verify import verify
 
 HOLES_NOTE = "holes"
@@ -109,7 +109,7 @@ def _scattered(result: StudyResult, source: Source) -> StudyResult:
     """With what a tolerance study tells; too many designs that fail cost that, not the rows."""
     if not isinstance(source, Scattered):
         return result
-    seed, keys = result.study.file.run.seed, outputs_of(result.study)
+    seed, keys = result.study.file.run.seed, result.study.outputs
     try:
         found = tuple(scatter_of(k, source.inputs, result.rows, seed) for k in keys)
     except ScatterError as fault:

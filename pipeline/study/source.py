@@ -50,7 +50,7 @@ class _Asked:
         return Task(self._tables, linked(self.study, values), self.solves, dict(self.holes))
 
     def objectives(self, outcome: Outcome) -> list[float] | None:
-        if outcome.reason:
+        if not self.study.is_answered(outcome.figures):
             return None
         return [outcome.figures[k] for k in self.study.file.objective] or [0.0]
 

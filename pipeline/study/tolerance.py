@@ -33,7 +33,6 @@ REACH = 4.0
 """A normal input is cut off so many standard deviations away: 6e-5 of it is beyond."""
 LEAST_BASE = 8
 """Rows of each base sample; a power of 2, as the Sobol sequence's balance needs."""
-TOTAL = "backlash_arcsec.total"
 
 
 @dataclass(frozen=True)
@@ -156,11 +155,6 @@ def saltelli(inputs: tuple[Input, ...], base: int, seed: int) -> np.ndarray:
     blocks[:, -1] = both[:, k:]
     unit = blocks.reshape(-1, k)
     return np.column_stack([x.at(u) for x, u in zip(inputs, unit.T, strict=True)])
-
-
-def outputs_of(study: Study) -> tuple[str, ...]:
-    """The figures whose scatter is asked for: the objectives, or the backlash."""
-    return tuple(study.file.objective) or (TOTAL,)
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from flexspline.results.peaks import BORDER
-from flexspline.results.quantities import BY_KEY, Quantity
+from flexspline.results.quantities import BY_KEY, Quantity, bounds_kind
 
+AT_BORDER, GUARANTEED = "_at_excluded_border", "_bounds_guaranteed"
+"""Ends of the keys of a row's marks: numbers in the store, which holds nothing else."""
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
 _UNITS = {"mm": "mm", "um": "µm", "GPa": "GPa", "MPa": "MPa", "Nm": "N·m", "deg": "deg", "pct": "%"}
 
@@ -37,7 +40,20 @@ def valued(key: str, figures: Mapping[str, float]) -> str:
 
 def at_border(key: str, figures: Mapping[str, float]) -> bool:
     """Whether a row's figure is a peak at the border of what is left out."""
-    return bool(figures.get(f"{key.removesuffix('_mises_MPa')}_at_excluded_border", 0.0))
+    return bool(figures.get(f"{key.removesuffix('_mises_MPa')}{AT_BORDER}", 0.0))
+
+
+def published(figures: Mapping[str, float]) -> dict[str, Any]:
+    """A row's figures as result.json has them: what bounds are in a word, marks as true or false."""
+    found: dict[str, Any] = {}
+    for key, value in figures.items():
+        if key.endswith(GUARANTEED):
+            found[f"{key.removesuffix(GUARANTEED)}_bounds_kind"] = bounds_kind(bool(value))
+        elif key.endswith(AT_BORDER):
+            found[key] = bool(value)
+        else:
+            found[key] = value
+    return found
 
 
 def _design_key(key: str) -> Quantity:

@@ -43,7 +43,7 @@ def line(study: Study, progress: Progress) -> str:
     done, size = len(progress.rows), progress.size
     rate = progress.fresh / progress.seconds if progress.seconds > 0 else 0.0
     parts = [f"{done} of {size} designs", f"{rate:.2f} per s"]
-    failed = sum(bool(r.outcome.reason) for r in progress.rows)
+    failed = sum(not study.is_answered(r.outcome.figures) for r in progress.rows)
     if failed:
         parts.append(f"{failed} cannot be built or solved")
     best = StudyResult(study, tuple(progress.rows)).pareto if study.file.objective else ()

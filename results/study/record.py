@@ -9,15 +9,15 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Verified
-from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.why import disagreement, misses, signed
+from flexspline.results.study.why import disagreement, incomplete, misses, signed
 
 SHOWN = 5
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
-    """How many designs, how many failed, the best."""
+    """How many designs, how many failed or lack a figure that nothing asks for, the best."""
     file = result.study.file
     best = result.pareto if len(result.pareto) >= SHOWN else result.best(SHOWN)
     return {
@@ -27,6 +27,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "method": file.run.method,
         "evaluations": len(result.rows),
         "failed": len(result.rows) - len(result.built),
+        "incomplete": len(result.incomplete),
         "feasible": len(result.feasible),
         "best": [_row(r) for r in best],
         **({"verified": [_verified(v) for v in result.verified]} if result.verified else {}),
@@ -99,7 +100,7 @@ def _row(row: Row) -> dict[str, Any]:
     return {
         "design": row.slot,
         "values": dict(row.values),
-        "figures": dict(row.outcome.figures),
+        "figures": published(row.outcome.figures),
     }
 
 
@@ -110,6 +111,8 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
         f"{len(result.feasible)} keep to the constraints"
     ]
+    if result.incomplete:
+        lines.append(f"  {incomplete(result)}")
     for row in () if result.about_scatter else result.best(SHOWN):
         values = ", ".join(
             f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items()

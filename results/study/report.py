@@ -28,7 +28,14 @@ from flexspline.results.study.best_stress import PICTURE, VIEW, BestStress
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
-from flexspline.results.study.why import disagreement, failures, influences, limits, misses
+from flexspline.results.study.why import (
+    disagreement,
+    failures,
+    incomplete,
+    influences,
+    limits,
+    misses,
+)
 
 COLUMNS = 5
 """Best designs side by side."""
@@ -130,7 +137,7 @@ def _why(result: StudyResult) -> Iterable[Block]:
 
 def _failures(result: StudyResult) -> Iterable[Block]:
     if failed := tuple(failures(result)):
-        yield Heading("Designs without figures")
+        yield Heading("What could not be built or solved")
         yield Bullets(failed)
 
 
@@ -138,6 +145,8 @@ def _counts(result: StudyResult) -> str:
     said = f"{len(result.built)} of {len(result.rows)} designs were built and solved"
     if result.study.file.constraint:
         said += f"; {len(result.feasible)} of them keep to every constraint"
+    if result.incomplete:
+        said += f"; {incomplete(result)}"
     return said + "."
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
+from flexspline.results.study.labels import published
 
 Table = dict[str, list[Any]]
 
@@ -20,11 +21,12 @@ def table_of(result: StudyResult) -> Table:
     """
     rows = result.rows
     keys = list(dict.fromkeys(k for r in rows for k in r.values))
-    figures = list(dict.fromkeys(k for r in rows for k in r.outcome.figures))
+    said = [published(r.outcome.figures) for r in rows]
+    figures = list(dict.fromkeys(k for row in said for k in row))
     feasible = {r.slot for r in result.feasible}
     table: Table = {"design": [r.slot for r in rows]}
     table |= {k: [r.values[k] for r in rows] for k in keys}
-    table |= {k: [r.outcome.figures.get(k) for r in rows] for k in figures}
+    table |= {k: [row.get(k) for row in said] for k in figures}
     table["feasible"] = [r.slot in feasible for r in rows]
     table["reason"] = [r.outcome.reason for r in rows]
     table["wall_s"] = [round(r.outcome.seconds, 4) for r in rows]

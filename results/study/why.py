@@ -104,8 +104,15 @@ def unfollowed(study: Study) -> str:
     return ", ".join(of_holes([*file.vary, *file.link, *file.tolerance]))
 
 
+def incomplete(result: StudyResult) -> str:
+    """How many designs lack a figure that neither objective nor constraint asks for."""
+    count = len(result.incomplete)
+    lack = "1 design lacks" if count == 1 else f"{count} designs lack"
+    return f"{lack} a figure that the study does not ask for (column reason)"
+
+
 def failures(result: StudyResult) -> list[str]:
-    """How many designs have no figures, and the commonest reasons."""
+    """The commonest reasons for figures that are missing, and in how many designs."""
     reasons = Counter(_stem(r.outcome.reason) for r in result.rows if r.outcome.reason)
     return [f"{count} ×: {reason}" for reason, count in reasons.most_common(5)]
 

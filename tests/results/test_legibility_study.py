@@ -13,7 +13,8 @@ from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import scatter_of
 from flexspline.pipeline.study.store import Row
-from flexspline.pipeline.study.tolerance import TOTAL, Input, saltelli
+from flexspline.pipeline.study.figures import TOTAL
+from flexspline.pipeline.study.tolerance import Input, saltelli
 from flexspline.results.study.best_figure import best_figure
 from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
 from flexspline.results.study.tolerance_figure import write_scatter
