@@ -8,7 +8,8 @@ from typing import Any
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.material import Material
 from flexspline.pipeline.stress_limits import share_of_limit
-from flexspline.results.quantities import grouped, quantity
+from flexspline.results.numbers import grouped
+from flexspline.results.quantities import quantity
 
 BORDER = "at excluded border"
 """The mark, where there is room for no more."""

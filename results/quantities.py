@@ -6,11 +6,9 @@ JSON, CSV, figures and the report all read it; no other file spells a unit or a 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, log10
 from typing import Literal
 
-THIN = "\N{NARROW NO-BREAK SPACE}"
-"""Between groups of three digits, and between a number and its unit."""
+from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
 
 Kind = Literal["number", "count", "bounds", "text"]
 
@@ -57,7 +55,7 @@ class Quantity:
             return grouped(value, 0)
         if self.decimals is not None:
             return grouped(value, self.decimals)
-        return grouped(value, _decimals(value, self.digits))
+        return grouped(value, decimals_for(value, self.digits))
 
     def short(self, value: float, letters: int = 9) -> str:
         """As `text`; where that takes more letters, three digits and a power of ten."""
@@ -70,7 +68,7 @@ class Quantity:
 
     def range_text(self, low: float, high: float) -> str:
         """Both ends with the same decimals, enough of them that unequal ends look unequal."""
-        places = _decimals(high, self.digits) if self.decimals is None else self.decimals
+        places = decimals_for(high, self.digits) if self.decimals is None else self.decimals
         while low != high and grouped(low, places) == grouped(high, places) and places < 6:
             places += 1
         return f"{grouped(low, places)} to {grouped(high, places)}"
@@ -81,122 +79,52 @@ def bounds_kind(guaranteed: bool) -> str:
     return "guaranteed" if guaranteed else "estimated"
 
 
-def grouped(value: float, decimals: int) -> str:
-    """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
-    text = f"{abs(value):,.{decimals}f}"
-    whole, point, rest = text.partition(".")
-    whole = whole.replace(",", "") if abs(value) < 9999.5 else whole.replace(",", THIN)
-    negative = value < 0 and float(f"{abs(value):.{decimals}f}") > 0
-    return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
-
-
-def with_power(value: float, digits: int = 1) -> str:
-    """So many significant digits and a power of ten: ``3·10⁻⁶``; ``0`` is 0."""
-    if not value:
-        return "0"
-    digit, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{digit}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "\N{MINUS SIGN}")
-
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def _decimals(value: float, digits: int) -> int:
-    if value == 0:
-        return 0
-    return max(0, digits - 1 - floor(log10(abs(value))))
-
-
 _STIFFNESS = "N·m/rad"
+
+
+def _stiffness(
+    key: str, digits: int, symbol: str, name: str, bounded: str
+) -> tuple[Quantity, Quantity]:
+    """A stiffness and its bounds."""
+    value, bounds = f"{key}_Nm_per_rad", f"{key}_bounds_Nm_per_rad"
+    return (
+        Quantity(value, value, _STIFFNESS, name, symbol, digits=digits),
+        Quantity(bounds, bounds, _STIFFNESS, f"Bounds of the {bounded}", symbol, "bounds", digits),
+    )
+
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("design", "design", "", "Design", kind="text"),
     Quantity("version", "version", "", "Program version", kind="text"),
-    Quantity(
-        "K_b_Nm_per_rad",
-        "K_b_Nm_per_rad",
-        _STIFFNESS,
+    *_stiffness(
+        "K_b",
+        5,
+        "K_b",
         "Flexspline stiffness, even torque on the ring (uniform)",
-        "K_b",
-        digits=5,
+        "flexspline stiffness (uniform)",
     ),
-    Quantity(
-        "K_b_bounds_Nm_per_rad",
-        "K_b_bounds_Nm_per_rad",
-        _STIFFNESS,
-        "Bounds of the flexspline stiffness (uniform)",
-        "K_b",
-        kind="bounds",
-        digits=5,
-    ),
-    Quantity(
-        "K_b_lobes_Nm_per_rad",
-        "K_b_lobes_Nm_per_rad",
-        _STIFFNESS,
+    *_stiffness(
+        "K_b_lobes",
+        4,
+        "K_b,lobes",
         "Flexspline stiffness, torque at the two lobes (lobes)",
-        "K_b,lobes",
-        digits=4,
+        "flexspline stiffness (lobes)",
     ),
-    Quantity(
-        "K_b_lobes_bounds_Nm_per_rad",
-        "K_b_lobes_bounds_Nm_per_rad",
-        _STIFFNESS,
-        "Bounds of the flexspline stiffness (lobes)",
-        "K_b,lobes",
-        kind="bounds",
-        digits=4,
-    ),
-    Quantity(
-        "K_b_lobes_contact_Nm_per_rad",
-        "K_b_lobes_contact_Nm_per_rad",
-        _STIFFNESS,
+    *_stiffness(
+        "K_b_lobes_contact",
+        4,
+        "K_b,contact",
         "Flexspline stiffness, torque at the two lobes, rim may lift off",
-        "K_b,contact",
-        digits=4,
+        "flexspline stiffness, lobes, rim may lift off",
     ),
-    Quantity(
-        "K_b_lobes_contact_bounds_Nm_per_rad",
-        "K_b_lobes_contact_bounds_Nm_per_rad",
-        _STIFFNESS,
-        "Bounds of the flexspline stiffness, lobes, rim may lift off",
-        "K_b,contact",
-        kind="bounds",
-        digits=4,
-    ),
-    Quantity(
-        "K_b_lobes_unsupported_Nm_per_rad",
-        "K_b_lobes_unsupported_Nm_per_rad",
-        _STIFFNESS,
+    *_stiffness(
+        "K_b_lobes_unsupported",
+        4,
+        "K_b,free",
         "Flexspline stiffness, torque at the two lobes, rim unsupported",
-        "K_b,free",
-        digits=4,
+        "flexspline stiffness, lobes, rim unsupported",
     ),
-    Quantity(
-        "K_b_lobes_unsupported_bounds_Nm_per_rad",
-        "K_b_lobes_unsupported_bounds_Nm_per_rad",
-        _STIFFNESS,
-        "Bounds of the flexspline stiffness, lobes, rim unsupported",
-        "K_b,free",
-        kind="bounds",
-        digits=4,
-    ),
-    Quantity(
-        "K_e_Nm_per_rad",
-        "K_e_Nm_per_rad",
-        _STIFFNESS,
-        "Output shaft stiffness",
-        "K_e",
-        digits=5,
-    ),
-    Quantity(
-        "K_e_bounds_Nm_per_rad",
-        "K_e_bounds_Nm_per_rad",
-        _STIFFNESS,
-        "Bounds of the output shaft stiffness",
-        "K_e",
-        kind="bounds",
-        digits=5,
-    ),
+    *_stiffness("K_e", 5, "K_e", "Output shaft stiffness", "output shaft stiffness"),
     Quantity(
         "K_series_Nm_per_rad",
         "K_series_Nm_per_rad",

@@ -6,7 +6,7 @@ from math import floor, log10
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
-from flexspline.results.quantities import grouped
+from flexspline.results.numbers import grouped
 
 CHANNELS = {
     "torque_Nm": "torque",

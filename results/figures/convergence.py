@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexspline.fea.types import Stiffness
-from flexspline.results.quantities import grouped, quantity
+from flexspline.results.numbers import grouped
+from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:

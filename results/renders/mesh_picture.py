@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.fea.types import TetMesh
-from flexspline.results.quantities import grouped
+from flexspline.results.numbers import grouped
 from flexspline.results.renders.scene import Layer, shoot
 from flexspline.results.renders.sheet import LARGE_INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.shown import MATT, below_view, cut_view, sector_words, wires

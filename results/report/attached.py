@@ -6,7 +6,7 @@ import base64
 import hashlib
 from dataclasses import dataclass
 
-from flexspline.results.quantities import grouped
+from flexspline.results.numbers import grouped
 
 TOML = "application/toml"
 SAFE = str.maketrans({c: "_" for c in '/\\:*?"<>|'})

@@ -9,7 +9,7 @@ from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimen
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.words import channel_words, figures_text
-from flexspline.results.quantities import grouped
+from flexspline.results.numbers import grouped
 
 
 def measured(diagnosis: Diagnosis) -> list[list[str]]:

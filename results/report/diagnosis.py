@@ -24,7 +24,7 @@ from flexspline.results.diagnosis.words import (
     title_of,
 )
 from flexspline.results.figures.diagnosis.draw import DiagnosisFigure
-from flexspline.results.quantities import grouped
+from flexspline.results.numbers import grouped
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.compared import compared, measured
 from flexspline.results.report.document import (

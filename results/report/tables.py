@@ -8,8 +8,9 @@ from flexspline.geometry.material import Material
 from flexspline.geometry.shapes import Cup, Hat
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
+from flexspline.results.numbers import grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
-from flexspline.results.quantities import Quantity, bounds_kind, grouped, quantity, with_power
+from flexspline.results.quantities import Quantity, bounds_kind, quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.dimensions import ratio, weights
 

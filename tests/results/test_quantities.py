@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from flexspline.geometry.load import design_from
-from flexspline.results.quantities import QUANTITIES, THIN, grouped, quantity
+from flexspline.results.numbers import THIN, grouped
+from flexspline.results.quantities import QUANTITIES, quantity
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contract.md").read_text(encoding="utf-8")
 RECORD = json.loads(re.search(r"```json\n(\{\"design\".*?)```", PAGE, re.S)[1])

@@ -7,7 +7,7 @@ from hand_made_gear import BACKLASH, content, design
 from PIL import Image
 from pypdf import PdfReader
 
-from flexspline.results.quantities import THIN
+from flexspline.results.numbers import THIN
 from flexspline.results.report.content import Pictures as Drawn
 from flexspline.results.report.document import (
     Break,

@@ -1,0 +1,35 @@
+"""How numbers are printed: groups of three, true minus sign, powers of ten."""
+
+from __future__ import annotations
+
+from math import floor, log10
+
+THIN = "\N{NARROW NO-BREAK SPACE}"
+"""Between groups of three digits, and between a number and its unit."""
+
+
+def grouped(value: float, decimals: int) -> str:
+    """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
+    text = f"{abs(value):,.{decimals}f}"
+    whole, point, rest = text.partition(".")
+    whole = whole.replace(",", "") if abs(value) < 9999.5 else whole.replace(",", THIN)
+    negative = value < 0 and float(f"{abs(value):.{decimals}f}") > 0
+    return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
+
+
+def with_power(value: float, digits: int = 1) -> str:
+    """So many significant digits and a power of ten: ``3·10⁻⁶``; ``0`` is 0."""
+    if not value:
+        return "0"
+    digit, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{digit}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "\N{MINUS SIGN}")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def decimals_for(value: float, digits: int) -> int:
+    """Decimals that show so many significant digits."""
+    if value == 0:
+        return 0
+    return max(0, digits - 1 - floor(log10(abs(value))))
