@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from flexspline.fea.axisymmetric.stress import torsion_stress
@@ -14,6 +14,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
+from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
 from flexspline.pipeline.load_cases import (
     STRESS_TOLERANCE,
@@ -22,7 +23,9 @@ from flexspline.pipeline.load_cases import (
     wave_generator_field,
 )
 from flexspline.pipeline.parts import AnalysisContext, MeshedPart, PartModel, TwistedPart
+from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
+from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.pipeline.wave_generator import sharp_edges
 
@@ -31,6 +34,13 @@ CACHED_TYPES: tuple[type, ...] = (
     TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
+
+
+def analysis_context(
+    design: Design, say: Callable[[str], None] = lambda line: None
+) -> AnalysisContext:
+    """A design with the user's cache of solved parts; `say` is told the stages and the cache's faults."""
+    return AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, say), Progress(say))
 
 
 @dataclass(frozen=True)

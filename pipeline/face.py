@@ -5,7 +5,6 @@ Results are kept in the same cache as the commands'. Nothing is printed.
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -13,23 +12,18 @@ from flexspline.fea.types import SolidField, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part import PartName
-from flexspline.pipeline.analysis import CACHED_TYPES, torque_field
+from flexspline.pipeline.analysis import analysis_context, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
-from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
 from flexspline.pipeline.load_cases import RimCase, rim_stiffness, wave_generator_field
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffness_pair import stiffness_pair
-from flexspline.pipeline.storage import cache_folder
-from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
+from flexspline.pipeline.study.run import trial_store_of, whole_study
 from flexspline.pipeline.study.sensitivity import Slope, sensitivities
 
 StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
@@ -74,7 +68,7 @@ def stiffness(
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
     if case not in ("uniform", *RIM_CASES):
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
-    model = _context(design).part(part)
+    model = analysis_context(design).part(part)
     if case == "uniform":
         return model.stiffness()
     if part == "shaft":
@@ -105,7 +99,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     >>> round(double / once, 9)
     2.0
     """
-    context = _context(design)
+    context = analysis_context(design)
     if case == "wave_generator":
         return wave_generator_field(context.part("flexspline"))
     if case not in ("flexspline_torque", "shaft_torque"):
@@ -134,7 +128,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
     True
     """
-    used = stiffness_pair(_context(design), K_b, K_e)
+    used = stiffness_pair(analysis_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
 
 
@@ -178,14 +172,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     asked = load_study(path)
     folder = Path(out) if out is not None else path.parent / f"{path.stem}.out"
     store = trial_store_of(asked, folder)
-    run = asked.file.run
-    return run_study(
-        asked,
-        store,
-        partial(worker_pool, run.workers, run.scheduler),
-        lambda progress: None,
-        holes=nominal_holes(asked, store, lambda line: None),
-    )
+    return whole_study(asked, store, lambda progress: None, lambda line: None)
 
 
 def diagnose(
@@ -218,7 +205,7 @@ def diagnose(
     True
     """
     read_measurement(Path(path))  # a bad file is refused before the long work
-    context = _context(design)
+    context = analysis_context(design)
     used = stiffness_pair(context, K_b, K_e)
     solved = context if K_b is None and K_e is None else None
     return diagnose_file(
@@ -245,9 +232,3 @@ def predict(model: Path | str, path: Path | str) -> Predicted:
     no-such-model.toml: no such file
     """
     return predict_file(read_model_file(Path(model)), Path(path))
-
-
-def _context(design: Design) -> AnalysisContext:
-    return AnalysisContext(
-        design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress()
-    )

@@ -1,4 +1,4 @@
-"""K_b and K_e of the simulation that a measurement is compared with."""
+"""K_b and K_e for the backlash: given by the user, or solved."""
 
 from __future__ import annotations
 
@@ -7,19 +7,26 @@ from dataclasses import dataclass
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.stiffnesses import Stiffnesses
 
 
 @dataclass(frozen=True)
 class StiffnessPair:
-    """K_b and K_e [N·m/rad]; `given`: both came from the user, not from FE.
+    """K_b and K_e [N·m/rad].
 
-    `error`: the solver's relative error of both in series.
+    `solved`: what FE found, None where both came from the user; `error`: the solver's relative error of
+    both in series.
     """
 
     K_b_Nm_per_rad: float
     K_e_Nm_per_rad: float
-    given: bool
+    solved: Stiffnesses | None = None
     error: float = 0.0
+
+    @property
+    def given(self) -> bool:
+        """Whether both came from the user."""
+        return self.solved is None
 
 
 def stiffness_pair(
@@ -33,7 +40,7 @@ def stiffness_pair(
     NotFoundError : a stiffness that is needed failed.
     """
     if K_b is not None and K_e is not None:
-        return StiffnessPair(K_b, K_e, True)
+        return StiffnessPair(K_b, K_e)
     rim = context.design.solver.K_b_in_sum != "K_b"
     found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []
@@ -44,4 +51,4 @@ def stiffness_pair(
         solved.append(found.K_e)
         K_e = solved[-1].K_Nm_per_rad
     doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
-    return StiffnessPair(K_b, K_e, False, doubt / (1 / K_b + 1 / K_e))
+    return StiffnessPair(K_b, K_e, found, doubt / (1 / K_b + 1 / K_e))

@@ -142,6 +142,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
     from flexspline.pipeline.backlash import backlash as total
     from flexspline.pipeline.backlash import series_stiffness
     from flexspline.pipeline.linear_limit import linear_limit
+    from flexspline.pipeline.stiffness_pair import stiffness_pair
     from flexspline.results.records import (
         backlash_record,
         heading,
@@ -150,19 +151,15 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
     )
 
     record = {**heading(job.design), "warnings": list(warnings(job.design))}
-    if kb is None or ke is None:
-        from flexspline.pipeline.analysis import stiffnesses
-
-        rim = job.design.solver.K_b_in_sum != "K_b"
-        found = stiffnesses(job.context, flexspline=kb is None, shaft=ke is None, rim=rim)
-        record |= stiffness_record(job.design, found, job.wall_s)
-        kb = kb or found.in_sum(job.design).K_Nm_per_rad
-        ke = ke or found.K_e.K_Nm_per_rad
-        warn(job.design, found)
-    K = record["K_series_Nm_per_rad"] = series_stiffness(kb, ke)
+    used = stiffness_pair(job.context, kb, ke)
+    if used.solved is not None:
+        record |= stiffness_record(job.design, used.solved, job.wall_s)
+        warn(job.design, used.solved)
+    K_b, K_e = used.K_b_Nm_per_rad, used.K_e_Nm_per_rad
+    K = record["K_series_Nm_per_rad"] = series_stiffness(K_b, K_e)
     limit = linear_limit(job.design, K)
     record["warnings"] += tell_all(limit.passed(job.design))
-    return record | backlash_record(total(job.design, kb, ke)) | linear_limit_record(limit)
+    return record | backlash_record(total(job.design, K_b, K_e)) | linear_limit_record(limit)
 
 
 @app.command()

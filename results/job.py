@@ -123,14 +123,10 @@ def begin(path: Path, out: Path | None) -> Job:
     folder = folder_of(path, out)
     for line in warnings(design):
         tell(f"warning: {line}")
-    from flexspline.pipeline.analysis import CACHED_TYPES
-    from flexspline.pipeline.cache import Cache
-    from flexspline.pipeline.parts import AnalysisContext
-    from flexspline.pipeline.progress import Progress
-    from flexspline.pipeline.storage import cache_folder
+    from flexspline.pipeline.analysis import analysis_context
     from flexspline.results.report.attached import Attachment
 
-    context = AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, tell), Progress(tell))
+    context = analysis_context(design, tell)
     return Job(design, context, folder, Attachment(path.name, raw, "Design file"), began)
 
 

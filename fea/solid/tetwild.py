@@ -20,6 +20,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from flexspline.fea.child_python import child_command
 from flexspline.fea.solid.errors import MesherError, MesherTimeError
 
 
@@ -71,13 +72,11 @@ def tetrahedralize(
         if background is not None:
             values |= {f"bg_{k}": v for k, v in vars(background).items()}
         np.savez(given, vertices=vertices, triangles=triangles, **values)
-        child = [sys.executable, "-m", "flexspline.fea.solid.tetwild"]
-        command = [*child, str(given), str(made), str(os.getpid())]
+        command = child_command(__name__, "mesh_in_child", str(given), str(made), str(os.getpid()))
         try:
             done = subprocess.run(
                 command,
                 cwd=folder,  # fTetWild leaves files where it runs
-                env=os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)},
                 timeout=settings.time_limit_s,
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
@@ -133,8 +132,9 @@ def _not_without(parent: int) -> None:
         sys.exit("the program that asked for this mesh is gone")
 
 
-def _child(given: str, made: str, parent: int) -> None:
-    _not_without(parent)
+def mesh_in_child(given: str, made: str, parent: str) -> None:
+    """What the child does: a mesh of the file `given` into the file `made`, for the process `parent`."""
+    _not_without(int(parent))
     import pytetwild
 
     with np.load(given) as g:
@@ -155,7 +155,3 @@ def _child(given: str, made: str, parent: int) -> None:
             bg_values=g["bg_edge_length"] if sized else None,
         )
     np.savez(made, points=points, tets=tets)
-
-
-if __name__ == "__main__":
-    _child(sys.argv[1], sys.argv[2], int(sys.argv[3]))

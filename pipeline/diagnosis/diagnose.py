@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.analysis import CACHED_TYPES
-from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import (
@@ -28,8 +27,6 @@ from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.storage import cache_folder
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]
 
@@ -100,13 +97,8 @@ def diagnose_file(
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model, end_points=analysis)
-    bench = context or _quiet_context(design)
+    bench = context or analysis_context(design)
     outcome, found = diagnose_specimens(
         design, measurement, K_b, K_e, bench, full=context is not None
     )
     return Diagnosis(design, measurement, prediction, outcome, specimens=found)
-
-
-def _quiet_context(design: Design) -> AnalysisContext:
-    """For the hole-free model's ratios, where stiffnesses were given."""
-    return AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES), Progress())

@@ -6,12 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexspline.fea.types import SolidField
-from flexspline.pipeline.analysis import CACHED_TYPES
-from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.load_cases import wave_generator_field
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.study.evaluate import OUR_ERRORS
 from flexspline.pipeline.study.result import StudyResult
 
@@ -32,11 +28,7 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     row = result.pareto[0]
     design = result.design_of(row)
     solver = design.solver.model_copy(update={"model": "auto"})
-    context = AnalysisContext(
-        design.model_copy(update={"solver": solver}),
-        Cache(cache_folder(), CACHED_TYPES, lambda line: None),
-        Progress(),
-    )
+    context = analysis_context(design.model_copy(update={"solver": solver}))
     try:
         field = wave_generator_field(context.part("flexspline"))
     except OUR_ERRORS as fault:

@@ -14,11 +14,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
 from flexspline.geometry.part import PartName
-from flexspline.pipeline.analysis import CACHED_TYPES
-from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.analysis import analysis_context
 
 DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""
@@ -72,9 +68,7 @@ def holes_of(
 
     Where the solid solve fails there is none, and `say` is told.
     """
-    context = AnalysisContext(
-        design, Cache(cache_folder(), CACHED_TYPES, lambda line: None), Progress()
-    )
+    context = analysis_context(design)
     found = {}
     for figure in pierced(design):
         name = PART_OF[figure]

@@ -10,7 +10,6 @@ import os
 import pickle
 import queue
 import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
@@ -18,6 +17,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Any, cast
 
+from flexspline.fea.child_python import child_command
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.worker import READY, read_frame, write_frame
 
@@ -33,10 +33,6 @@ ENVIRONMENT = {
 }
 """One thread per worker; and glibc keeps freed memory, since giving arrays of some hundred kB back to the
 system after every use made a design take 0.54 s instead of 0.38 s."""
-START = """import sys
-sys.path[:] = sys.argv[1:]
-from flexspline.pipeline.study.worker import serve
-serve()"""
 
 
 class WorkerDiedError(ComputationError):
@@ -155,7 +151,7 @@ class _Worker:
 
 def _started() -> subprocess.Popen[bytes]:
     return subprocess.Popen(
-        [sys.executable, "-c", START, *sys.path],
+        child_command("flexspline.pipeline.study.worker", "serve"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env={**os.environ, **ENVIRONMENT},

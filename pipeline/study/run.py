@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
 
-from flexspline.pipeline.study.cluster import WorkerPool
+from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
@@ -74,6 +74,18 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
         if url:
             raise
         raise TrialStoreError(f"{own}: {fault.cause}") from fault
+
+
+def whole_study(
+    study: Study,
+    store: TrialStore,
+    watch: Callable[[Progress], None],
+    say: Callable[[str], None],
+) -> StudyResult:
+    """`run_study` with the workers that the study asks for, its K corrected for holes."""
+    run = study.file.run
+    pool = partial(worker_pool, run.workers, run.scheduler)
+    return run_study(study, store, pool, watch, say=say, holes=nominal_holes(study, store, say))
 
 
 def run_study(

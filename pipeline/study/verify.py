@@ -8,11 +8,7 @@ from dataclasses import asdict
 
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
-from flexspline.pipeline.analysis import CACHED_TYPES, backlash_of, stiffnesses
-from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.progress import Progress
-from flexspline.pipeline.storage import cache_folder
+from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from flexspline.pipeline.study.figures import GIVEN_BY
@@ -31,7 +27,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
-        context = AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, _silent), Progress())
+        context = analysis_context(design)
         found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
         total = backlash_of(design, found)
     except OUR_ERRORS as fault:
@@ -111,7 +107,3 @@ def _windup_bounds(figures: Mapping[str, float], K_b: str) -> tuple[float, float
                 off[i] += figures[f"backlash_arcsec.{term}"] * (figures[key] / end - 1)
     total = figures["backlash_arcsec.total"]
     return total + off[0], total + off[1]
-
-
-def _silent(line: str) -> None:
-    """A worker's notices go nowhere; what matters comes back as an error."""

@@ -20,6 +20,7 @@ from pathlib import Path
 from threading import Timer
 from typing import Any, TextIO
 
+from flexspline.fea.child_python import child_command
 from flexspline.fea.types import SolidField, StressPeak, TetMesh
 from flexspline.geometry.errors import ComputationError, one_line
 from flexspline.pipeline.packing import packed, unpacked
@@ -31,10 +32,6 @@ SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
 _VTK_LOG = re.compile(r"^(\x1b\[[0-9;]*m)*[\d-]+ [\d:.]+ \([^)]*\) \[[^]]*\]|\x1b\[[0-9;]*m")
 """Colours, time and thread before VTK's words: with them no two reasons are alike."""
-_START = """import sys
-sys.path[:] = sys.argv[1:]
-from flexspline.results.renders.process import serve
-serve()"""
 
 
 class NotDrawnError(ComputationError):
@@ -120,7 +117,7 @@ class DrawingProcess:
             assert self._folder is not None
             with (Path(self._folder.name) / "said.txt").open("wb") as said:
                 self._process = subprocess.Popen(
-                    [sys.executable, "-P", "-c", _START, *sys.path],
+                    child_command(__name__, "serve"),
                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True,
                 )  # fmt: skip
         return self._process

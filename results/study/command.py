@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -27,14 +26,9 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     with answered(file):
         from flexspline.geometry.load import read_raw, tables_from
         from flexspline.pipeline.study.best import best_field
-        from flexspline.pipeline.study.cluster import check_scheduler, worker_pool
+        from flexspline.pipeline.study.cluster import check_scheduler
         from flexspline.pipeline.study.load import study_from
-        from flexspline.pipeline.study.run import (
-            nominal_holes,
-            run_study,
-            source_of,
-            trial_store_of,
-        )
+        from flexspline.pipeline.study.run import source_of, trial_store_of, whole_study
         from flexspline.results.records import as_json
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_stress import draw_best_stress
@@ -65,9 +59,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
         if kept := len(store.rows()):
             tell(f"{kept} designs are finished already")
-        pool = partial(worker_pool, run.workers, run.scheduler)
-        holes = nominal_holes(asked, store, tell)
-        result = run_study(asked, store, pool, Watch(asked), say=tell, holes=holes)
+        result = whole_study(asked, store, Watch(asked), tell)
         for line in border_warnings(result):
             tell(f"warning: {line}")
         table = table_of(result)

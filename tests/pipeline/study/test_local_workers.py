@@ -110,7 +110,10 @@ def test_what_is_printed_in_a_worker_is_no_answer() -> None:
 
 def test_workers_that_cannot_start_end_the_study(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not one design after the other."""
-    monkeypatch.setattr("flexspline.pipeline.study.local_workers.START", "raise SystemExit(7)")
+    ends = [sys.executable, "-c", "raise SystemExit(7)"]
+    monkeypatch.setattr(
+        "flexspline.pipeline.study.local_workers.child_command", lambda *called: ends
+    )
     with LocalWorkers(1) as workers, pytest.raises(WorkerStartError, match="with status 7"):
         workers.submit(abs, -3).result(timeout=60)
 
