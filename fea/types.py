@@ -68,6 +68,11 @@ class TetMesh:
         return np.unique(self.on(patch))
 
     @property
+    def elements(self) -> int:
+        """How many."""
+        return len(self.cells)
+
+    @property
     def shortest_edge_mm(self) -> float:
         """Between corner nodes."""
         return shortest_edge_mm(self.nodes, self.cells[:, :4])

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.stress import RevolvedField
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part

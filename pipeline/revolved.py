@@ -14,12 +14,9 @@ from functools import lru_cache
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
-from flexspline.fea.axisymmetric.stress import (
-    RevolvedField,
-    ellipse_refinements,
-    ellipse_stress,
-    torsion_stress,
-)
+from flexspline.fea.axisymmetric.peak_refinement import StressProblem
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Design
@@ -184,8 +181,9 @@ class _Refining:
 @lru_cache(maxsize=1)
 def _begun(part: Part, tolerance: float) -> _Refining:
     """For w0 = 1 mm; only the newest, for it holds its model."""
+    unit = ellipse(w0_mm=1.0)
     return _Refining(
-        ellipse_refinements(part.meridian, _elastic(part), 1.0, part.exclusion_mm, tolerance)
+        StressProblem(part.meridian, _elastic(part), unit, part.exclusion_mm, tolerance).fields()
     )
 
 

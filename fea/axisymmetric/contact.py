@@ -12,13 +12,14 @@ import numpy as np
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lift_off import pushing
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
-from flexspline.fea.shortfall import next_mesh_failed, of_the_machine
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.refinement import refine
+from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness
-from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 ANGLES = 32
@@ -46,44 +47,53 @@ def contact_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    mesh = triangulate(outline)
-    ratios: list[float] = []
-    levels: list[MeshLevel] = []
-    lowest, highest, shortfall = 0.0, 1.0, supported.shortfall
-    pace = Pace(deadline)
-    while len(levels) < 2:
-        try:
-            pace.begin(len(mesh.triangles))
-            with one_thread():
-                seat = seat_compliance(HarmonicModel(mesh, material), ANGLES, MOST_PLACES)
-                resting, held = (seat.stiffness(f(seat)) for f in (lift_off_forces, held_forces))
-        except (ComputationError, MemoryError) as fault:
-            if not levels:
-                raise
-            if not of_the_machine(shortfall):  # which a better machine may mend
-                shortfall = next_mesh_failed(fault)
-            break
-        ratios.append(resting / held)
-        levels.append(MeshLevel(mesh.shortest_edge_mm, len(mesh.triangles), seat.unknowns, resting))
-        lowest = seat.stiffness(np.zeros_like(seat.free)) / held
-        mesh = refined(mesh, np.ones(len(mesh.triangles), bool))
-    if len(ratios) == 2:
-        doubt = abs(ratios[1] - ratios[0])
-        lowest, highest = ratios[1] - doubt, ratios[1] + doubt
+    found = _Ratios(material)
+    own = refine(found, triangulate(outline), deadline)
+    # that of the held seat where a better machine may mend it
+    shortfall = own if own and not of_the_machine(supported.shortfall) else supported.shortfall
+    ratio = found.ratios[-1]
+    lowest, highest = found.lowest, 1.0
+    if found.met:
+        doubt = abs(ratio - found.ratios[0])
+        lowest, highest = ratio - doubt, ratio + doubt
     return Stiffness(
-        K_Nm_per_rad=supported.K_Nm_per_rad * ratios[-1],
+        K_Nm_per_rad=supported.K_Nm_per_rad * ratio,
         lower_Nm_per_rad=supported.lower_Nm_per_rad * lowest,
         upper_Nm_per_rad=supported.upper_Nm_per_rad * highest,
         guaranteed=False,  # the change between two meshes is an estimate
         model="axisymmetric",
         symmetry=supported.symmetry,
         method=(
-            f"unilateral contact at {ANGLES} angles per half turn: {ratios[-1]:.4f} of the K with the"
-            f" seat held; bounds from that K's and from {_bounded_by(len(ratios))}"
+            f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} of the K with the"
+            f" seat held; bounds from that K's and from {_bounded_by(len(found.ratios))}"
         ),
-        levels=tuple(levels),
+        levels=tuple(found.levels),
         shortfall=shortfall,
     )
+
+
+class _Ratios:
+    """K that rests over K that is held, of two meshes; `lowest`: the ratio of a free seat on the last."""
+
+    def __init__(self, material: Elastic) -> None:
+        self._material = material
+        self.ratios: list[float] = []
+        self.levels: list[MeshLevel] = []
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        with one_thread():
+            seat = seat_compliance(HarmonicModel(mesh, self._material), ANGLES, MOST_PLACES)
+            resting, held = (seat.stiffness(f(seat)) for f in (lift_off_forces, held_forces))
+        self.ratios.append(resting / held)
+        self.levels.append(MeshLevel(mesh.shortest_edge_mm, mesh.elements, seat.unknowns, resting))
+        self.lowest = seat.stiffness(np.zeros_like(seat.free)) / held
+
+    @property
+    def met(self) -> bool:
+        return len(self.ratios) == 2
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        return refined(mesh, np.ones(mesh.elements, bool))
 
 
 def _bounded_by(meshes: int) -> str:

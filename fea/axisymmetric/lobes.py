@@ -17,13 +17,14 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
-from flexspline.fea.shortfall import largest_mesh, next_mesh_failed
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.refinement import refine
+from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 LOBE_HALF_WIDTH = pi / 6
@@ -104,34 +105,11 @@ def lobe_stiffness(
     ------
     MeshingError, HarmonicError, OutOfTimeError : of the first mesh.
     """
-    mesh = triangulate(outline)
-    levels: list[MeshLevel] = []
-    estimates: list[float] = []
-    shortfall = ""
-    pace = Pace(deadline)
-    while True:
-        try:
-            pace.begin(len(mesh.triangles))
-            model = HarmonicModel(mesh, material)
-            found = solve_lobes(model, supported, TAIL_SHARE * tolerance)
-        except (ComputationError, MemoryError) as fault:
-            if not levels:
-                raise
-            shortfall = next_mesh_failed(fault)
-            break
-        upper = found.K
-        levels.append(_level(model, found))
-        estimates.append(found.estimate * upper)
-        scale = _efficiency([level.K_Nm_per_rad for level in levels], estimates)
-        error = scale * found.estimate
-        missing = found.tail / sum(found.energies)
-        if len(levels) > 1 and 2 * error + missing < tolerance:
-            break
-        if len(mesh.triangles) > MOST_TRIANGLES:
-            shortfall = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
-            break
-        mesh = refined(mesh, bulk(found.error, BULK))
-    last = 2 * (len(found.energies) - 1)
+    lobes = _RevolvedLobes(material, supported, tolerance)
+    shortfall = refine(lobes, triangulate(outline), deadline, MOST_TRIANGLES)
+    estimate, missing = lobes.estimate, lobes.missing
+    upper, error = estimate.K_Nm_per_rad, estimate.relative
+    last = 2 * (len(lobes.found.energies) - 1)
     return Stiffness(
         K_Nm_per_rad=upper / (1 + error + missing / 2),
         lower_Nm_per_rad=upper / (1 + 2 * error + missing),
@@ -141,12 +119,38 @@ def lobe_stiffness(
         symmetry="body of revolution",
         method=(
             f"even Fourier harmonics 0 to {last}, the rest bounded by {missing:.1e} of K; recovery "
-            f"estimate (Zienkiewicz-Zhu) on {len(levels)} meshes, scaled by {scale:.2f}"
+            f"estimate (Zienkiewicz-Zhu) on {len(estimate.levels)} meshes, scaled by {estimate.scale:.2f}"
         ),
-        levels=tuple(levels),
-        error_scale=scale,
+        levels=tuple(estimate.levels),
+        error_scale=estimate.scale,
         shortfall=shortfall,
     )
+
+
+class _RevolvedLobes:
+    """What the finest mesh gave, and how far off its K is."""
+
+    def __init__(self, material: Elastic, supported: bool, tolerance: float) -> None:
+        self._material, self._supported, self._tolerance = material, supported, tolerance
+        self.estimate = ScaledEstimate(EFFICIENCY[1], EFFICIENCY)
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        model = HarmonicModel(mesh, self._material)
+        self.found = solve_lobes(model, self._supported, TAIL_SHARE * self._tolerance)
+        self.estimate.add(_level(model, self.found), self.found.estimate)
+
+    @property
+    def missing(self) -> float:
+        """Relative error of K by the harmonics left out."""
+        return self.found.tail / sum(self.found.energies)
+
+    @property
+    def met(self) -> bool:
+        doubt = 2 * self.estimate.relative + self.missing
+        return len(self.estimate.levels) > 1 and doubt < self._tolerance
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        return refined(mesh, bulk(self.found.error, BULK))
 
 
 def solve_lobes(
@@ -182,19 +186,10 @@ def solve_lobes(
     return LobeSolution(tuple(energies), work, rest, error, unknowns, worst)
 
 
-def _efficiency(K: list[float], estimates: list[float]) -> float:
-    """True over estimated error, from what the last refinement gained against what it promised."""
-    if len(K) < 2:
-        return EFFICIENCY[1]
-    promised = estimates[-2] - estimates[-1]
-    scale = (K[-2] - K[-1]) / promised if promised > 0 else EFFICIENCY[1]
-    return float(np.clip(scale, *EFFICIENCY))
-
-
 def _level(model: HarmonicModel, found: LobeSolution) -> MeshLevel:
     return MeshLevel(
         shortest_edge_mm=model.mesh.shortest_edge_mm,
-        elements=len(model.mesh.triangles),
+        elements=model.mesh.elements,
         dofs=found.unknowns,
         K_Nm_per_rad=found.K,
         K_check_Nm_per_rad=TORQUE**2 / found.work / NMM_PER_NM,

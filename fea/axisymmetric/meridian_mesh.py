@@ -86,6 +86,11 @@ class MeridianMesh:
         return self.points[:, 0] < SAME
 
     @property
+    def elements(self) -> int:
+        """How many triangles."""
+        return len(self.triangles)
+
+    @property
     def shortest_edge_mm(self) -> float:
         """Of all triangles."""
         return shortest_edge_mm(self.points, self.triangles)

@@ -23,7 +23,8 @@ from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.shortfall import ToleranceError, largest_mesh
+from flexspline.fea.refinement import refine
+from flexspline.fea.shortfall import ToleranceError
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME, Meridian
@@ -55,24 +56,39 @@ def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -
     ------
     MeshingError, HarmonicError, ToleranceError
     """
-    mesh = triangulate(outline)
-    while True:
-        model = HarmonicModel(mesh, material)
-        on = model.on(driven)
+    found = _Twisted(material, driven, tolerance)
+    if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
+        raise ToleranceError(f"the energy is off by {found.error:.2g}: {why}")
+    r = found.model.space.places[:, 0]
+    turned = found.solved.values.reshape(-1, 3)[:, TANGENTIAL]
+    rotation = np.divide(turned, r, out=np.zeros_like(turned), where=r > 0)
+    return Twist(found.model.mesh, material, rotation, found.solved.twice_energy / NMM_PER_NM)
+
+
+class _Twisted:
+    """The finest mesh's solution, and its estimated relative error of the energy."""
+
+    def __init__(self, material: Elastic, driven: str, tolerance: float) -> None:
+        self._material, self._driven, self._tolerance = material, driven, tolerance
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        model = HarmonicModel(mesh, self._material)
+        on = model.on(self._driven)
         fixed = [Fixed(on, TANGENTIAL, model.space.places[on, 0]), *model.held("mount")]
         solved = model.solve(TWIST, fixed, np.zeros(3 * model.space.count))
         found = recovered(model, TWIST, solved.values)
-        error = float(found.error.sum() / found.energy.sum())
-        if error < tolerance:
-            break
-        if len(mesh.triangles) > MOST_TRIANGLES:
-            why = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
-            raise ToleranceError(f"the energy is off by {error:.2g}: {why}")
-        mesh = refined(mesh, bulk(found.error, BULK))
-    r = model.space.places[:, 0]
-    turned = solved.values.reshape(-1, 3)[:, TANGENTIAL]
-    rotation = np.divide(turned, r, out=np.zeros_like(turned), where=r > 0)
-    return Twist(mesh, material, rotation, solved.twice_energy / NMM_PER_NM)
+        self.model, self.solved, self._found = model, solved, found
+
+    @property
+    def error(self) -> float:
+        return float(self._found.error.sum() / self._found.energy.sum())
+
+    @property
+    def met(self) -> bool:
+        return self.error < self._tolerance
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        return refined(mesh, bulk(self._found.error, BULK))
 
 
 def moved_stiffness(found: Twist, outline: Meridian) -> float:

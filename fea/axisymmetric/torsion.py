@@ -6,13 +6,12 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.patches import sorted_boundary
+from flexspline.fea.axisymmetric.patches import Boundary, sorted_boundary
 from flexspline.fea.axisymmetric.torsion_fields import Bracket, across_from_axis, bracket
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
-from flexspline.fea.shortfall import largest_mesh, next_mesh_failed
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.refinement import refine
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
-from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 
 BULK = 0.75
@@ -49,32 +48,12 @@ def torsional_stiffness(
     while (near := across_from_axis(mesh, boundary)).any():
         mesh = refined(mesh, near)
     per_G = material.mu / NMM_PER_NM  # mm³ -> N·m/rad
-    levels: list[MeshLevel] = []
-    lower, upper, shortfall = 0.0, np.inf, ""
-    pace = Pace(deadline)
-    while True:
-        try:
-            pace.begin(len(mesh.triangles))
-            found = bracket(mesh, boundary)
-        except (ComputationError, MemoryError) as fault:
-            if not levels:
-                raise
-            shortfall = next_mesh_failed(fault)
-            break
-        # every mesh's bounds hold, so the best of all do
-        lower, upper = max(lower, found.lower), min(upper, found.upper)
-        levels.append(_level(mesh, found, per_G))
-        reached = 2 * (upper - lower) / (upper + lower)
-        if reached < tolerance:
-            break
-        if len(mesh.triangles) > MOST_TRIANGLES:
-            shortfall = largest_mesh(len(mesh.triangles), MOST_TRIANGLES)
-            break
-        mesh = refined(mesh, bulk(found.share, BULK))
+    found = _Bounds(boundary, tolerance, per_G)
+    shortfall = refine(found, mesh, deadline, MOST_TRIANGLES)
     return Stiffness(
-        K_Nm_per_rad=(lower + upper) / 2 * per_G,
-        lower_Nm_per_rad=lower * per_G,
-        upper_Nm_per_rad=upper * per_G,
+        K_Nm_per_rad=(found.lower + found.upper) / 2 * per_G,
+        lower_Nm_per_rad=found.lower * per_G,
+        upper_Nm_per_rad=found.upper * per_G,
         guaranteed=True,
         model="axisymmetric",
         symmetry="body of revolution",
@@ -82,9 +61,32 @@ def torsional_stiffness(
             "energy bounds from both sides: minimum potential energy above, minimum complementary energy "
             "below (Michell's two fields), exact fillet arcs enclosed"
         ),
-        levels=tuple(levels),
+        levels=tuple(found.levels),
         shortfall=shortfall,
     )
+
+
+class _Bounds:
+    """Of K/G [mm³], by the meshes so far, and those meshes' own figures."""
+
+    def __init__(self, boundary: Boundary, tolerance: float, per_G: float) -> None:
+        self._boundary, self._tolerance, self._per_G = boundary, tolerance, per_G
+        self.lower, self.upper = 0.0, np.inf
+        self.levels: list[MeshLevel] = []
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        found = bracket(mesh, self._boundary)
+        # every mesh's bounds hold, so the best of all do
+        self.lower, self.upper = max(self.lower, found.lower), min(self.upper, found.upper)
+        self.levels.append(_level(mesh, found, self._per_G))
+        self._share = found.share
+
+    @property
+    def met(self) -> bool:
+        return 2 * (self.upper - self.lower) / (self.upper + self.lower) < self._tolerance
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        return refined(mesh, bulk(self._share, BULK))
 
 
 def bulk(share: np.ndarray, fraction: float) -> np.ndarray:
@@ -99,7 +101,7 @@ def bulk(share: np.ndarray, fraction: float) -> np.ndarray:
 def _level(mesh: MeridianMesh, found: Bracket, per_G: float) -> MeshLevel:
     return MeshLevel(
         shortest_edge_mm=mesh.shortest_edge_mm,
-        elements=len(mesh.triangles),
+        elements=mesh.elements,
         dofs=found.unknowns,
         K_Nm_per_rad=found.upper * per_G,
         K_check_Nm_per_rad=found.reaction * per_G,

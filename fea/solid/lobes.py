@@ -8,6 +8,7 @@ is fine where this load bends it, which the harmonics of the part without holes 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from math import sqrt
 
 from flexspline.fea.axisymmetric.bisection import refined
@@ -15,14 +16,14 @@ from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lobes import solve_lobes
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.torsion import bulk
-from flexspline.fea.shortfall import last_mesh, next_mesh_failed
+from flexspline.fea.refinement import refine
+from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import Model, lobes
 from flexspline.fea.solid.column import INTERFACE
-from flexspline.fea.solid.stiffness import efficiency, level_of
+from flexspline.fea.solid.stiffness import EFFICIENCY, level_of
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
-from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
-from flexspline.geometry.errors import ComputationError
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
 
 STEP = 0.40
 """Of √(t/R), about the axis, for 0.5 %: 3.3° on a wall of a fiftieth of the radius. The error of quadratic
@@ -75,31 +76,12 @@ def lobe_stiffness(
     ------
     ComputationError, MemoryError : of the first mesh.
     """
-    levels: list[MeshLevel] = []
-    errors: list[float] = []
-    shortfall = ""
-    while True:
-        try:
-            given = next(meshes, None)
-            if given is None:
-                shortfall = last_mesh(len(levels))
-                break
-            mesh, usual = given
-            solved = lobes(Model.of(mesh, material), supported)
-            relative = energy_error(mesh, solved.displacement, material).relative
-        except (ComputationError, MemoryError) as fault:
-            if not levels:
-                raise
-            shortfall = next_mesh_failed(fault)
-            break
-        levels.append(level_of(solved))
-        errors.append(relative * solved.K_energy)
-        scale = efficiency(levels, errors) if len(levels) > 1 else usual
-        error = scale * relative
-        progress(f"{len(mesh.cells)} elements, {symmetry} of the part, K ± {error:.2%}")
-        if error <= tolerance:
-            break
-    upper = levels[-1].K_Nm_per_rad
+    mesh, usual = next(meshes)
+    estimate = ScaledEstimate(usual, EFFICIENCY)
+    rest = (mesh for mesh, _ in meshes)
+    found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate)
+    shortfall = refine(found, mesh)
+    upper, error = estimate.K_Nm_per_rad, estimate.relative
     return Stiffness(
         K_Nm_per_rad=upper / (1 + error),
         lower_Nm_per_rad=upper / (1 + 2 * error),
@@ -108,9 +90,38 @@ def lobe_stiffness(
         model="solid",
         symmetry=symmetry,
         method=(
-            f"recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by {scale:.2f}"
+            "recovery estimate of the energy error under the lobes (Zienkiewicz-Zhu), scaled by"
+            f" {estimate.scale:.2f}"
         ),
-        levels=tuple(levels),
-        error_scale=scale,
+        levels=tuple(estimate.levels),
+        error_scale=estimate.scale,
         shortfall=shortfall,
     )
+
+
+@dataclass(frozen=True)
+class _SolidLobes:
+    """The case on one mesh after the other, the rest after the first; what they gave is in `estimate`."""
+
+    meshes: Iterator[TetMesh]
+    material: Elastic
+    supported: bool
+    tolerance: float
+    symmetry: str
+    progress: Callable[[str], None]
+    estimate: ScaledEstimate
+
+    def solve(self, mesh: TetMesh) -> None:
+        solved = lobes(Model.of(mesh, self.material), self.supported)
+        error = energy_error(mesh, solved.displacement, self.material)
+        self.estimate.add(level_of(solved), error.relative)
+        self.progress(
+            f"{mesh.elements} elements, {self.symmetry} of the part, K ± {self.estimate.relative:.2%}"
+        )
+
+    @property
+    def met(self) -> bool:
+        return self.estimate.relative <= self.tolerance
+
+    def finer(self, mesh: TetMesh) -> TetMesh | None:
+        return next(self.meshes, None)

@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexspline.fea.shortfall import last_mesh, next_mesh_failed
+from flexspline.fea.refinement import refine
+from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import Model, Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
-from flexspline.geometry.errors import ComputationError
 
 Mesher = Callable[[MeshSpec], TetMesh]
 MAX_LEVELS = 5
@@ -43,7 +43,6 @@ class SolidStiffness:
 
     stiffness: Stiffness
     meshes: tuple[TetMesh, ...]
-    model: Model
     solved: Solved
 
 
@@ -64,36 +63,48 @@ def solid_stiffness(
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    spec = first
-    levels: list[MeshLevel] = []
-    errors: list[float] = []
-    meshes: list[TetMesh] = []
-    half, shortfall = np.inf, last_mesh(MAX_LEVELS)
-    for _ in range(MAX_LEVELS):
-        try:
-            mesh = mesher(spec)
-            finer = Model.of(mesh, material)
-            turned = torsion(finer, driven)
-            estimate = energy_error(mesh, turned.displacement, material).relative * turned.K_energy
-        except (ComputationError, MemoryError) as fault:
-            if not levels:
-                raise
-            shortfall = next_mesh_failed(fault)
-            progress(f"K ± {half:.2%} stays, {shortfall}")
-            break
-        model, solved = finer, turned
-        meshes.append(mesh)
-        levels.append(level_of(solved))
-        errors.append(estimate)
-        c = efficiency(levels, errors) if len(levels) > 1 else USUAL_EFFICIENCY
-        half = c * estimate / (solved.K_energy - c * estimate)  # of the K that is reported
-        progress(f"{len(mesh.cells)} elements, K ± {half:.2%}")
-        if half <= tolerance:
-            shortfall = ""
-            break
-        spec = _finer(spec, near_step(tolerance, half))
-    answer = _stiffness(levels, errors[-1], c, symmetry, shortfall)
-    return SolidStiffness(answer, tuple(meshes), model, solved)
+    found = _SolidTorsion(mesher, first, material, driven, tolerance, progress)
+    shortfall = refine(found, mesher(first))
+    if shortfall and len(found.meshes) < MAX_LEVELS:
+        progress(f"K ± {found.half:.2%} stays, {shortfall}")
+    answer = _stiffness(found.estimate, symmetry, shortfall)
+    return SolidStiffness(answer, tuple(found.meshes), found.solved)
+
+
+class _SolidTorsion:
+    """The meshes so far, the finest one's solution for 1 rad, and how far off its K is."""
+
+    def __init__(
+        self, mesher: Mesher, first: MeshSpec, material: Elastic, driven: str, tolerance: float,
+        progress: Callable[[str], None],
+    ) -> None:  # fmt: skip
+        self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
+        self._tolerance, self._progress = tolerance, progress
+        self.estimate = ScaledEstimate(USUAL_EFFICIENCY, EFFICIENCY)
+        self.meshes: list[TetMesh] = []
+
+    def solve(self, mesh: TetMesh) -> None:
+        solved = torsion(Model.of(mesh, self._material), self._driven)
+        error = energy_error(mesh, solved.displacement, self._material)
+        self.solved = solved
+        self.meshes.append(mesh)
+        self.estimate.add(level_of(solved), error.relative)
+        self._progress(f"{mesh.elements} elements, K ± {self.half:.2%}")
+
+    @property
+    def half(self) -> float:
+        """Half the bounds' distance over the K that is reported."""
+        return self.estimate.relative / (1 - self.estimate.relative)
+
+    @property
+    def met(self) -> bool:
+        return self.half <= self._tolerance
+
+    def finer(self, mesh: TetMesh) -> TetMesh | None:
+        if len(self.meshes) == MAX_LEVELS:
+            return None
+        self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
+        return self._mesher(self._spec)
 
 
 def near_step(tolerance: float, half: float) -> float:
@@ -113,14 +124,6 @@ def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:
     )
 
 
-def efficiency(levels: list[MeshLevel], errors: list[float]) -> float:
-    """c of the last two meshes, kept within EFFICIENCY."""
-    gained = levels[-2].K_Nm_per_rad - levels[-1].K_Nm_per_rad
-    estimated = errors[-2] - errors[-1]
-    c = gained / estimated if estimated > 0 else EFFICIENCY[1]
-    return float(np.clip(c, *EFFICIENCY))
-
-
 def level_of(solved: Solved) -> MeshLevel:
     """What one mesh gave."""
     return MeshLevel(
@@ -133,27 +136,22 @@ def level_of(solved: Solved) -> MeshLevel:
     )
 
 
-def _stiffness(
-    levels: list[MeshLevel], error: float, c: float, symmetry: str, shortfall: str
-) -> Stiffness:
-    upper = levels[-1].K_Nm_per_rad
+def _stiffness(estimate: ScaledEstimate, symmetry: str, shortfall: str) -> Stiffness:
+    upper, meshes = estimate.K_Nm_per_rad, len(estimate.levels)
+    error = estimate.relative * upper
+    how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"
     return Stiffness(
-        K_Nm_per_rad=upper - c * error,
-        lower_Nm_per_rad=upper - 2 * c * error,
+        K_Nm_per_rad=upper - error,
+        lower_Nm_per_rad=upper - 2 * error,
         upper_Nm_per_rad=upper,
         guaranteed=False,  # the lower end is an estimate
         model="solid",
         symmetry=symmetry,
         method=(
-            f"recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by {c:.2f}, "
-            + (
-                f"from the last two of {len(levels)} meshes"
-                if len(levels) > 1
-                else "the usual factor"
-            )
-            + "; K = finest mesh less the scaled estimate"
+            f"recovery estimate of the energy error (Zienkiewicz-Zhu), scaled by {estimate.scale:.2f}, {how};"
+            " K = finest mesh less the scaled estimate"
         ),
-        levels=tuple(levels),
-        error_scale=c,
+        levels=tuple(estimate.levels),
+        error_scale=estimate.scale,
         shortfall=shortfall,
     )

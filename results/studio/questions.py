@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
-from flexspline.fea.axisymmetric.stress import RevolvedField
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.stress import RevolvedField
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.results.renders.shown import magnification
 from flexspline.results.studio.thin import thinned
 

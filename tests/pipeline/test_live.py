@@ -49,7 +49,7 @@ def test_a_first_answer_after_the_last_leaves_it_as_it_is() -> None:
 
 def test_refinements_cut_short_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
     design = walled(0.4437)  # no other test asks for it, so it is not remembered
-    monkeypatch.setattr("flexspline.fea.axisymmetric.stress.MOST_TRIANGLES", 10)
+    monkeypatch.setattr("flexspline.fea.axisymmetric.peak_refinement.MOST_TRIANGLES", 10)
     assert live.first_field(design).levels  # the first mesh is not refused
     ended = live.field(design, "wave_generator")
     assert len(ended.levels) == 1

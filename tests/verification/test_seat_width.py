@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from hole_free import EXAMPLES
 
-from flexspline.fea.axisymmetric.stress import RevolvedField, ellipse_stress
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values

@@ -20,7 +20,7 @@ VALUES = {
 
 @pytest.fixture
 def few_triangles(monkeypatch) -> None:
-    for module in ("torsion", "stress"):
+    for module in ("torsion", "peak_refinement"):
         monkeypatch.setattr(f"flexspline.fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
 
 

@@ -1,0 +1,144 @@
+"""A stress field on finer and finer meshes of the meridian, until its peak is known.
+
+Refined where the energy is wrong, and where a stress that counts is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import cos, inf, pi, sin
+
+from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.harmonics import Amplitudes, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
+from flexspline.fea.axisymmetric.peak import coarse_at_border, peak_stress
+from flexspline.fea.axisymmetric.recovery import recovered
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField, StressLevel
+from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
+from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.refinement import refine, refinements
+from flexspline.fea.stress_rule import judged
+from flexspline.fea.types import Elastic
+from flexspline.geometry.outline import Meridian
+
+BULK = 0.5
+"""Share of the estimated energy error in the triangles that are refined, beside those that LOCAL adds."""
+LOCAL = 0.5
+"""Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
+QUIET_ROUNDS = 2
+"""So many refinements in a row must leave the peak unchanged within the tolerance."""
+
+
+@dataclass(frozen=True)
+class HarmonicLoad:
+    """One harmonic's load case: its wave, and how it is solved on a mesh."""
+
+    wave: Wave
+    solve: Callable[[HarmonicModel], Amplitudes]
+
+
+@dataclass(frozen=True)
+class StressProblem:
+    """A load on a body of revolution, and how well its peak stress is wanted.
+
+    Attributes
+    ----------
+    exclusion_mm : no point nearer to a sharp corner or a patch edge counts.
+    tolerance : the peak may change by no more than this fraction over QUIET_ROUNDS refinements. Where a mesh
+        fails, is too large or would end after the deadline, the peak is that of the mesh before, and its
+        `shortfall` says why.
+    """
+
+    outline: Meridian
+    material: Elastic
+    load: HarmonicLoad
+    exclusion_mm: float
+    tolerance: float
+    deadline: Deadline = NO_DEADLINE
+
+    def field(self) -> RevolvedField:
+        """The answer.
+
+        Raises
+        ------
+        MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
+        """
+        found = _MeshedField(self)
+        shortfall = refine(found, self._first_mesh(), self.deadline, MOST_TRIANGLES)
+        return found.field(shortfall)
+
+    def fields(self) -> Iterator[RevolvedField]:
+        """What each mesh gives; the last is `field`. Errors as there."""
+        found = _MeshedField(self)
+        mesh = self._first_mesh()
+        for shortfall in refinements(found, mesh, self.deadline, MOST_TRIANGLES):
+            yield found.field(shortfall)
+
+    def _first_mesh(self) -> MeridianMesh:
+        mesh = triangulate(self.outline)
+        while (coarse := coarse_at_border(mesh, self.exclusion_mm)).any():
+            mesh = refined(mesh, coarse)
+        return mesh
+
+
+class _MeshedField:
+    """What the finest mesh gave, and the figures of all; a field is made only where it is asked for."""
+
+    def __init__(self, problem: StressProblem) -> None:
+        self._problem = problem
+        self._levels: list[StressLevel] = []
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        wanted, load = self._problem, self._problem.load
+        model = HarmonicModel(mesh, wanted.material)
+        solved = load.solve(model)
+        found = recovered(model, load.wave, solved.values)
+        peak = peak_stress(model, found.nodal, wanted.exclusion_mm)
+        self._model, self._solved, self._found, self._peak = model, solved, found, peak
+        energy_error = float(found.error.sum() / found.energy.sum())
+        self._levels.append(
+            StressLevel(mesh.elements, solved.unknowns, peak.mises_MPa, energy_error)
+        )
+
+    @property
+    def change(self) -> float:
+        """Of the peak, relative, over the last refinements."""
+        if len(self._levels) <= QUIET_ROUNDS:
+            return inf
+        last = [level.mises_MPa for level in self._levels[-1 - QUIET_ROUNDS :]]
+        return max(last) / min(last) - 1
+
+    @property
+    def met(self) -> bool:
+        tolerance = self._problem.tolerance
+        return self.change < tolerance and self._levels[-1].energy_error < tolerance
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        found, peak = self._found, self._peak
+        allowed = LOCAL * self._problem.tolerance * peak.mises_MPa
+        wrong = peak.counted & (found.misfit > allowed)
+        # no smaller than needed where the peak is not: those far below it may be a few percent off
+        near = peak.local_mises > peak.mises_MPa / 2
+        return refined(mesh, bulk(found.error, BULK) | (wrong & near))
+
+    def field(self, shortfall: str) -> RevolvedField:
+        """The field, its peak judged: does it go on rising into the excluded zone?"""
+        wave, peak, space = self._problem.load.wave, self._peak, self._model.space
+        phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
+        r, z = peak.rz
+        at = (r * cos(phi), r * sin(phi), z)
+        found = judged(peak.mises_MPa, at, self._problem.exclusion_mm, peak.largest)
+        return RevolvedField(
+            n=wave.n,
+            places=space.places,
+            triangles=space.dofs,
+            displacement=self._solved.values.reshape(-1, 3),
+            stress=self._found.nodal,
+            peak=replace(found, shortfall=shortfall),
+            peak_rz=peak.rz,
+            peak_phi=phi,
+            peak_change=self.change,
+            levels=tuple(self._levels),
+        )

@@ -1,0 +1,124 @@
+"""The loop over finer meshes: when it ends, what it says, and that it keeps what it had."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+
+import pytest
+
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
+from flexspline.fea.refinement import refine, refinements
+from flexspline.fea.scaled_estimate import ScaledEstimate
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.fea.types import MeshLevel
+from flexspline.geometry.errors import ComputationError
+
+WHY = "the mesher met a wall"
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A mesh of so many elements."""
+
+    elements: int
+
+
+@dataclass
+class Halving:
+    """An error of 1/elements; each mesh has twice the elements of the one before."""
+
+    tolerance: float
+    meshes: float = inf
+    fails_at: float = inf
+    fault: type[Exception] = ComputationError
+    solved: list[int] = field(default_factory=list)
+
+    def solve(self, mesh: Cut) -> None:
+        if mesh.elements >= self.fails_at:
+            raise self.fault(WHY)
+        self.solved.append(mesh.elements)
+
+    @property
+    def met(self) -> bool:
+        return 1 / self.solved[-1] <= self.tolerance
+
+    def finer(self, mesh: Cut) -> Cut | None:
+        return Cut(2 * mesh.elements) if len(self.solved) < self.meshes else None
+
+
+def test_it_ends_with_the_first_mesh_within_the_tolerance() -> None:
+    model = Halving(0.1)
+    assert refine(model, Cut(1)) == ""
+    assert model.solved == [1, 2, 4, 8, 16]
+
+
+def test_a_mesh_that_meets_the_tolerance_is_not_too_large() -> None:
+    model = Halving(0.1)
+    assert refine(model, Cut(16), most_elements=10) == ""
+
+
+def test_the_largest_mesh_is_solved_and_the_last() -> None:
+    model = Halving(0.0)
+    assert "8 elements, and none is refined beyond 4" in refine(model, Cut(1), most_elements=4)
+    assert model.solved == [1, 2, 4, 8]
+
+
+def test_no_more_meshes_are_made() -> None:
+    model = Halving(0.0, meshes=3)
+    assert refine(model, Cut(1)).startswith("3 meshes solved")
+    assert model.solved == [1, 2, 4]
+
+
+@pytest.mark.parametrize("fault", [ComputationError, MemoryError])
+def test_a_mesh_that_fails_costs_itself_only(fault: type[Exception]) -> None:
+    model = Halving(0.0, fails_at=4, fault=fault)
+    shortfall = refine(model, Cut(1))
+    assert WHY in shortfall
+    assert of_the_machine(shortfall) == (fault is MemoryError)
+    assert model.solved == [1, 2]
+
+
+def test_a_first_mesh_that_fails_is_an_error() -> None:
+    with pytest.raises(ComputationError, match=WHY):
+        refine(Halving(0.0, fails_at=1), Cut(1))
+    with pytest.raises(OutOfTimeError):
+        refine(Halving(0.0), Cut(1), Deadline(0.0))
+
+
+def test_a_bug_is_no_shortfall() -> None:
+    with pytest.raises(ZeroDivisionError):
+        refine(Halving(0.0, fails_at=2, fault=ZeroDivisionError), Cut(1))
+
+
+def test_what_was_found_can_be_seen_after_each_mesh() -> None:
+    model = Halving(0.0, fails_at=8)
+    seen = [
+        (len(model.solved), bool(said)) for said in refinements(model, Cut(1), NO_DEADLINE, inf)
+    ]
+    assert seen == [(1, False), (2, False), (3, False), (3, True)]
+
+
+def level(K: float) -> MeshLevel:
+    return MeshLevel(shortest_edge_mm=1.0, elements=1, dofs=1, K_Nm_per_rad=K)
+
+
+def test_two_meshes_give_the_scale_of_an_estimate() -> None:
+    """K = 100; upper bounds 10 and 4 too large, of which the estimate sees 40 %: c = 2.5."""
+    found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
+    found.add(level(110.0), 4.0 / 110.0)
+    assert (found.scale, found.relative) == (2.0, 2.0 * 4.0 / 110.0)
+    found.add(level(104.0), 1.6 / 104.0)
+    assert found.scale == pytest.approx(2.5, rel=1e-12)
+    assert found.K_Nm_per_rad * (1 - found.relative) == pytest.approx(100.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("K", "estimate", "expected"), [(60.0, 1.0, 3.1), (109.9, 1.0, 1.5), (104.0, 5.0, 3.1)]
+)
+def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected: float) -> None:
+    """Too large, too small, and an estimate that rose, which says nothing: the careful end."""
+    found = ScaledEstimate(usual=2.0, believed=(1.5, 3.1))
+    found.add(level(110.0), 4.0 / 110.0)
+    found.add(level(K), estimate / K)
+    assert found.scale == expected
