@@ -1,0 +1,78 @@
+"""Less material is never stiffer: the order of K of nested bodies, in every load case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from holed_designs import holed_designs
+
+from flexspline.fea.types import Stiffness
+from flexspline.geometry.load import load_design
+from flexspline.geometry.nested import nested_bodies
+from flexspline.geometry.part import Part
+from flexspline.pipeline.enclosure import NestingError, between, enclosed
+from flexspline.pipeline.revolved import contact, lobes, torsion
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FINE = 2e-4
+"""At which 0.12 % between the two bodies of xb1-40 are more than their bounds."""
+CHEAP = 0.02
+"""Of the random designs: their bounds hold on the coarsest mesh too."""
+SOLVES: dict[str, Callable[[Part], Stiffness]] = {
+    "K_b": lambda part: torsion(part, CHEAP),
+    "K_b_lobes": lambda part: lobes(part, True, CHEAP),
+    "K_b_lobes_unsupported": lambda part: lobes(part, False, CHEAP),
+    "K_b_lobes_contact": lambda part: contact(part, CHEAP),
+}
+
+
+FROM_SOFT_TO_STIFF = ("K_b_lobes_unsupported", "K_b_lobes_contact", "K_b_lobes")
+"""What a free rim can do a resting one cannot, and that can do more than one that is held."""
+
+
+@pytest.mark.parametrize(
+    ("number", "cases"),
+    [
+        pytest.param(20, [name for name in SOLVES if name != "K_b_lobes_contact"], id="20"),
+        pytest.param(200, list(SOLVES), id="200, lift-off too", marks=pytest.mark.long),
+    ],
+)
+def test_nested_bodies_are_in_order(number: int, cases: list[str]) -> None:
+    """`enclosed` refuses what is not."""
+    for design in holed_designs(number):
+        part = design.part("flexspline")
+        K = {name: enclosed(part, SOLVES[name]) for name in cases}
+        for name, found in K.items():
+            assert 0 < found.lower_Nm_per_rad <= found.K_Nm_per_rad <= found.upper_Nm_per_rad
+            assert found.guaranteed == (name == "K_b")
+        for softer, stiffer in pairwise(name for name in FROM_SOFT_TO_STIFF if name in K):
+            assert K[softer].lower_Nm_per_rad <= K[stiffer].upper_Nm_per_rad
+
+
+def test_the_other_way_round_is_an_error() -> None:
+    bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
+    cut, whole = torsion(bodies.cut, FINE), torsion(bodies.whole, FINE)
+    with pytest.raises(NestingError) as caught:
+        between(whole, cut)
+    assert caught.value.softer_Nm_per_rad == whole.lower_Nm_per_rad
+    assert caught.value.stiffer_Nm_per_rad == cut.upper_Nm_per_rad
+
+
+def test_the_bounds_are_theorems_where_both_bodies_are() -> None:
+    bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
+    cut, whole = torsion(bodies.cut, CHEAP), torsion(bodies.whole, CHEAP)
+    assert between(cut, whole).guaranteed
+    assert not between(replace(cut, guaranteed=False), whole).guaranteed
+    assert not between(cut, replace(whole, guaranteed=False)).guaranteed
+
+
+def test_what_fell_short_is_said() -> None:
+    bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
+    cut, whole = torsion(bodies.cut, CHEAP), torsion(bodies.whole, CHEAP)
+    assert between(replace(cut, shortfall="no time"), whole).shortfall == "no time"
+    assert between(cut, replace(whole, shortfall="no room")).shortfall == "no room"
+    assert not between(cut, whole).shortfall
