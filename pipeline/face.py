@@ -19,7 +19,12 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
-from flexspline.pipeline.load_cases import RimCase, rim_stiffness, wave_generator_field
+from flexspline.pipeline.load_cases import (
+    RIM_CASES,
+    RimCase,
+    rim_stiffness,
+    wave_generator_field,
+)
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
@@ -27,7 +32,6 @@ from flexspline.pipeline.study.run import trial_store_of, whole_study
 from flexspline.pipeline.study.sensitivity import Slope, sensitivities
 
 StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
-RIM_CASES: tuple[RimCase, ...] = ("lobes", "lobes_unsupported", "lobes_contact")
 
 
 def stiffness(

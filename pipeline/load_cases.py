@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, get_args
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
@@ -20,7 +20,9 @@ from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_lobes import solid_lobes
 from flexspline.pipeline.wave_generator import solid_ellipse
 
-RimCase = Literal["lobes", "lobes_unsupported", "lobes_contact"]
+RimCase = Literal["lobes", "lobes_contact", "lobes_unsupported"]
+RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
+"""In the order of the reports; each is solved as `CASES` (below) says."""
 T = TypeVar("T", Stiffness, StressPeak)
 NARROW_SEAT = 0.5
 """Share of the ring's width that the seat has where it is asked how its width matters."""
@@ -28,14 +30,18 @@ SEAT_TOLERANCE = 0.02
 """Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
 STRESS_TOLERANCE = 0.005
 """Change of a peak stress over two refinements at which the axisymmetric mesh is fine enough."""
-HARMONICS = {
-    "K_b_lobes": "lobes",
-    "K_b_lobes_unsupported": "lobes, rim unsupported",
-    "K_b_lobes_contact": "lobes, rim resting on the seat",
-    "wave_generator_peak": "wave generator",
-    "half_seat_peak": "wave generator, seat half as wide,",
-}
-"""What a stage is called, by its figure."""
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """How one load case of the rim is solved, and what it is called while it is.
+
+    `solid` is None where only bodies of revolution are solved.
+    """
+
+    title: str
+    revolved: Callable[[PartModel], Stiffness]
+    solid: Callable[[PartModel], Stiffness] | None
 
 
 @dataclass(frozen=True)
@@ -52,14 +58,12 @@ class RimAnswers:
 
 def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
-    cases: list[RimCase] = ["lobes", "lobes_unsupported"]
-    peak = _solid_peak
-    if flexspline.axisymmetric:
-        cases.insert(0, "lobes_contact")
-        peak = _revolved_peak
+    revolved = flexspline.axisymmetric
+    peak = _revolved_peak if revolved else _solid_peak
     found = {
         f"K_b_{case}": tried.get(f"K_b_{case}", partial(rim_stiffness, flexspline, case))
-        for case in cases
+        for case in RIM_CASES
+        if revolved or CASES[case].solid is not None
     }
     return RimAnswers(found, tried.get("wave_generator_peak", lambda: peak(flexspline)))
 
@@ -70,17 +74,17 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     Raises
     ------
     DesignError
-    ComputationError : the solve failed; or lift-off is asked of a part that only the solid model answers.
+    ComputationError : the solve failed; or the case is for bodies of revolution and the part is none.
     """
-    if case == "lobes_contact":
-        if not flexspline.axisymmetric:
-            raise ComputationError(
-                "lift-off (lobes_contact) is solved for bodies of revolution only: without bolt holes,"
-                ' and with solver.model = "auto" or "axisymmetric"'
-            )
-        return _revolved_contact(flexspline)
-    lobes = _revolved_lobes if flexspline.axisymmetric else solid_lobes
-    return lobes(flexspline, case == "lobes")
+    asked = CASES[case]
+    if flexspline.axisymmetric:
+        return asked.revolved(flexspline)
+    if asked.solid is None:
+        raise ComputationError(
+            f"{asked.title} ({case}) is solved for bodies of revolution only: without bolt holes,"
+            ' and with solver.model = "auto" or "axisymmetric"'
+        )
+    return asked.solid(flexspline)
 
 
 def _solid_peak(flexspline: PartModel) -> StressPeak:
@@ -99,7 +103,9 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
         own = flexspline.material
         return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
 
-    return _by_harmonics(flexspline, "half_seat_peak", make, w0_mm=w0)
+    return _by_harmonics(
+        flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
+    )
 
 
 def wave_generator_field(flexspline: PartModel) -> SolidField:
@@ -111,37 +117,46 @@ def wave_generator_field(flexspline: PartModel) -> SolidField:
 
 
 def _by_harmonics(
-    flexspline: PartModel, figure: str, make: Callable[[Meridian, Deadline], T], **more: float
+    flexspline: PartModel,
+    figure: str,
+    title: str,
+    make: Callable[[Meridian, Deadline], T],
+    **more: float,
 ) -> T:
     """A figure of the meridian, from the cache or made; `more` is what it depends on beside the part."""
     context = flexspline.context
 
     def timed() -> T:
-        with context.progress.stage(f"{HARMONICS[figure]} by Fourier harmonics"):
+        with context.progress.stage(f"{title} by Fourier harmonics"):
             return make(flexspline.part.meridian, Deadline(STAGE_SECONDS))
 
     inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
     return context.cache.get("harmonics", inputs, timed, is_lasting)[0]
 
 
+def _of_case(
+    flexspline: PartModel, case: RimCase, make: Callable[[Meridian, Deadline], Stiffness]
+) -> Stiffness:
+    return _by_harmonics(flexspline, f"K_b_{case}", CASES[case].title, make)
+
+
 def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
-    tolerance = flexspline.context.design.solver.tolerance_pct / 100
-    figure = "K_b_lobes" if supported else "K_b_lobes_unsupported"
-    return _by_harmonics(
+    own, tolerance = flexspline.material, flexspline.context.design.solver.tolerance_pct / 100
+    return _of_case(
         flexspline,
-        figure,
+        "lobes" if supported else "lobes_unsupported",
         lambda outline, deadline: revolved_lobe_stiffness(
-            outline, flexspline.material, supported, tolerance, deadline
+            outline, own, supported, tolerance, deadline
         ),
     )
 
 
 def _revolved_contact(flexspline: PartModel) -> Stiffness:
-    held = _revolved_lobes(flexspline, True)
-    return _by_harmonics(
+    own, held = flexspline.material, _revolved_lobes(flexspline, True)
+    return _of_case(
         flexspline,
-        "K_b_lobes_contact",
-        lambda outline, deadline: contact_stiffness(outline, flexspline.material, held, deadline),
+        "lobes_contact",
+        lambda outline, deadline: contact_stiffness(outline, own, held, deadline),
     )
 
 
@@ -151,8 +166,25 @@ def _revolved_peak(flexspline: PartModel) -> StressPeak:
     return _by_harmonics(
         flexspline,
         "wave_generator_peak",
+        "wave generator",
         lambda outline, deadline: (
             ellipse_stress(outline, flexspline.material, w0, apart, STRESS_TOLERANCE, deadline).peak
         ),
         w0_mm=w0,
     )
+
+
+CASES: Mapping[RimCase, LoadCase] = {
+    "lobes": LoadCase(
+        "lobes",
+        partial(_revolved_lobes, supported=True),
+        partial(solid_lobes, supported=True),
+    ),
+    "lobes_contact": LoadCase("lobes, rim resting on the seat", _revolved_contact, None),
+    "lobes_unsupported": LoadCase(
+        "lobes, rim unsupported",
+        partial(_revolved_lobes, supported=False),
+        partial(solid_lobes, supported=False),
+    ),
+}
+"""Lift-off breaks the symmetry that makes the solid model small."""

@@ -10,8 +10,9 @@ from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import series_stiffness
+from flexspline.pipeline.load_cases import RIM_CASES
 
-FIGURES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e")
+FIGURES = ("K_b", *(f"K_b_{case}" for case in RIM_CASES), "K_e")
 """In the order of the reports."""
 
 

@@ -75,17 +75,13 @@ def report_content(
     return ReportContent(
         design=design,
         version=__version__,
-        K_b=found.K_b,
-        K_e=found.K_e,
+        stiffnesses=found.solved,
         K_series_Nm_per_rad=found.series_Nm_per_rad(design),
         backlash=result.backlash,
         pictures=Pictures(**{own: pictures.paths.get(name) for own, name in NAMES.items()}),
         missing_pictures={
             own: pictures.missing[name] for own, name in NAMES.items() if name in pictures.missing
         },
-        K_b_lobes=found.solved.get("K_b_lobes"),
-        K_b_lobes_contact=found.solved.get("K_b_lobes_contact"),
-        K_b_lobes_unsupported=found.solved.get("K_b_lobes_unsupported"),
         flexspline_peak=peaks.get("flexspline_torque"),
         shaft_peak=peaks.get("shaft_torque"),
         wave_generator_peak=peaks.get("wave_generator", found.wave_generator_peak),

@@ -35,11 +35,10 @@ class ReportContent:
     Attributes
     ----------
     version : of this program.
-    K_b, K_e : flexspline (load case "uniform") and shaft.
+    stiffnesses : those that were solved, by the name of the figure ("K_b"), in the report's order; K_b of the
+        case "uniform" and K_e are among them.
     K_series_Nm_per_rad : of the K_b that enters the sum and K_e.
     missing_pictures : why, by the names in `pictures`, of those that could not be drawn.
-    K_b_lobes, K_b_lobes_contact, K_b_lobes_unsupported : the other load cases, None where not
-        solved.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
     half_seat_peak : the ellipse's on a seat half as wide as the ring.
     linear_limit : beyond which torque the figures are not valid.
@@ -53,15 +52,11 @@ class ReportContent:
 
     design: Design
     version: str
-    K_b: Stiffness
-    K_e: Stiffness
+    stiffnesses: Mapping[str, Stiffness]
     K_series_Nm_per_rad: float
     backlash: Backlash
     pictures: Pictures = Pictures()
     missing_pictures: Mapping[str, str] = field(default_factory=dict)
-    K_b_lobes: Stiffness | None = None
-    K_b_lobes_contact: Stiffness | None = None
-    K_b_lobes_unsupported: Stiffness | None = None
     flexspline_peak: StressPeak | None = None
     shaft_peak: StressPeak | None = None
     wave_generator_peak: StressPeak | None = None
@@ -75,11 +70,19 @@ class ReportContent:
     attached: tuple[Attachment, ...] = ()
 
     @property
+    def K_b(self) -> Stiffness:
+        """Of the flexspline, load case "uniform"."""
+        return self.stiffnesses["K_b"]
+
+    @property
+    def K_e(self) -> Stiffness:
+        """Of the shaft."""
+        return self.stiffnesses["K_e"]
+
+    @property
     def K_b_in_sum(self) -> Stiffness:
         """The K_b that `solver.load_case` puts into the sum."""
-        found = self.K_b if self.design.solver.K_b_in_sum == "K_b" else self.K_b_lobes
-        assert found is not None  # a run has it, or ends without a report
-        return found
+        return self.stiffnesses[self.design.solver.K_b_in_sum]
 
     @property
     def K_series_bounds_Nm_per_rad(self) -> tuple[float, float]:

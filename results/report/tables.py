@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import Material
 from flexspline.geometry.shapes import Cup, Hat
@@ -17,6 +16,14 @@ from flexspline.results.report.dimensions import ratio, weights
 Row = dict[str, str]
 UNCHECKED = "–"
 """Stands where a check was not made."""
+LOADS = {
+    "K_b": "ring turned rigidly, mount held",
+    "K_b_lobes": "cos² traction within ±30° of the major axis, seat held radially",
+    "K_b_lobes_contact": "same traction, the rim rests on the seat and may lift off",
+    "K_b_lobes_unsupported": "same traction, nothing on the seat",
+    "K_e": "grip turned rigidly, mount held",
+}
+"""What is held and what is driven, by the stiffness."""
 
 
 def answers(content: ReportContent) -> list[Row]:
@@ -35,31 +42,13 @@ def answers(content: ReportContent) -> list[Row]:
         )
         | {"note": f"with K_b of load case “{case}”"}
     )
-    notes = {
-        "K_b_Nm_per_rad": "ring turned rigidly, mount held",
-        "K_b_lobes_Nm_per_rad": "cos² traction within ±30° of the major axis, seat held radially",
-        "K_b_lobes_contact_Nm_per_rad": "same traction, the rim rests on the seat and may lift off",
-        "K_b_lobes_unsupported_Nm_per_rad": "same traction, nothing on the seat",
-        "K_e_Nm_per_rad": "grip turned rigidly, mount held",
-    }
-    for key, stiffness in stiffnesses(content).items():
-        entry = quantity(key)
+    for name, stiffness in content.stiffnesses.items():
+        entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         kind = bounds_kind(stiffness.guaranteed)
-        rows.append(_row(entry, stiffness.K_Nm_per_rad, f"{bounds}, {kind}") | {"note": notes[key]})
+        row = _row(entry, stiffness.K_Nm_per_rad, f"{bounds}, {kind}")
+        rows.append(row | {"note": LOADS.get(name, "")})
     return rows + _stress_rows(content)
-
-
-def stiffnesses(content: ReportContent) -> dict[str, Stiffness]:
-    """The stiffnesses that were solved, by quantity key, in the report's order."""
-    every = {
-        "K_b_Nm_per_rad": content.K_b,
-        "K_b_lobes_Nm_per_rad": content.K_b_lobes,
-        "K_b_lobes_contact_Nm_per_rad": content.K_b_lobes_contact,
-        "K_b_lobes_unsupported_Nm_per_rad": content.K_b_lobes_unsupported,
-        "K_e_Nm_per_rad": content.K_e,
-    }
-    return {key: found for key, found in every.items() if found is not None}
 
 
 def budget(content: ReportContent) -> list[Row]:
@@ -77,12 +66,12 @@ def budget(content: ReportContent) -> list[Row]:
 def solves(content: ReportContent) -> list[Row]:
     """How each stiffness was solved: model, piece, size, checks."""
     rows = []
-    for key, s in stiffnesses(content).items():
+    for name, s in content.stiffnesses.items():
         last = s.levels[-1]
         half, check = 100 * s.half_width, last.K_check_Nm_per_rad
         rows.append(
             {
-                "symbol": quantity(key).symbol,
+                "symbol": quantity(f"{name}_Nm_per_rad").symbol,
                 "model": s.model,
                 "symmetry": s.symmetry,
                 "meshes": str(len(s.levels)),

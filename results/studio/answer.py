@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from flexspline.pipeline.backlash import (
     series_stiffness,
 )
 from flexspline.pipeline.linear_limit import linear_limit
-from flexspline.pipeline.live import left_out
+from flexspline.pipeline.live import RimCase, left_out
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import REACH, band
@@ -25,7 +25,7 @@ from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.records import backlash_record, peak_of
 from flexspline.results.style import PALETTE
 
-STIFFNESSES = ("K_b", "K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported", "K_e", "K_series")
+STIFFNESSES = ("K_b", *get_args(RimCase), "K_e", "K_series")
 PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
 LINE_POINTS = 25
 ESTIMATED = "≈\u2009"

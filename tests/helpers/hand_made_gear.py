@@ -68,11 +68,9 @@ def content(**changes):
     base = ReportContent(
         design=design(),
         version="0.1.0",
-        K_b=K_B,
-        K_e=K_E,
+        stiffnesses={"K_b": K_B, "K_b_lobes": K_LOBES, "K_e": K_E},
         K_series_Nm_per_rad=16687.0,
         backlash=BACKLASH,
-        K_b_lobes=K_LOBES,
         flexspline_peak=StressPeak(3.218, (9.0, 0.0, 0.6), "the boss's edge", 0.4, True, 2.9),
         wave_generator_peak=StressPeak(
             451.3, (19.2, 0.0, 21.6), "the seat's edges", 0.4, False, 400.0

@@ -35,11 +35,7 @@ def found(guaranteed: tuple[str, ...]) -> Stiffnesses:
 
 
 def said_of(stiffnesses: Stiffnesses):
-    return content(
-        K_b=stiffnesses.K_b, K_e=stiffnesses.K_e, K_b_lobes=stiffnesses["K_b_lobes"],
-        K_b_lobes_contact=stiffnesses["K_b_lobes_contact"],
-        K_b_lobes_unsupported=stiffnesses["K_b_lobes_unsupported"],
-    )  # fmt: skip
+    return content(stiffnesses=stiffnesses.solved)
 
 
 CASES = [(), ("K_b",), ("K_e",), ("K_b", "K_e")]
@@ -83,9 +79,10 @@ def test_a_check_that_nobody_made_is_not_printed() -> None:
     unchecked = tuple(
         replace(level, K_check_Nm_per_rad=None, residual=None) for level in K_B.levels
     )
+    unchecked_K = replace(K_B, levels=unchecked)
     rows = {
         row["symbol"]: row
-        for row in solves(content(K_b_lobes_contact=replace(K_B, levels=unchecked)))
+        for row in solves(content(stiffnesses={"K_b": K_B, "K_b_lobes_contact": unchecked_K}))
     }
     assert (rows["K_b,contact"]["residual"], rows["K_b,contact"]["energy"]) == (UNCHECKED,) * 2
     assert re.fullmatch(r"3·10⁻¹³", rows["K_b"]["residual"])

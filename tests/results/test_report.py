@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from hand_made_gear import BACKLASH, content, design
+from hand_made_gear import BACKLASH, K_B, K_E, content, design
 from PIL import Image
 from pypdf import PdfReader
 
@@ -60,8 +60,8 @@ def test_report_says_the_numbers(tmp_path):
 
 def test_report_without_pictures_and_rim_loads(tmp_path):
     bare = content(
-        K_b_lobes=None, flexspline_peak=None, wave_generator_peak=None, versions=None,
-        stage_seconds=None,
+        stiffnesses={"K_b": K_B, "K_e": K_E}, flexspline_peak=None, wave_generator_peak=None,
+        versions=None, stage_seconds=None,
     )  # fmt: skip
     write_report(tmp_path / "r.pdf", bare)
     text, pages = text_of(tmp_path / "r.pdf")
