@@ -27,6 +27,7 @@ class Quantity:
     kind : what stands under the key; "bounds" is a pair of numbers.
     digits : significant digits in print (kind "number" and "bounds").
     decimals : fixed decimals instead of significant digits.
+    note : beside it in the report: of a stiffness, what is held and what is driven.
     """
 
     key: str
@@ -37,6 +38,7 @@ class Quantity:
     kind: Kind = "number"
     digits: int = 4
     decimals: int | None = None
+    note: str = ""
 
     @property
     def mathtext(self) -> str:
@@ -83,12 +85,12 @@ _STIFFNESS = "N·m/rad"
 
 
 def _stiffness(
-    key: str, digits: int, symbol: str, name: str, bounded: str
+    key: str, digits: int, symbol: str, name: str, bounded: str, note: str
 ) -> tuple[Quantity, Quantity]:
     """A stiffness and its bounds."""
     value, bounds = f"{key}_Nm_per_rad", f"{key}_bounds_Nm_per_rad"
     return (
-        Quantity(value, value, _STIFFNESS, name, symbol, digits=digits),
+        Quantity(value, value, _STIFFNESS, name, symbol, digits=digits, note=note),
         Quantity(bounds, bounds, _STIFFNESS, f"Bounds of the {bounded}", symbol, "bounds", digits),
     )
 
@@ -102,6 +104,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "K_b",
         "Flexspline stiffness, even torque on the ring (uniform)",
         "flexspline stiffness (uniform)",
+        "ring turned rigidly, mount held",
     ),
     *_stiffness(
         "K_b_lobes",
@@ -109,6 +112,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "K_b,lobes",
         "Flexspline stiffness, torque at the two lobes (lobes)",
         "flexspline stiffness (lobes)",
+        "cos² traction within ±30° of the major axis, seat held radially",
     ),
     *_stiffness(
         "K_b_lobes_contact",
@@ -116,6 +120,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "K_b,contact",
         "Flexspline stiffness, torque at the two lobes, rim may lift off",
         "flexspline stiffness, lobes, rim may lift off",
+        "same traction, the rim rests on the seat and may lift off",
     ),
     *_stiffness(
         "K_b_lobes_unsupported",
@@ -123,8 +128,16 @@ QUANTITIES: tuple[Quantity, ...] = (
         "K_b,free",
         "Flexspline stiffness, torque at the two lobes, rim unsupported",
         "flexspline stiffness, lobes, rim unsupported",
+        "same traction, nothing on the seat",
     ),
-    *_stiffness("K_e", 5, "K_e", "Output shaft stiffness", "output shaft stiffness"),
+    *_stiffness(
+        "K_e",
+        5,
+        "K_e",
+        "Output shaft stiffness",
+        "output shaft stiffness",
+        "grip turned rigidly, mount held",
+    ),
     Quantity(
         "K_series_Nm_per_rad",
         "K_series_Nm_per_rad",

@@ -16,14 +16,6 @@ from flexspline.results.report.dimensions import ratio, weights
 Row = dict[str, str]
 UNCHECKED = "–"
 """Stands where a check was not made."""
-LOADS = {
-    "K_b": "ring turned rigidly, mount held",
-    "K_b_lobes": "cos² traction within ±30° of the major axis, seat held radially",
-    "K_b_lobes_contact": "same traction, the rim rests on the seat and may lift off",
-    "K_b_lobes_unsupported": "same traction, nothing on the seat",
-    "K_e": "grip turned rigidly, mount held",
-}
-"""What is held and what is driven, by the stiffness."""
 
 
 def answers(content: ReportContent) -> list[Row]:
@@ -47,7 +39,7 @@ def answers(content: ReportContent) -> list[Row]:
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         kind = bounds_kind(stiffness.guaranteed)
         row = _row(entry, stiffness.K_Nm_per_rad, f"{bounds}, {kind}")
-        rows.append(row | {"note": LOADS.get(name, "")})
+        rows.append(row | {"note": entry.note})
     return rows + _stress_rows(content)
 
 
