@@ -19,9 +19,10 @@ from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.specimens.bench import Bench, row_designs
+from flexspline.pipeline.diagnosis.specimens.compliances import compliances
 from flexspline.pipeline.diagnosis.specimens.diagnose import weighed
 from flexspline.pipeline.diagnosis.specimens.laplace import SpecimenData
-from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, compliances, row_designs
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 

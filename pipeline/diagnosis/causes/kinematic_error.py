@@ -8,27 +8,20 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.periodic import (
+    PeriodicShapes,
     harmonic,
-    harmonic_shapes,
     largest_amplitude,
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 
-class KinematicError(Cause):
+class KinematicError(PeriodicShapes, Cause):
     """Angle Σ a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
 
     id = "kinematic_error"
     title = "kinematic error (position error periodic in the wave generator's angle)"
     unit = "arcsec"
-    exact = True
-    shape_doubt = 0.005
-    vary = "input_angle_deg"
-    shows_over = "input_angle_deg"
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
-
-    def shapes(self, rig: Rig) -> list[Shape]:
-        return harmonic_shapes(rig)
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import LARGEST_NOISE
 
 
 def stops(
@@ -71,6 +72,11 @@ def rising(history: History, width_Nm: float) -> np.ndarray:
         last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
         out[rows] = step[last]
     return out
+
+
+def direction_of_loading(history: History) -> np.ndarray:
+    """`rising`, by reversals larger than any noise that the torque may have."""
+    return rising(history, LARGEST_NOISE * float(np.abs(history.torque_Nm).max()))
 
 
 def dahl(

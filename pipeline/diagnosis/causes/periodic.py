@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,6 +13,19 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
 """Per turn, and which come together: eccentricity, the two lobes, and their multiples."""
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
+
+
+class PeriodicShapes:
+    """A cause whose shapes are sets of harmonics."""
+
+    exact: ClassVar[bool] = True
+    shape_doubt: ClassVar[float] = 0.005
+    vary: ClassVar[str] = "input_angle_deg"
+    shows_over: ClassVar[str] = "input_angle_deg"
+
+    def shapes(self, rig: Rig) -> list[Shape]:
+        """Sets of harmonics, where the input angle was recorded."""
+        return harmonic_shapes(rig)
 
 
 def harmonic_shapes(rig: Rig) -> list[Shape]:

@@ -8,28 +8,21 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.periodic import (
+    PeriodicShapes,
     harmonic,
-    harmonic_shapes,
     largest_amplitude,
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 
-class PositionStiffness(Cause):
+class PositionStiffness(PeriodicShapes, Cause):
     """Twist T·Σ (a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
 
     id = "position_stiffness"
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
-    exact = True
-    shape_doubt = 0.005
-    vary = "input_angle_deg"
-    shows_over = "input_angle_deg"
     shows_as = "compliance"
     reveals = "the same sweep at many wave generator angles"
-
-    def shapes(self, rig: Rig) -> list[Shape]:
-        return harmonic_shapes(rig)
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history) * history.torque_Nm[:, None]

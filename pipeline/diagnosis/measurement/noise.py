@@ -123,7 +123,7 @@ def estimated(
 def crossing_band_Nm(history: History) -> float:
     """|T| below which the side of the gap is not known."""
     largest = float(np.abs(history.torque_Nm).max())
-    return max(BAND_SIGMAS * min(torque_noise_Nm(history), 0.02 * largest), BAND_SHARE * largest)
+    return max(BAND_SIGMAS * torque_noise_Nm(history), BAND_SHARE * largest)
 
 
 def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> np.ndarray:

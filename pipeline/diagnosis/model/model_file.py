@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,37 +14,28 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, Shape
 from flexspline.pipeline.diagnosis.measurement.errors import ModelFileError
 from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.model_keys import (
+    CALIBRATED,
+    CAUSE,
+    CAUSE_OPTIONAL,
+    ELEMENT,
+    GAIN,
+    ORIGIN,
+    OWN,
+    PROVENANCE,
+    TOP,
+    UNIT,
+    Refuse,
+    check,
+    is_number,
+    tables,
+)
 from flexspline.pipeline.diagnosis.model.shape_check import fault_of
 
 FORMAT = 1
 """Of the file; it grows when a key changes its meaning."""
 LARGEST_BYTES = 1_000_000
 """A model takes 5 kB; a file beyond this is some other file."""
-
-Refuse = Callable[[str], ModelFileError]
-Keys = dict[str, tuple[type, ...]]
-NUMBER = (int, float)
-TOP: Keys = {"format": (int,), "provenance": (dict,), "calibrated": (dict,), "unit": (list,)}
-PROVENANCE: Keys = {
-    "program": (str,), "design": (str,), "measurement": (str,), "measurement_sha256": (str,),
-    "verdict": (str,), "K_b_Nm_per_rad": NUMBER, "K_e_Nm_per_rad": NUMBER,
-    "time_recorded": (bool,),
-}  # fmt: skip
-CALIBRATED: Keys = {"compliance_arcsec_per_Nm": NUMBER, "gap_arcsec": NUMBER}
-UNIT: Keys = {"name": (str,), "zero_arcsec": NUMBER}
-OWN: Keys = {"own_compliance_arcsec_per_Nm": NUMBER, "own_gap_arcsec": NUMBER}
-ORIGIN: Keys = {"first_cycle": NUMBER, "first_time_s": NUMBER}
-CAUSE: Keys = {"id": (str,), "element": (list,)}
-CAUSE_OPTIONAL: Keys = {
-    "title": (str,), "magnitude": NUMBER, "magnitude_std": NUMBER, "unit": (str,),
-    "alternatives": (list,),
-}  # fmt: skip
-ELEMENT: Keys = {"amplitudes": (list,), "shape": (dict,)}
-GAIN: Keys = {
-    "held_out": (str,), "rmse_before": NUMBER, "rmse_calibrated": NUMBER, "rmse_after": NUMBER,
-    "noise_floor": NUMBER, "unit": (str,),
-}  # fmt: skip
-NAMES = {int: "a whole number", str: "text", bool: "true or false", list: "a list", dict: "a table"}
 
 
 @dataclass(frozen=True)
@@ -92,24 +83,24 @@ def read_model_file(path: Path) -> ModelFile:
     def refuse(reason: str) -> ModelFileError:
         return ModelFileError(path, reason)
 
-    _check(data, TOP, {"cause": (list,)}, "the model", lambda r: refuse(f"no extended model: {r}"))
+    check(data, TOP, {"cause": (list,)}, "the model", lambda r: refuse(f"no extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
     origin, calibrated = data["provenance"], data["calibrated"]
-    _check(origin, PROVENANCE, {"gain": (dict,)}, "[provenance]", refuse)
+    check(origin, PROVENANCE, {"gain": (dict,)}, "[provenance]", refuse)
     if "gain" in origin:
-        _check(origin["gain"], GAIN, {}, "[provenance.gain]", refuse)
-    _check(calibrated, CALIBRATED, {}, "[calibrated]", refuse)
+        check(origin["gain"], GAIN, {}, "[provenance.gain]", refuse)
+    check(calibrated, CALIBRATED, {}, "[calibrated]", refuse)
     if calibrated["compliance_arcsec_per_Nm"] <= 0:
         raise refuse("calibrated.compliance_arcsec_per_Nm must be above 0")
-    for table in _tables(data["unit"], "unit", refuse):
-        _check(table, UNIT, OWN | ORIGIN, "[[unit]]", refuse)
+    for table in tables(data["unit"], "unit", refuse):
+        check(table, UNIT, OWN | ORIGIN, "[[unit]]", refuse)
     units = {u["name"]: u for u in data["unit"]}
     if len(units) != len(data["unit"]):
         raise refuse("a unit's name appears twice")
     elements: dict[str, tuple[Element, ...]] = {}
-    for table in _tables(data.get("cause", []), "cause", refuse):
-        _check(table, CAUSE, CAUSE_OPTIONAL, "[[cause]]", refuse)
+    for table in tables(data.get("cause", []), "cause", refuse):
+        check(table, CAUSE, CAUSE_OPTIONAL, "[[cause]]", refuse)
         if table["id"] in elements:
             raise refuse(f"cause {table['id']} appears twice")
         elements[table["id"]] = _elements(table, refuse)
@@ -140,48 +131,22 @@ def _toml(path: Path) -> dict[str, Any]:
         raise ModelFileError(path, str(error)) from None
 
 
-def _tables(values: list, name: str, refuse: Refuse) -> list[dict[str, Any]]:
-    if not all(isinstance(v, dict) for v in values):
-        raise refuse(f"{name} must be tables [[{name}]]")
-    return values
-
-
-def _check(
-    table: Mapping[str, Any], needed: Keys, optional: Keys, where: str, refuse: Refuse
-) -> None:
-    """All needed keys, none unknown, each of its type and finite."""
-    for key in needed:
-        if key not in table:
-            raise refuse(f"{key} is missing in {where}")
-    known = needed | optional
-    for key, value in table.items():
-        if key not in known:
-            raise refuse(f"{key} is no key of {where}; it takes {', '.join(known)}")
-        wanted = known[key]
-        right = isinstance(value, wanted) and (bool in wanted or not isinstance(value, bool))
-        if not right:
-            words = "a number" if wanted == NUMBER else NAMES[wanted[0]]
-            raise refuse(f"{key} in {where} must be {words}")
-        if isinstance(value, float | int) and not _is_number(value) and bool not in wanted:
-            raise refuse(f"{key} in {where} must be a number within ±{LARGEST_NUMBER:g}")
-
-
 def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
     name = table["id"]
     cause = known_causes().get(name)
     if cause is None:
         raise refuse(f'"{name}" is no known cause; known are {", ".join(known_causes())}')
     found = []
-    for element in _tables(table["element"], "cause.element", refuse):
-        _check(element, ELEMENT, {}, f"element of {name}", refuse)
+    for element in tables(table["element"], "cause.element", refuse):
+        check(element, ELEMENT, {}, f"element of {name}", refuse)
         amplitudes = element["amplitudes"]
-        if not amplitudes or not all(_is_number(a) for a in amplitudes):
+        if not amplitudes or not all(is_number(a) for a in amplitudes):
             raise refuse(f"amplitudes of {name} must be numbers within ±{LARGEST_NUMBER:g}")
         if cause.positive and min(amplitudes) < 0:
             raise refuse(f"an amplitude of {name} is negative, which physics forbids")
         shape: Shape = element["shape"]
         for key, value in shape.items():
-            if not _is_number(value):
+            if not is_number(value):
                 raise refuse(
                     f"{key} in a shape of {name} must be a number within ±{LARGEST_NUMBER:g}"
                 )
@@ -192,10 +157,3 @@ def _elements(table: Mapping[str, Any], refuse: Refuse) -> tuple[Element, ...]:
     if not found:
         raise refuse(f"cause {name} has no element")
     return tuple(found)
-
-
-def _is_number(value: object) -> bool:
-    """Also: one that no reading exceeds; whole numbers of TOML may have any length."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return abs(value) <= LARGEST_NUMBER  # false for NaN

@@ -10,19 +10,14 @@ import numpy as np
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_designs
+from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance, specimen_parameters
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
-from flexspline.pipeline.diagnosis.specimens.stiffness import (
-    PARTS,
-    Bench,
-    compliances,
-    refined,
-    row_designs,
-)
 from flexspline.pipeline.parts import AnalysisContext
 
 FEWEST = 3

@@ -9,12 +9,12 @@ from math import log, pi
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
+from flexspline.pipeline.diagnosis.specimens.compliances import Compliances
 from flexspline.pipeline.diagnosis.specimens.parameters import (
     MOST_TOLERANCES,
     SpecimenParameter,
     log_compliance,
 )
-from flexspline.pipeline.diagnosis.specimens.stiffness import Compliances
 
 NOISES = (0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05)
 """Relative standard deviation of a stiffness, where the file states none."""

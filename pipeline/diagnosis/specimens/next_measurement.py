@@ -9,10 +9,11 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
+from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
 from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
-from flexspline.pipeline.diagnosis.specimens.stiffness import PARTS, Bench, Compliances, compliances
 
 FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.specimens.stiffness import Compliances, Sensitivity
+from flexspline.pipeline.diagnosis.specimens.compliances import Compliances
+from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
 
 MODULUS_SPREAD = 0.1
 """Standard deviation of ln E where the material is another one than stated."""

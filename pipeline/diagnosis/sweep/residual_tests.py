@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from flexspline.pipeline.diagnosis.causes.operators import rising, steadied
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -103,7 +103,7 @@ def _units(unit: np.ndarray) -> list[np.ndarray]:
 
 def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
     h = prepared.rig.history
-    side = rising(h, 0.02 * prepared.rig.torque_Nm)
+    side = direction_of_loading(h)
     # bins of the raw reading would sort a hold's rows by the torque's noise, which the angle shows
     torque = steadied(h, 3 * torque_noise_Nm(h))
     found: dict[str, np.ndarray] = {

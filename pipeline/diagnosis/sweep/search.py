@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
+from flexspline.pipeline.diagnosis.sweep.evidence_gains import RegressorGroup
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
@@ -58,7 +59,7 @@ class Search:
         for i, term in enumerate(self.evidence.terms):
             if self.allowed(term):
                 sizes.setdefault(term.at.stop - term.at.start, []).append(i)
-        self._groups = [_Group.of(self.evidence, members) for members in sizes.values()]
+        self._groups = [RegressorGroup.of(self.evidence, members) for members in sizes.values()]
         self._seen: set[frozenset[int]] = set()
 
     def run(self, starts: Iterable[Sequence[int]] = ((),), most: int = MOST_TERMS) -> Candidate:
@@ -159,69 +160,6 @@ class Search:
             if len(kept) == BEAM:
                 break
         return kept
-
-
-@dataclass(frozen=True)
-class _Group:
-    """Terms with the same number k of columns, for arithmetic on all of them at once."""
-
-    members: np.ndarray
-    at: np.ndarray
-    own: np.ndarray
-    log_share: np.ndarray
-    owners: list[str]
-    unnamed: np.ndarray
-    positive: np.ndarray
-    is_owner: dict[str, np.ndarray]
-    against: list[frozenset[str]]
-
-    @staticmethod
-    def of(evidence: GaussianEvidence, members: list[int]) -> _Group:
-        terms = [evidence.terms[i] for i in members]
-        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
-        owners = [t.owner for t in terms]
-        return _Group(
-            np.array(members),
-            at,
-            evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]),
-            np.array([t.log_share for t in terms]),
-            owners,
-            np.array([t.cause is None for t in terms]),
-            np.array([t.positive for t in terms]),
-            {o: np.array([x == o for x in owners]) for o in set(owners)},
-            [t.against for t in terms],
-        )
-
-    def barred(self, present: set[str], shut: frozenset[str]) -> np.ndarray:
-        """(m,) members that do not stand beside the causes present, or are shut out by a term there."""
-        return np.array(
-            [
-                o in shut or not a.isdisjoint(present)
-                for o, a in zip(self.owners, self.against, strict=True)
-            ]
-        )
-
-    def gains(
-        self,
-        evidence: GaussianEvidence,
-        cross: np.ndarray,
-        pull: np.ndarray,
-        mean: np.ndarray,
-        held: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Evidence (m,) that each member adds to a set, and whether all signs stay as physics has them."""
-        c, p = cross[:, self.at], pull[:, self.at]  # (s, m, k)
-        matrix = self.own - np.einsum("smk,sml->mkl", c, p)
-        right = evidence.right[self.at] - np.einsum("smk,s->mk", c, mean)
-        # a member of the set itself leaves nothing but its prior
-        _, logdet = np.linalg.slogdet(matrix)
-        amplitude = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
-        gain = (right * amplitude).sum(axis=1) / 2 - logdet / 2
-        valid = ~self.positive | (amplitude >= 0).all(axis=1)
-        if held.any():
-            moved = mean[held, None] - np.einsum("smk,mk->sm", p[held], amplitude)
-            valid &= (moved >= 0).all(axis=0)
-        return gain, valid
 
 
 def _width(term: Regressor) -> int:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
-from flexspline.pipeline.diagnosis.causes.operators import rising
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -134,7 +134,7 @@ def first_offset(
     if not both_ways(history.torque_Nm):
         return 0.0
     x = history.torque_Nm / largest
-    direction = rising(history, 0.02 * largest)
+    direction = direction_of_loading(history)
     # a zero for each cycle: position errors and drift would else hide the step
     key = history.unit * (int(history.cycle.max()) + 1) + history.cycle
     if len(np.unique(key)) > MOST_ZEROS:

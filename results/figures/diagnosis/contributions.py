@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Effect
-from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.results.diagnosis.words import (
-    capital,
-    cause_title,
-    channel_words,
-    magnitude_words,
-    odds_words,
-    sure_words,
-)
+from flexspline.results.figures.diagnosis.contribution_parts import Part, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
-from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData, thinned
+from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -39,72 +29,6 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
 OFFSET = "torque_offset"
 BESIDE = 25
 """Letters of the magnitude that fit beside a panel in full size."""
-SHORT = 55
-"""Letters of a title that fit above a panel; of a longer one, what stands in brackets is left out."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A panel: an owner of terms, and the words beside it."""
-
-    owner: str
-    title: str
-    lines: tuple[str, ...]
-    channel: Channel
-    view: Effect = "angle"
-
-
-def parts(shown: SweepPictureData) -> list[Part]:
-    """Named causes, then structure that has no name."""
-    identified = shown.explained.identified
-    found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
-    told = {p.owner for p in found}
-    for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
-        if owner in told or rms < shown.noise_arcsec / 3:
-            continue
-        key = owner.removeprefix("?")
-        words = channel_words(key)
-        lines = (f"{rms:.2g} arcsec rms", f"lies in: {words}", "no known cause explains it")
-        found.append(
-            Part(
-                owner,
-                f"Without a name: structure in {words}",
-                lines,
-                shown.channel(_channel_of(owner)),
-            )
-        )
-    return found
-
-
-def _channel_of(owner: str) -> str:
-    """Where a minor cause shows best; structure in a channel shows over it, that of units over torque."""
-    if owner in known_causes():
-        return known_causes()[owner].shows_over
-    return "torque_Nm" if owner == "?unit" else owner.removeprefix("?")
-
-
-def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
-    known = known_causes()[cause.id]
-    channel = shown.channel(known.shows_over)
-    lines = [
-        magnitude_words(cause),
-        f"{cause.rms_arcsec:.2g} arcsec rms of the angle",
-        f"{sure_words(cause)}:",
-        odds_words(cause.evidence_nats),
-    ]
-    if cause.alternatives:
-        lines[2:] = ["not decided: rivals", "explain it as well"]
-    return Part(
-        cause.id,
-        _short(cause_title(cause)),
-        tuple(lines),
-        channel,
-        known.shows_as if channel.key == known.shows_over else "angle",
-    )
-
-
-def _short(title: str) -> str:
-    return capital(title if len(title) <= SHORT else title.partition(" (")[0])
 
 
 def _size(line: str) -> float:

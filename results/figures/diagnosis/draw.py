@@ -12,17 +12,19 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
 from flexspline.results.diagnosis.words import channel_words
 from flexspline.results.figures.diagnosis.captions import caption
-from flexspline.results.figures.diagnosis.contributions import parts, write_contributions
+from flexspline.results.figures.diagnosis.contribution_parts import parts
+from flexspline.results.figures.diagnosis.contributions import write_contributions
 from flexspline.results.figures.diagnosis.end_points import (
     write_envelope,
     write_positions,
-    write_rivals,
 )
 from flexspline.results.figures.diagnosis.held_out import write_held_out
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.panels import write_channels
+from flexspline.results.figures.diagnosis.rivals import write_rivals
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, seen
 from flexspline.results.figures.diagnosis.specimens import (
     write_dimensions,
@@ -30,9 +32,6 @@ from flexspline.results.figures.diagnosis.specimens import (
     write_stiffness,
 )
 from flexspline.results.figures.diagnosis.units import shared_causes, write_units
-
-SIGNIFICANT = 1e-4
-"""p-value below which a panel says that structure is left."""
 
 
 @dataclass(frozen=True)

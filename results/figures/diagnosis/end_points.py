@@ -1,4 +1,4 @@
-"""End points: every unit against the predicted envelope, where its ends lie, and the rivals."""
+"""End points: every unit against the predicted envelope, and where its ends lie."""
 
 from __future__ import annotations
 
@@ -7,18 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
-from flexspline.results.diagnosis.words import channel_words, figures_text, title_of
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.figures.words import fit
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
-MOST_RIVALS = 8
 ROW = 0.42
 """Inches of a row of bars."""
-FLAT = "an unnamed curve over torque"
 
 
 def shown_units(analysis: EndPointAnalysis) -> list[UnitFinding]:
@@ -147,88 +143,3 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
             columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0,
         )  # fmt: skip
         save_png(figure, path)
-
-
-def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
-    """What each explanation has for it, and what further measurements would tell."""
-    ranked = sorted(analysis.hypotheses, key=lambda h: -h.score)[:MOST_RIVALS]
-    names = plain_names(tuple(u.unit for u in analysis.units))
-    plans = analysis.plans[:4]
-    rows = len(ranked) + (len(plans) + 1.9 if plans else 0)
-    height = 1.45 + 0.36 * rows
-    with styled():
-        figure = new_figure(8.0, height, DPI)
-        top = 0.5
-        axes = figure.add_axes((
-            0.47, 1 - (top + 0.36 * len(ranked)) / height, 0.43, 0.36 * len(ranked) / height
-        ))  # fmt: skip
-        score = np.array([h.score for h in ranked])
-        share = np.exp(score - score.max())
-        share /= share.sum()
-        axes.barh(
-            range(len(ranked)), 100 * share, height=0.6,
-            color=[PALETTE[1] if h.causes else "#dfe3e7" for h in ranked], edgecolor=INK, lw=0.6,
-        )  # fmt: skip
-        for row, value in enumerate(share):
-            axes.annotate(
-                f"{100 * value:.0f} %", (100 * value, row), (5, 0), textcoords="offset points", va="center",
-                fontsize=9.5,
-            )  # fmt: skip
-        axes.set_yticks(range(len(ranked)), [_words(h, names) for h in ranked], fontsize=9.5)
-        _bare(axes, len(ranked))
-        axes.set_xlabel("share of the odds, of those shown, in %", fontsize=9.5)
-        axes.set_xlim(0, 118 * share.max())
-        figure.text(
-            0.035,
-            1 - 0.26 / height,
-            "What could explain it",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
-        if plans:
-            low = figure.add_axes((0.47, 0.55 / height, 0.43, 0.36 * len(plans) / height))
-            sizes = [p.separation for p in plans]
-            low.barh(range(len(plans)), sizes, height=0.6, color=PALETTE[2], edgecolor=INK, lw=0.6)
-            for row, size in enumerate(sizes):
-                low.annotate(
-                    figures_text(size, 2), (size, row), (5, 0), textcoords="offset points", va="center",
-                    fontsize=9.5,
-                )  # fmt: skip
-            low.set_yticks(range(len(plans)), [_plan(p.vary) for p in plans], fontsize=9.5)
-            _bare(low, len(plans))
-            low.set_xlim(0, 1.18 * max(*sizes, 1e-9))
-            low.set_xlabel(
-                "by how many times the noise the nearest rivals then differ", fontsize=9.5
-            )
-            figure.text(
-                0.035, (0.55 + 0.36 * len(plans) + 0.22) / height, "What would tell them apart", fontsize=12,
-                weight="bold", va="center",
-            )  # fmt: skip
-        save_png(figure, path)
-
-
-def _bare(axes, rows: int) -> None:  # type: ignore[no-untyped-def]
-    axes.set_ylim(rows - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
-    axes.grid(axis="x")
-
-
-def _words(hypothesis: Hypothesis, names: tuple[str, ...]) -> str:
-    if not hypothesis.causes:
-        return "the simulation, within its uncertainty"
-    titles = [
-        FLAT if c.startswith("?") else title_of(c).partition(" (")[0] for c in hypothesis.causes
-    ]
-    text = " and ".join(titles)
-    return text if hypothesis.own is None else f"{text}, unit {names[hypothesis.own]}"
-
-
-def _plan(vary: str) -> str:
-    return {
-        "repeat": "the same end points again",
-        "torque_Nm": "end points at other torques",
-        "sweep": "a closed torque sweep",
-        "torque_amplitude": "closed sweeps of several sizes",
-    }.get(vary, channel_words(vary))

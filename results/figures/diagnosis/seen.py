@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.operators import rising
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -18,8 +18,6 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 
 MOST_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
-STILL = 0.02
-"""Share of the largest torque below which a reversal is noise."""
 LABELS = {
     "torque_Nm": "output torque in N·m",
     "time_s": "time in s",
@@ -81,7 +79,7 @@ class SweepPictureData:
     @cached_property
     def rises(self) -> np.ndarray:
         """(n,) whether torque rises."""
-        return rising(self.history, STILL * self.largest_Nm) >= 0
+        return direction_of_loading(self.history) >= 0
 
     @cached_property
     def left(self) -> np.ndarray:

@@ -20,8 +20,9 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.diagnosis.specimens.bench import Bench
+from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
-from flexspline.pipeline.diagnosis.specimens.stiffness import Bench, Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress

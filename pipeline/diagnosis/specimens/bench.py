@@ -1,0 +1,89 @@
+"""FE of one specimen: the compliance of its parts, with holes or as a ratio of the hole-free model.
+
+The row's own stiffness comes from the design's model, holes included, or, where stiffnesses are given
+instead of FE, from them, scaled by the ratio of the hole-free axisymmetric model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+
+from flexspline.fea.shortfall import settled
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import with_values, without_holes
+from flexspline.geometry.part import PartName
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.revolved import lobes, torsion
+
+FE_TOLERANCE = 1e-3
+"""Relative, of the hole-free model's K: a step of `sensitivity.SMALLEST_STEP` changes K by more than ten
+times as much."""
+LOBE_TOLERANCE = 5e-3
+PARTS: Mapping[str, tuple[PartName, ...]] = {
+    "flexspline": ("flexspline",),
+    "shaft": ("shaft",),
+    "series": ("flexspline", "shaft"),
+}
+"""Parts in a row, by what its column `part` says."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Computes compliances. `K_b`, `K_e` [N·m/rad] belong to the nominal design.
+
+    `full`: rows are solved with their holes; else K_b and K_e are scaled by the hole-free model.
+    """
+
+    context: AnalysisContext
+    K_b: float
+    K_e: float
+    full: bool
+
+    def compliance(self, design: Design, part: PartName) -> float:
+        """Of one part of a design [rad per N·m], load case as in the sum."""
+        nominal = self.K_b if part == "flexspline" else self.K_e
+        mine, other = self._model(design, part), self._model(self.context.design, part)
+        return mine / other / nominal
+
+    def _model(self, design: Design, part: PartName) -> float:
+        lobed = part == "flexspline" and design.solver.load_case == "lobes"
+        if self.full and not lobed:
+            return 1 / replace(self.context, design=design).part(part).stiffness().K_Nm_per_rad
+        return self.plain(design, part, lobed)
+
+    def plain(self, design: Design, part: PartName, lobed: bool = False) -> float:
+        """Compliance [rad per N·m] of the part without holes."""
+        solid = replace(self.context, design=design).part(part).context.design
+        own = without_holes(solid).part(part)
+        material, shape = Elastic.of(own.material), own.shape.model_dump(mode="json")
+        tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
+
+        def make() -> float:
+            found = lobes(own, True, tolerance) if lobed else torsion(own, tolerance)
+            return 1 / settled(found).K_Nm_per_rad
+
+        inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
+                  "tolerance": tolerance}  # fmt: skip
+        return float(self.context.cache.get("specimen", inputs, make)[0])
+
+
+def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:
+    """The design of every row.
+
+    Raises
+    ------
+    MeasurementError : an override that makes no design; with the row's line.
+    """
+    found = []
+    for i in range(len(specimens.specimen)):
+        own = {key: float(values[i]) for key, values in specimens.overrides.items()}
+        try:
+            found.append(with_values(design, own))
+        except DesignError as fault:
+            raise MeasurementError(specimens.path, int(specimens.line[i]), str(fault)) from None
+    return tuple(found)

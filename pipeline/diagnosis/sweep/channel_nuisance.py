@@ -1,0 +1,120 @@
+"""Nuisance terms over time, cycle, temperature, position and unit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.sweep.basis_functions import levels, smooth, wave
+from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
+
+STEPS = 25
+"""Places of a step in time, evenly over a unit's rows."""
+TELLING = 7
+"""Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
+WAVES = range(3, 61)
+"""Half periods over the time of the record."""
+DEGREES = (1, 2, 3)
+"""Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
+
+
+def _passed(rig: Rig) -> np.ndarray | None:
+    """(n,) time since each unit's first row, of the longest unit's; None without time."""
+    if rig.duration_s <= 0 or rig.history.time_s is None:
+        return None
+    t = np.zeros(len(rig.history))
+    for rows in rig.history.unit_slices:
+        t[rows] = (rig.history.time_s[rows] - rig.history.time_s[rows[0]]) / rig.duration_s
+    return t
+
+
+def over_time(rig: Rig) -> Made:
+    """A smooth drift of the zero."""
+    t = _passed(rig)
+    if t is not None:
+        yield "time_s", "a smooth function of time", smooth(2 * t - 1)
+
+
+def changing_stiffness(rig: Rig) -> Made:
+    """Stiffness that changes with time by a polynomial."""
+    t = _passed(rig)
+    if t is None:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    for degree in DEGREES:
+        powers = np.column_stack([t**k for k in range(1, degree + 1)])
+        yield "time_s", "a stiffness that changes with time", torque[:, None] * powers
+
+
+def waves_and_steps(rig: Rig) -> Made:
+    """Zeros that swing, or jump once in one unit."""
+    t = _passed(rig)
+    if t is None:
+        return
+    for k in WAVES:
+        yield "time_s", "a wave in time", wave(t, k)
+    for u, rows in enumerate(rig.history.unit_slices):
+        for place in np.linspace(0, 1, STEPS + 2)[1:-1]:
+            step = np.zeros(len(t))
+            step[rows[int(place * len(rows)) :]] = 1.0
+            where = f" of unit {u + 1}" if len(rig.history.unit_slices) > 1 else ""
+            yield "time_s", f"a step in time{where}", step[:, None]
+
+
+def over_cycle(rig: Rig) -> Made:
+    """Zero, stiffness and gap of each cycle's own, and stiffness that changes steadily or slowing down."""
+    if rig.cycles < 2:
+        return
+    own = levels(rig.history.cycle.astype(float))
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    yield "cycle", "a zero of its own in each cycle", own
+    yield "cycle", "a stiffness of its own in each cycle", own * torque[:, None]
+    ramp = rig.history.cycle / (rig.cycles - 1)
+    for power in (1.0, 0.5):
+        yield (
+            "cycle",
+            "a stiffness that changes from cycle to cycle",
+            (ramp**power * torque)[:, None],
+        )
+    yield "cycle", "a gap of its own in each cycle", own * rig.history.sign[:, None]
+
+
+def over_temperature(rig: Rig) -> Made:
+    """What temperature can do beside a gap linear in it."""
+    temperature = rig.history.temperature_C
+    if temperature is None or np.ptp(temperature) < 0.3:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    warm = (temperature - REFERENCE_C) / max(np.abs(temperature - REFERENCE_C).max(), 1e-9)
+    centred = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
+    yield "temperature_C", "a zero that changes with temperature", warm[:, None]
+    yield "temperature_C", "a zero that changes with temperature", smooth(centred, 3)
+    yield "temperature_C", "a stiffness that changes with temperature", (warm * torque)[:, None]
+    yield "temperature_C", "a gap not linear in temperature", (warm**2 * rig.history.sign)[:, None]
+
+
+def over_position(rig: Rig) -> Made:
+    """Zero, stiffness and gap of each position's own."""
+    angle = rig.history.input_angle_deg
+    if angle is None or np.ptp(angle) == 0:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    own = levels(np.mod(angle, 360.0))
+    if len(np.unique(np.mod(angle, 360.0))) > TELLING:
+        yield "input_angle_deg", "a zero of its own at each position", own
+        yield "input_angle_deg", "a stiffness of its own at each position", own * torque[:, None]
+    yield "input_angle_deg", "a gap of its own at each position", own * rig.history.sign[:, None]
+
+
+def over_unit(rig: Rig) -> Made:
+    """Stiffness and gap of each unit's own."""
+    units = rig.history.unit_slices
+    if len(units) < 2:
+        return
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    for u, rows in enumerate(units):
+        own = np.zeros(len(torque))
+        own[rows] = 1.0
+        yield "unit", f"a gain of unit {u + 1}'s own", (own * torque)[:, None]
+        yield "unit", f"a gap of unit {u + 1}'s own", (own * rig.history.sign)[:, None]

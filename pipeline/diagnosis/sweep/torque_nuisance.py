@@ -1,0 +1,95 @@
+"""Nuisance terms over torque, output angle and direction of loading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.operators import (
+    direction_of_loading,
+    lags,
+    steadied,
+    stops,
+)
+from flexspline.pipeline.diagnosis.measurement.torque_program import (
+    deadband_Nm,
+    ramp_s,
+    shortest_lag_s,
+)
+from flexspline.pipeline.diagnosis.sweep.basis_functions import smooth, wave
+
+LEADS = "output leads torque"
+LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
+"""Shares of the largest torque, within those of `friction_hysteresis`, which they reverse."""
+LEADING_LAGS = (0.05, 0.15, 0.4)
+"""Time constants as shares of a ramp, within those of `rate_dependence`, which they reverse."""
+SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
+"""Powers of torque, all above 1: twist grows faster than torque."""
+RIPPLES = range(3, 33)
+"""Half periods over the range of torque or angle."""
+
+Made = Iterator[tuple[str, str, np.ndarray]]
+"""Channel, what it is, columns (n, k)."""
+
+
+def _steady(rig: Rig) -> np.ndarray:
+    """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
+    return steadied(rig.history, deadband_Nm(rig.history)) / rig.torque_Nm
+
+
+def over_torque(rig: Rig) -> Made:
+    """Smooth, even and rippled functions of torque."""
+    torque = _steady(rig)
+    yield "torque_Nm", "a smooth function of torque", smooth(torque)
+    yield "torque_Nm", "a curve of torque, equal for both signs", (torque**2)[:, None]
+    yield from _ripples(torque, "torque_Nm", "a ripple over torque")
+
+
+def softening(rig: Rig) -> Made:
+    """Stiffness that falls with load: no known cause, and anchored where the load is small."""
+    torque = _steady(rig)
+    for power in SOFTENING:
+        soft = np.abs(torque) ** power * rig.history.sign
+        yield "torque_Nm", "stiffness that falls with load", soft[:, None]
+
+
+def over_angle(rig: Rig) -> Made:
+    """Ripples over the output angle as simulated."""
+    steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
+    angle = rig.prediction.angle_arcsec(steady)
+    yield from _ripples(
+        angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle"
+    )
+
+
+def _ripples(x: np.ndarray, channel: str, what: str) -> Made:
+    for k in RIPPLES:
+        yield channel, what, wave((x + 1) / 2, k)
+
+
+def over_direction(rig: Rig) -> Made:
+    """A loop wider on one side of zero than on the other: friction elements make none such."""
+    torque = rig.history.torque_Nm / rig.torque_Nm
+    direction = direction_of_loading(rig.history)
+    basis = np.column_stack([direction * torque, direction * torque**3])
+    yield "direction", "a loop that differs between the two sides", basis
+
+
+def leading(rig: Rig) -> Made:
+    """Loops run through the wrong way round: friction and lag with their sign reversed."""
+    yield "direction", LEADS, direction_of_loading(rig.history)[:, None]
+    thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
+    torque = steadied(rig.history, deadband_Nm(rig.history))
+    states = stops(rig.history, torque, thresholds, np.zeros(len(thresholds))).T
+    for r, state in zip(thresholds, states, strict=True):
+        yield "direction", LEADS, (state / r)[:, None]
+        yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
+    ramp = ramp_s(rig.history)
+    for share in LEADING_LAGS if ramp > 0 else ():
+        lagging = lags(
+            torque, rig.history, np.array([max(share * ramp, shortest_lag_s(rig.history))])
+        )[:, 0]
+        yield "direction", LEADS, (torque - lagging)[:, None]
