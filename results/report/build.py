@@ -11,24 +11,17 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.pictures import RunPictures, small
 from flexspline.results.report.attached import Attachment
-from flexspline.results.report.content import Pictures, ReportContent
+from flexspline.results.report.content import ReportContent
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.versions import library_versions
-from flexspline.results.report.write import pictures_of, write_report
+from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
 
 RENDERED = (
-    "flexspline_stress", "shaft_stress", "wave_generator", "flexspline_mesh", "shaft_mesh",
+    "flexspline_torque", "shaft_torque", "wave_generator", "flexspline_mesh", "shaft_mesh",
 )  # fmt: skip
 """Pictures that are large as PNG."""
-NAMES = {
-    "budget": "backlash_budget", "torque_angle": "torque_angle",
-    "flexspline_stress": "flexspline_torque", "shaft_stress": "shaft_torque",
-    "wave_generator": "wave_generator", "flexspline_mesh": "flexspline_mesh",
-    "shaft_mesh": "shaft_mesh", "convergence": "convergence",
-}  # fmt: skip
-"""The report's names of pictures, and `results.pictures`'."""
 
 
 def write_run_report(
@@ -56,7 +49,7 @@ def write_run_page(
     """
     content = report_content(result, pictures, extended_model, attached)
     images = {}
-    for name, source in pictures_of(content).items():
+    for name, source in content.pictures.items():
         image = png(source)
         images[name] = replace(image, data=small(context, source)) if name in RENDERED else image
     with context.progress.stage("report.html"):
@@ -78,10 +71,8 @@ def report_content(
         stiffnesses=found.solved,
         K_series_Nm_per_rad=found.series_Nm_per_rad(design),
         backlash=result.backlash,
-        pictures=Pictures(**{own: pictures.paths.get(name) for own, name in NAMES.items()}),
-        missing_pictures={
-            own: pictures.missing[name] for own, name in NAMES.items() if name in pictures.missing
-        },
+        pictures=pictures.paths,
+        missing_pictures=pictures.missing,
         flexspline_peak=peaks.get("flexspline_torque"),
         shaft_peak=peaks.get("shaft_torque"),
         wave_generator_peak=peaks.get("wave_generator", found.wave_generator_peak),

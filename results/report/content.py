@@ -15,20 +15,6 @@ from flexspline.results.report.attached import Attachment
 
 
 @dataclass(frozen=True)
-class Pictures:
-    """PNG files that the report shows; what is None is left out."""
-
-    budget: Path | None = None
-    torque_angle: Path | None = None
-    flexspline_stress: Path | None = None
-    shaft_stress: Path | None = None
-    wave_generator: Path | None = None
-    flexspline_mesh: Path | None = None
-    shaft_mesh: Path | None = None
-    convergence: Path | None = None
-
-
-@dataclass(frozen=True)
 class ReportContent:
     """Everything that one report says.
 
@@ -38,7 +24,8 @@ class ReportContent:
     stiffnesses : those that were solved, by the name of the figure ("K_b"), in the report's order; K_b of the
         case "uniform" and K_e are among them.
     K_series_Nm_per_rad : of the K_b that enters the sum and K_e.
-    missing_pictures : why, by the names in `pictures`, of those that could not be drawn.
+    pictures : PNG files by the names that `results.pictures` gives them; one that is not there is left out.
+    missing_pictures : why, by the same names, of those that could not be drawn.
     flexspline_peak, shaft_peak : under the load torque; wave_generator_peak : under the ellipse.
     half_seat_peak : the ellipse's on a seat half as wide as the ring.
     linear_limit : beyond which torque the figures are not valid.
@@ -55,7 +42,7 @@ class ReportContent:
     stiffnesses: Mapping[str, Stiffness]
     K_series_Nm_per_rad: float
     backlash: Backlash
-    pictures: Pictures = Pictures()
+    pictures: Mapping[str, Path] = field(default_factory=dict)
     missing_pictures: Mapping[str, str] = field(default_factory=dict)
     flexspline_peak: StressPeak | None = None
     shaft_peak: StressPeak | None = None

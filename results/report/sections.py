@@ -147,9 +147,9 @@ def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
             content,
             roomy,
             Picture(
-                "flexspline_stress", plain("Flexspline") + under + at, view="flexspline_torque"
+                "flexspline_torque", plain("Flexspline") + under + at, view="flexspline_torque"
             ),
-            Picture("shaft_stress", plain("Output shaft") + under + at, view="shaft_torque"),
+            Picture("shaft_torque", plain("Output shaft") + under + at, view="shaft_torque"),
         ),
         *shown(content, roomy, Picture("wave_generator", ellipse, 90, "wave_generator")),
     ]

@@ -15,7 +15,7 @@ def shown(content: ReportContent, roomy: bool, *wanted: Picture) -> Iterable[Blo
 
     In place of those that could not be drawn stands what they would show, and the reason.
     """
-    there = [p for p in wanted if getattr(content.pictures, p.name) is not None]
+    there = [p for p in wanted if p.name in content.pictures]
     if there:
         share = 1.0 if roomy or len(wanted) > 1 else 0.85
         yield Pictures(tuple(replace(p, width_pct=share * p.width_pct) for p in there))

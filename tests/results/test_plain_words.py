@@ -10,7 +10,6 @@ from typer.testing import CliRunner
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.results.cli import app
-from flexspline.results.report.content import Pictures
 from flexspline.results.report.write import payload
 
 ROOT = Path(__file__).parents[2]
@@ -18,7 +17,7 @@ RING = EquivalentRing(0.55, 0.71, 0.66, 0.69, 0.01, 1000)
 
 
 def said_of_a_run():
-    pictures = Pictures(wave_generator=Path("none.png"))
+    pictures = {"wave_generator": Path("none.png")}
     return " ".join(strings(payload(content(ring=RING, pictures=pictures))))
 
 

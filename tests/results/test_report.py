@@ -3,12 +3,12 @@
 import re
 
 import pytest
+from blank_pictures import blank_pictures
 from hand_made_gear import BACKLASH, K_B, K_E, content, design
 from PIL import Image
 from pypdf import PdfReader
 
 from flexspline.results.numbers import THIN
-from flexspline.results.report.content import Pictures as Drawn
 from flexspline.results.report.document import (
     Break,
     Document,
@@ -35,16 +35,10 @@ def text_of(path):
     return re.sub(r"\s+", " ", " ".join(pages).replace("\u200b", "")), len(pages)
 
 
-def drawn_pictures(folder):
-    paths = {}
-    for name in Drawn.__dataclass_fields__:
-        paths[name] = folder / f"any name of {name}.png"
-        Image.new("RGB", (1600, 1200), (200, 210, 220)).save(paths[name])
-    return Drawn(**paths)
-
-
 def test_report_says_the_numbers(tmp_path):
-    write_report(tmp_path / "r.pdf", content(pictures=drawn_pictures(tmp_path)))
+    write_report(
+        tmp_path / "r.pdf", content(pictures=blank_pictures(tmp_path, 1600, 1200, "any name of "))
+    )
     text, pages = text_of(tmp_path / "r.pdf")
     assert 3 <= pages <= 7
     for number in ("84.6", "12.9", "31 655", "31 607 to 31 703", "24 310", "35 290", "16 687",
@@ -78,7 +72,7 @@ def test_longest_report_stays_within_seven_pages(tmp_path):
         content(
             design=design(name="N" * 200, material="M" * 200),
             warnings=warnings,
-            pictures=drawn_pictures(tmp_path),
+            pictures=blank_pictures(tmp_path, 1600, 1200, "any name of "),
             stage_seconds={f"a stage with a long name, number {i}": 1.0 for i in range(25)},
         ),
     )
@@ -103,7 +97,9 @@ def test_names_print_as_their_letters(tmp_path, name):
 
 def test_same_content_gives_the_same_bytes(tmp_path):
     for name in ("a.pdf", "b.pdf"):
-        write_report(tmp_path / name, content(pictures=drawn_pictures(tmp_path)))
+        write_report(
+            tmp_path / name, content(pictures=blank_pictures(tmp_path, 1600, 1200, "any name of "))
+        )
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
@@ -118,7 +114,7 @@ def test_failure_leaves_the_old_report(tmp_path):
     broken = tmp_path / "broken.png"
     broken.write_bytes(b"no picture")
     with pytest.raises(ReportError, match="image"):
-        write_report(tmp_path / "r.pdf", content(pictures=Drawn(budget=broken)))
+        write_report(tmp_path / "r.pdf", content(pictures={"backlash_budget": broken}))
     assert (tmp_path / "r.pdf").read_bytes() == b"old"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["broken.png", "r.pdf"]
 

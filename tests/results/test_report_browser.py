@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from blank_pictures import blank_pictures
 from browser import chromium
 from hand_made_gear import content, design
 from hand_made_tube import LENGTH, OUTER, field, oval, tube, twisted
@@ -15,10 +16,8 @@ from PIL import Image
 from flexspline.results.renders.ellipse_picture import turning_ellipse
 from flexspline.results.renders.stress_picture import turning_torque_stress
 from flexspline.results.report.attached import Attachment
-from flexspline.results.report.content import Pictures
 from flexspline.results.report.page import WORDS, page_of, png
 from flexspline.results.report.sections import run_document
-from flexspline.results.report.write import pictures_of
 
 NASTY = '</script><script>window.hacked = 1</script><img src=x onerror="window.hacked = 1">'
 VIEWS = ("flexspline_torque", "shaft_torque", "wave_generator")
@@ -34,10 +33,8 @@ def browser():
 def report(tmp_path_factory):
     """A whole report on a small tube, its design named to do harm."""
     folder = tmp_path_factory.mktemp("page")
-    paths = {n: folder / f"{n}.png" for n in Pictures.__dataclass_fields__}
-    for path in paths.values():
-        Image.new("RGB", (160, 120), (200, 210, 220)).save(path)
-    made = content(design=design(name=NASTY), pictures=Pictures(**paths), warnings=(NASTY,))
+    paths = blank_pictures(folder)
+    made = content(design=design(name=NASTY), pictures=paths, warnings=(NASTY,))
     mesh = tube(30.0, 2)
     torque = field(mesh, twisted(mesh.nodes), (OUTER, 0.0, LENGTH))
     ellipse = field(mesh, oval(mesh.nodes), (OUTER, 0.0, LENGTH))
@@ -45,7 +42,7 @@ def report(tmp_path_factory):
         name: turning_torque_stress(name, torque, part, 0.5)
         for name, part in (("flexspline_torque", "Flexspline"), ("shaft_torque", "Output shaft"))
     } | {"wave_generator": turning_ellipse("wave_generator", ellipse, 0.2)}
-    images = {n: png(p) for n, p in pictures_of(made).items()}
+    images = {n: png(p) for n, p in made.pictures.items()}
     path = folder / "report.html"
     path.write_bytes(page_of(run_document(made), images, views))
     return path, views
@@ -187,9 +184,9 @@ def test_charts_are_dark_on_a_dark_page_and_white_on_paper(browser, tmp_path):
     image.paste((179, 55, 31), (60, 40, 100, 80))
     image.save(chart)
     path = tmp_path / "r.html"
-    made = content(pictures=Pictures(budget=chart, wave_generator=chart))
+    made = content(pictures={"backlash_budget": chart, "wave_generator": chart})
     path.write_bytes(
-        page_of(run_document(made), {"budget": png(chart), "wave_generator": png(chart)})
+        page_of(run_document(made), {"backlash_budget": png(chart), "wave_generator": png(chart)})
     )
     with opened(browser, path) as page:
         assert brightness(page, "img.chart") > 250

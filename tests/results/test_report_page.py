@@ -4,16 +4,15 @@ import json
 import re
 
 import pytest
+from blank_pictures import blank_pictures
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page, spans, strings
-from PIL import Image
 
-from flexspline.results.report.content import Pictures
 from flexspline.results.report.document import Document, Heading, Paragraph
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import ref
-from flexspline.results.report.write import payload, pictures_of, write_report
+from flexspline.results.report.write import payload, write_report
 
 NASTY = [
     '#read("/etc/passwd")',
@@ -30,23 +29,15 @@ VIEW = {
 }  # fmt: skip
 
 
-def drawn(folder):
-    paths = {}
-    for name in Pictures.__dataclass_fields__:
-        paths[name] = folder / f"{name}.png"
-        Image.new("RGB", (160, 120), (200, 210, 220)).save(paths[name])
-    return Pictures(**paths)
-
-
 def page(made, views=None):
     return page_of(
-        run_document(made), {n: png(p) for n, p in pictures_of(made).items()}, views
+        run_document(made), {n: png(p) for n, p in made.pictures.items()}, views
     ).decode()
 
 
 def test_pdf_and_page_say_the_payload(tmp_path):
     made = content(
-        pictures=drawn(tmp_path), warnings=("the wall is thin",), extended_model="m.toml"
+        pictures=blank_pictures(tmp_path), warnings=("the wall is thin",), extended_model="m.toml"
     )
     write_report(tmp_path / "r.pdf", made)
     printed = pdf_letters(tmp_path / "r.pdf")
@@ -69,7 +60,7 @@ def test_pdf_and_page_say_the_payload(tmp_path):
 
 @pytest.mark.parametrize("name", NASTY)
 def test_names_print_as_their_letters(name, tmp_path):
-    plain = content(pictures=drawn(tmp_path), warnings=("x",), extended_model="x")
+    plain = content(pictures=blank_pictures(tmp_path), warnings=("x",), extended_model="x")
     nasty = content(
         pictures=plain.pictures, design=design(name=name, material=name), warnings=(name,),
         extended_model=name, stage_seconds={name: 1.0},
@@ -87,7 +78,7 @@ def test_names_print_as_their_letters(name, tmp_path):
 @pytest.mark.parametrize("name", NASTY)
 def test_words_of_a_view_stay_in_their_json(name, tmp_path):
     view = VIEW | {"title": name, "mark": VIEW["mark"] | {"text": name}}
-    made = content(pictures=drawn(tmp_path))
+    made = content(pictures=blank_pictures(tmp_path))
     nasty = page(made, {"flexspline_torque": json.dumps(view).encode()})
     plain = page(made, {"flexspline_torque": json.dumps(VIEW).encode()})
     assert read_page(nasty)[1] == read_page(plain)[1]
@@ -96,7 +87,7 @@ def test_words_of_a_view_stay_in_their_json(name, tmp_path):
 
 
 def test_nothing_comes_from_outside(tmp_path):
-    made = content(pictures=drawn(tmp_path))
+    made = content(pictures=blank_pictures(tmp_path))
     for text in (page(made), page(made, {"flexspline_torque": json.dumps(VIEW).encode()})):
         _, tags, attributes = read_page(text)
         assert not {"link", "iframe", "object", "embed", "base", "form"} & set(tags)
@@ -124,7 +115,7 @@ def policy_of(attributes):
 
 
 def test_tables_and_pictures_can_be_heard(tmp_path):
-    text = page(content(pictures=drawn(tmp_path)))
+    text = page(content(pictures=blank_pictures(tmp_path)))
     _, tags, attributes = read_page(text)
     alts = [v for t, n, v in attributes if t == "img" and n == "alt"]
     assert len(alts) == tags.count("img") == 8
@@ -140,7 +131,7 @@ def test_tables_and_pictures_can_be_heard(tmp_path):
 
 
 def test_same_content_gives_the_same_bytes(tmp_path):
-    made = content(pictures=drawn(tmp_path))
+    made = content(pictures=blank_pictures(tmp_path))
     views = {"flexspline_torque": json.dumps(VIEW).encode()}
     assert page(made, views) == page(made, views)
 
