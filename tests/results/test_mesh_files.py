@@ -13,10 +13,12 @@ import meshio
 import numpy as np
 import pytest
 from hand_made_tube import INNER, LENGTH, OUTER, RING_START, tube
+from typer.testing import CliRunner
 
 from flexspline.fea.solid.cases import Model, torsion
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import DesignError
+from flexspline.results.cli import app
 from flexspline.results.mesh_files import WRITERS, PatchedMesh, chosen_formats, write_mesh
 
 VOLUME = pi * (OUTER**2 - INNER**2) * LENGTH
@@ -182,6 +184,16 @@ def test_abaqus_elements_are_of_the_kind_that_calculix_knows(
 
 def test_formats_may_stand_in_one_word_or_in_several() -> None:
     assert chosen_formats(["msh,bdf", "msh", "inp"]) == ("msh", "bdf", "inp")
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/meshes.md", "docs/contract.md", "--help"])
+def test_every_format_is_named_where_users_look(page: str) -> None:
+    if page == "--help":
+        text = CliRunner().invoke(app, ["export", "--help"]).stdout
+    else:
+        text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+    told = re.split(r"\W+", text.partition("--format")[2])
+    assert [f for f in WRITERS if f not in told] == []
 
 
 @pytest.mark.parametrize("word", ["stl", "", "msh,,bdf"])
