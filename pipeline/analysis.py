@@ -22,7 +22,9 @@ from flexspline.pipeline.load_cases import (
     rim_answers,
     wave_generator_field,
 )
-from flexspline.pipeline.parts import AnalysisContext, MeshedPart, PartModel, TwistedPart
+from flexspline.pipeline.part_meshes import MeshedPart
+from flexspline.pipeline.part_stiffness import TwistedPart, part_stiffness, twisted_part
+from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
@@ -80,8 +82,8 @@ def stiffnesses(
         if wanted:
             part.refuse_settings()
     tried = Attempts()
-    K_b = tried.get("K_b", rim_part.stiffness) if flexspline else None
-    K_e = tried.get("K_e", shaft_part.stiffness) if shaft else None
+    K_b = tried.get("K_b", lambda: part_stiffness(rim_part)) if flexspline else None
+    K_e = tried.get("K_e", lambda: part_stiffness(shaft_part)) if shaft else None
     every = {"K_b": K_b, "K_e": K_e}
     if not flexspline:
         return Stiffnesses(in_order(every), missing=tried.missing)
@@ -136,7 +138,7 @@ def torque_field(model: PartModel) -> SolidField:
     """Displacement and stress under the design's torque T_L; the peak from the model that answers."""
     design = model.context.design
     torque = design.load.torque_Nm
-    twisted = model.twisted()
+    twisted = twisted_part(model)
     with model.context.progress.stage(f"stress of the {model.name} under torque"):
         solved = stress_field(
             twisted.meshed.mesh,

@@ -25,6 +25,7 @@ from flexspline.pipeline.load_cases import (
     rim_stiffness,
     wave_generator_field,
 )
+from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
@@ -74,7 +75,7 @@ def stiffness(
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
     model = analysis_context(design).part(part)
     if case == "uniform":
-        return model.stiffness()
+        return part_stiffness(model)
     if part == "shaft":
         raise DesignError("case", case, 'is of the flexspline; the shaft has "uniform" only')
     return rim_stiffness(model, case)

@@ -1,4 +1,4 @@
-"""One part of a gear: CAD, mesh and torsional stiffness, each answered from the cache when it can."""
+"""One part of a gear as the stages see it: which model and mesher its settings mean, and its keys."""
 
 from __future__ import annotations
 
@@ -7,53 +7,19 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from flexspline.fea.axisymmetric.torsion import torsional_stiffness
-from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.shortfall import of_the_machine
-from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
-from flexspline.fea.solid.errors import SolidError
-from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
-from flexspline.fea.solid.stiffness import solid_stiffness
-from flexspline.fea.solid.swept import can_be_swept, swept_edges, swept_mesh
-from flexspline.fea.solid.swept_sizing import Finer
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.swept import can_be_swept
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-from flexspline.fea.types import Elastic, Stiffness, StressPeak, TetMesh
+from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.symmetry import Sector, sector_of
-from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.drawn_teeth import of_toothed, ring_of, with_plain_ring
+from flexspline.pipeline.drawn_teeth import ring_of, with_plain_ring
 from flexspline.pipeline.progress import Progress
-
-RIM_ELEMENTS = 40_000
-"""About 180 000 unknowns and 5 s for each of the two lobe cases."""
-EDGE_POINTS = 8
-"""Of sharp edges, within the stress rule's distance from them."""
-
-
-@dataclass(frozen=True)
-class MeshedPart:
-    """A mesh and the sharp edges (k, 3) [mm] of the same sector, for the stress rule."""
-
-    mesh: TetMesh
-    sharp_edges: np.ndarray
-
-
-@dataclass(frozen=True)
-class TwistedPart:
-    """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
-
-    `rim` is the finest of its meshes that, unfolded for the lobe cases, keeps within RIM_ELEMENTS.
-    """
-
-    stiffness: Stiffness
-    meshed: MeshedPart
-    displacement: np.ndarray
-    rim: MeshedPart
 
 
 @dataclass(frozen=True)
@@ -128,10 +94,11 @@ class PartModel:
     @property
     def torsion_key(self) -> Mapping[str, Any]:
         """What the solid solution depends on."""
-        return {**self.revolved_key, "spec": asdict(self.first_spec), "mesher": self._mesher}
+        return {**self.revolved_key, "spec": asdict(self.first_spec), "mesher": self.mesher}
 
     @property
-    def _mesher(self) -> str:
+    def mesher(self) -> str:
+        """`solver.mesher`."""
         return self.context.design.solver.mesher
 
     @property
@@ -143,26 +110,15 @@ class PartModel:
         DesignError : that is asked for, and the part needs fTetWild.
         """
         able = can_be_swept(self.part)
-        if self._mesher == "swept" and not able:
+        if self.mesher == "swept" and not able:
             holes = "bolt holes that no plain column of its meridian holds"
             why = holes if self.part.keyway is None else "a keyway"
             raise DesignError(
                 "solver.mesher",
-                self._mesher,
+                self.mesher,
                 f'the {self.name} has {why} and cannot be swept; "tetwild" or "auto" works',
             )
-        return able and self._mesher != "tetwild"
-
-    @property
-    def _edge_spacing(self) -> float:
-        return self.part.exclusion_mm / EDGE_POINTS
-
-    @cached_property
-    def _surface(self) -> TaggedSurface:
-        with self.context.progress.stage(f"CAD of the {self.name}"):
-            return surface_to_mesh(
-                self.part, self.first_spec, self.sector.degrees, self._edge_spacing
-            )
+        return able and self.mesher != "tetwild"
 
     def refuse_settings(self) -> None:
         """Refuse a model or a mesher that the part does not allow, before the long work.
@@ -172,48 +128,6 @@ class PartModel:
         DesignError : as `axisymmetric` and `is_swept`.
         """
         _ = self.axisymmetric, self.is_swept
-
-    def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
-        """The sector's mesh swept from the meridian; None for a part that only a mesher can mesh."""
-        degrees = self.sector.degrees
-        mesh = swept_mesh(self.part, degrees, spec, finer)
-        if mesh is None:
-            return None
-        return MeshedPart(mesh, swept_edges(self.part, degrees, self._edge_spacing))
-
-    def meshed(self, spec: MeshSpec) -> MeshedPart:
-        """The sector's mesh to a specification, by `solver.mesher`: "auto" sweeps where that works.
-
-        Raises
-        ------
-        DesignError : as `is_swept`. SolidError : a sweep is asked for and fails a check.
-        """
-
-        def make() -> MeshedPart:
-            if self.is_swept:
-                with self.context.progress.stage(f"mesh of the {self.name}"):
-                    swept = self.swept(spec)
-                if swept is not None:
-                    return swept
-                if self._mesher == "swept":
-                    raise SolidError(
-                        f"the swept mesh of the {self.name} fails a check; solver.mesher"
-                        ' "tetwild" or "auto" works'
-                    )
-                self.context.progress.note("  the swept mesh fails a check: fTetWild instead")
-            surface = self._surface
-            with self.context.progress.stage(f"mesh of the {self.name}"):
-                return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
-
-        inputs = {**self.geometry_key, "spec": asdict(spec), "mesher": self._mesher}
-        return self.context.cache.get("mesh", inputs, make)[0]
-
-    def stiffness(self) -> Stiffness:
-        """K by the design's `solver.model`: axisymmetric where the part allows it, else solid."""
-        if not self.axisymmetric:
-            return self.twisted().stiffness
-        found = self._axisymmetric_stiffness()
-        return of_toothed(found) if self.toothed else found
 
     @property
     def axisymmetric(self) -> bool:
@@ -232,50 +146,3 @@ class PartModel:
                 ' "solid" or "auto" works',
             )
         return self.part.is_revolved and wanted != "solid"
-
-    def _axisymmetric_stiffness(self) -> Stiffness:
-        tolerance = self.context.design.solver.tolerance_pct / 100
-
-        def make() -> Stiffness:
-            with self.context.progress.stage(f"axisymmetric bounds of the {self.name}"):
-                return torsional_stiffness(
-                    self.part.meridian,
-                    self.material,
-                    self.part.driven,
-                    tolerance,
-                    Deadline(STAGE_SECONDS),
-                )
-
-        return self.context.cache.get("axisymmetric", self.revolved_key, make, is_lasting)[0]
-
-    def twisted(self) -> TwistedPart:
-        """The solid model turned by 1 rad, refined until the tolerance is met."""
-
-        def make() -> TwistedPart:
-            with self.context.progress.stage(f"torsion of the {self.name}"):
-                edges: dict[MeshSpec, np.ndarray] = {}
-
-                def mesher(spec: MeshSpec) -> TetMesh:
-                    made = self.meshed(spec)
-                    edges[spec] = made.sharp_edges
-                    return made.mesh
-
-                found = solid_stiffness(
-                    mesher,
-                    self.first_spec,
-                    self.material,
-                    self.part.driven,
-                    self.context.design.solver.tolerance_pct / 100,
-                    self.sector.label,
-                    lambda text: self.context.progress.note(f"  {self.name}: {text}"),
-                )
-            sharp = next(iter(edges.values()))
-            meshed = [MeshedPart(mesh, sharp) for mesh in found.meshes]
-            times = sector_of(self.part, "ellipse").degrees / self.sector.degrees
-            sizes = [len(m.mesh.cells) * times for m in meshed]
-            rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
-            return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])
-
-        return self.context.cache.get(
-            "torsion", self.torsion_key, make, lambda made: is_lasting(made.stiffness)
-        )[0]

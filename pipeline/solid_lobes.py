@@ -11,6 +11,8 @@ from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import Sector, sector_of
+from flexspline.pipeline.part_meshes import PartMeshes
+from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
 
 MOST_ELEMENTS = 100_000
@@ -74,7 +76,7 @@ def _meshes(
 
 
 def _of_torsion(flexspline: PartModel, sector: Sector, supported: bool) -> tuple[TetMesh, float]:
-    twisted = flexspline.twisted()
+    twisted = twisted_part(flexspline)
     scale = twisted.stiffness.error_scale if supported else COARSE_SCALE
     return unfolded(twisted.rim.mesh, sector.degrees), scale
 
@@ -83,7 +85,7 @@ def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
     design = flexspline.context.design
     f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
-    swept = flexspline.swept(flexspline.first_spec, finer)
+    swept = PartMeshes(flexspline).swept(flexspline.first_spec, finer)
     if swept is None:
         raise SolidError("the swept mesh fails a check")
     size = round(len(swept.mesh.cells) * sector.degrees / swept.mesh.sector_deg)

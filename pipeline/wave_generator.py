@@ -15,7 +15,9 @@ from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline.parts import MeshedPart, PartModel
+from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
+from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.parts import PartModel
 
 LARGEST_STEP = radians(5)
 EDGE_WALLS, REACH_WALLS = 0.5, 1.5
@@ -46,7 +48,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
         expected = _hole_free_peak(flexspline)
         fine = _refined_at(flexspline, expected) if expected else None
         if expected is None or fine is None:
-            return _solved(flexspline, flexspline.twisted().rim, w0)
+            return _solved(flexspline, twisted_part(flexspline).rim, w0)
         field = _solved(flexspline, fine, w0)
         x, y, z = field.peak.at_mm
         found = hypot(x, y), z
@@ -94,7 +96,7 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
         for coarser in COARSER:
             finer = Finer(coarser * LARGEST_STEP, places, _reach_mm(flexspline), coarser * edge)
             try:
-                found = flexspline.swept(even, finer)
+                found = PartMeshes(flexspline).swept(even, finer)
             except SolidError:  # too many elements even to begin
                 continue
             if found is None or len(found.mesh.cells) * times <= MOST_ELEMENTS:

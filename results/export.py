@@ -14,6 +14,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.analysis import torque_field
 from flexspline.pipeline.load_cases import wave_generator_field
+from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.results.atomic import write_bytes
@@ -65,7 +66,7 @@ def write_step_files(design: Design, folder: Path, progress: Progress) -> list[P
 def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list[Path]:
     if not formats:
         return []
-    mesh = PatchedMesh.of(part.name, part.twisted().meshed.mesh)
+    mesh = PatchedMesh.of(part.name, twisted_part(part).meshed.mesh)
     done = []
     for suffix in formats:
         with part.context.progress.stage(f"{suffix} of the {part.name}"):
@@ -75,7 +76,7 @@ def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list
 
 def _write_deck(part: PartModel, folder: Path) -> Path:
     """The torsion case as a CalculiX/Abaqus deck, on the sector's mesh that gave K."""
-    twisted = part.twisted()
+    twisted = twisted_part(part)
     path = folder / f"{part.name}_torsion.inp"
     with part.context.progress.stage(f"deck of the {part.name}"):
         on_this_mesh = twisted.stiffness.levels[-1].K_Nm_per_rad

@@ -88,11 +88,11 @@ def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolve
 
 
 def test_without_k_b_the_rest_is_kept_and_the_status_is_1(revolved, monkeypatch):
-    from flexspline.pipeline import parts
+    from flexspline.pipeline import part_stiffness
 
-    solve = parts.torsional_stiffness
+    solve = part_stiffness.torsional_stiffness
     monkeypatch.setattr(
-        parts, "torsional_stiffness",
+        part_stiffness, "torsional_stiffness",
         lambda outline, material, driven, *rest: (
             fail() if driven == "mesh" else solve(outline, material, driven, *rest)
         ),

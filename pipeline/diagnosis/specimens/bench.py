@@ -17,6 +17,7 @@ from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.part import PartName
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.revolved import lobes, torsion
 
@@ -53,7 +54,7 @@ class Bench:
     def _model(self, design: Design, part: PartName) -> float:
         lobed = part == "flexspline" and design.solver.load_case == "lobes"
         if self.full and not lobed:
-            return 1 / replace(self.context, design=design).part(part).stiffness().K_Nm_per_rad
+            return 1 / part_stiffness(replace(self.context, design=design).part(part)).K_Nm_per_rad
         return self.plain(design, part, lobed)
 
     def plain(self, design: Design, part: PartName, lobed: bool = False) -> float:

@@ -1,0 +1,83 @@
+"""Meshes of a part's sector: swept from its meridian where that works, else made from its CAD surface."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import cached_property
+
+import numpy as np
+
+from flexspline.fea.solid.defaults import surface_to_mesh
+from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
+from flexspline.fea.solid.swept import swept_edges, swept_mesh
+from flexspline.fea.solid.swept_sizing import Finer
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.tagged import TaggedSurface
+from flexspline.pipeline.parts import PartModel
+
+EDGE_POINTS = 8
+"""Of sharp edges, within the stress rule's distance from them."""
+
+
+@dataclass(frozen=True)
+class MeshedPart:
+    """A mesh and the sharp edges (k, 3) [mm] of the same sector, for the stress rule."""
+
+    mesh: TetMesh
+    sharp_edges: np.ndarray
+
+
+@dataclass(frozen=True)
+class PartMeshes:
+    """The meshes that can be had of a part; its CAD surface is made once, where one needs it."""
+
+    model: PartModel
+
+    @property
+    def _edge_spacing(self) -> float:
+        return self.model.part.exclusion_mm / EDGE_POINTS
+
+    @cached_property
+    def _surface(self) -> TaggedSurface:
+        model = self.model
+        with model.context.progress.stage(f"CAD of the {model.name}"):
+            return surface_to_mesh(
+                model.part, model.first_spec, model.sector.degrees, self._edge_spacing
+            )
+
+    def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
+        """Swept from the meridian; None for a part that only a mesher can mesh."""
+        part, degrees = self.model.part, self.model.sector.degrees
+        mesh = swept_mesh(part, degrees, spec, finer)
+        if mesh is None:
+            return None
+        return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing))
+
+    def meshed(self, spec: MeshSpec) -> MeshedPart:
+        """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.
+
+        Raises
+        ------
+        DesignError : as `PartModel.is_swept`. SolidError : a sweep is asked for and fails a check.
+        """
+        model = self.model
+        inputs = {**model.geometry_key, "spec": asdict(spec), "mesher": model.mesher}
+        return model.context.cache.get("mesh", inputs, lambda: self._made(spec))[0]
+
+    def _made(self, spec: MeshSpec) -> MeshedPart:
+        model, progress = self.model, self.model.context.progress
+        if model.is_swept:
+            with progress.stage(f"mesh of the {model.name}"):
+                swept = self.swept(spec)
+            if swept is not None:
+                return swept
+            if model.mesher == "swept":
+                raise SolidError(
+                    f"the swept mesh of the {model.name} fails a check; solver.mesher"
+                    ' "tetwild" or "auto" works'
+                )
+            progress.note("  the swept mesh fails a check: fTetWild instead")
+        surface = self._surface
+        with progress.stage(f"mesh of the {model.name}"):
+            return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
