@@ -77,31 +77,24 @@ class StudyResult:
     @property
     def pareto(self) -> tuple[Row, ...]:
         """Feasible rows that no other feasible row beats; the first objective's best first."""
-        return self._front(self.feasible)
-
-    def best(self, count: int) -> tuple[Row, ...]:
-        """So many designs to look at: spread evenly over the front, or where that is short, it and
-        the fronts behind it."""
-        chosen = self.pareto
-        if len(chosen) > count:
-            at = np.linspace(0, len(chosen) - 1, count).round().astype(int)
-            return tuple(chosen[i] for i in at)
-        left = self.feasible
-        while chosen and len(chosen) < count:  # without an objective there is no front
-            taken = {r.slot for r in chosen}
-            left = tuple(r for r in left if r.slot not in taken)
-            if not left:
-                break
-            chosen += self._front(left)
-        return chosen[:count]
-
-    def _front(self, rows: tuple[Row, ...]) -> tuple[Row, ...]:
-        """Those of the rows that no other of them beats, by cost."""
         if not self.study.file.objective:
             return ()
-        costs = {r.slot: self._costs(r) for r in rows}
-        kept = [r for r in rows if not any(_beats(c, costs[r.slot]) for c in costs.values())]
+        costs = {r.slot: self._costs(r) for r in self.feasible}
+        kept = [
+            r for r in self.feasible if not any(_beats(c, costs[r.slot]) for c in costs.values())
+        ]
         return tuple(sorted(kept, key=lambda r: costs[r.slot]))
+
+    def best(self, count: int) -> tuple[Row, ...]:
+        """So many designs to look at: of one objective the ranking; of several, spread evenly over the
+        front, or all of it where it is shorter."""
+        if len(self.study.file.objective) == 1:
+            return tuple(sorted(self.feasible, key=self._costs))[:count]
+        front = self.pareto
+        if len(front) <= count:
+            return front
+        at = np.linspace(0, len(front) - 1, count).round().astype(int)
+        return tuple(front[i] for i in at)
 
     def _costs(self, row: Row) -> tuple[float, ...]:
         """Objectives, all to be made small."""

@@ -46,7 +46,8 @@ def line(study: Study, progress: Progress) -> str:
     failed = sum(not study.is_answered(r.outcome.figures) for r in progress.rows)
     if failed:
         parts.append(f"{failed} cannot be built or solved")
-    best = StudyResult(study, tuple(progress.rows)).pareto if study.file.objective else ()
+    so_far = StudyResult(study, tuple(progress.rows))
+    best = () if so_far.about_scatter else so_far.pareto
     for i, key in enumerate(study.file.objective if best else ()):
         row = best[0] if i == 0 else min(best, key=lambda r: _cost(study, key, r.outcome.figures))
         parts.append(f"best {valued(key, row.outcome.figures)}")

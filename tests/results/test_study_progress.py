@@ -43,3 +43,14 @@ def test_rate_best_and_time_left() -> None:
         "4 of 10 designs", "0.50 per s", "1 cannot be built or solved", "best 31 000 N·m/rad",
         "12 s left",
     ]  # fmt: skip
+
+
+def test_a_tolerance_study_has_no_best() -> None:
+    text = STUDY.replace('method = "grid"', 'method = "tolerance"\nevaluations = 64')
+    text = text.replace(
+        '[vary]\n"flexspline.wall_thickness_mm" = { values = [0.38, 0.4, 0.42] }\n', ""
+    )
+    study = study_from(tomllib.loads(text), Path(__file__).parents[2] / "examples", "test")
+    assert "best" not in line(
+        study, Progress([Row(0, {}, Outcome({"K_b_Nm_per_rad": 30e3}))], 1, 4.0, 64)
+    )
