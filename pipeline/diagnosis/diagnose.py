@@ -8,6 +8,7 @@ from typing import Literal
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.analysis import analysis_context
+from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import (
@@ -57,6 +58,13 @@ class Diagnosis:
         if isinstance(self.measurement, Sweep):
             return "sweep"
         return "end_points" if isinstance(self.measurement, EndPoints) else "specimens"
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """Gap and compliance as the record has them; None of specimens, and of too few data."""
+        if self.sweep is not None:
+            return self.sweep.explained.identified.fit.calibration
+        return self.end_points.calibration if self.end_points is not None else None
 
     @property
     def verdict(self) -> Verdict:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.data_used import calibrated_sentence
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
@@ -39,6 +40,8 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         lines.append(
             f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
         )
+    if diagnosis.calibration is not None:
+        lines += _wrapped(calibrated_sentence(diagnosis.calibration, diagnosis.prediction))
     gain = outcome.gain
     if gain is not None:
         lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
@@ -56,6 +59,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         )
     for note in notes(diagnosis):
         lines += _wrapped(f"note: {note}", "  ", "    ")
+    lines.append(f"  SHA-256 of the measurement: {diagnosis.measurement.sha256}")
     lines.append(f"files in {folder}")
     return "\n".join(lines)
 

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
-from flexspline.results.diagnosis.words import title_of
+from flexspline.results.diagnosis.words import plus_minus, title_of
+from flexspline.results.numbers import grouped
 
 
 def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     """Notes of the kind that was measured."""
     if diagnosis.sweep is not None:
         return (*_sweep_notes(diagnosis.sweep.explained),)
-    if diagnosis.end_points is not None:
-        return (*end_point_notes(diagnosis.end_points),)
+    if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
+        of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
+        return (*end_point_notes(diagnosis.end_points), *of_race)
     if diagnosis.specimens is not None:
         return (*_specimen_notes(diagnosis.specimens),)
     return ()
@@ -22,18 +27,23 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     prepared = explained.prepared
-    found = []
-    dropped = int(prepared.outlier.sum())
-    if dropped:
-        found.append(f"{dropped} isolated outliers were left out")
-    band = f"rows with |T| < {prepared.band_Nm:.3g} N·m (backlash crossing)"
-    found.append(f"{band} were not used for identification")
+    found = row_notes(prepared)
     if prepared.sweep.history.time_s is None:
         found.append("no time was recorded: friction cannot be told from rate dependence")
     found += _unit_notes(explained)
     if prepared.sweep.ignored:
         found.append(f"columns not used: {', '.join(prepared.sweep.ignored)}")
     return found
+
+
+def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
+    """How many rows the hypotheses were compared on, where not all."""
+    if analysis.race_rows == len(points.unit):
+        return []
+    some, every = grouped(analysis.race_rows, 0), grouped(len(points.unit), 0)
+    return [
+        f"{some} of {every} rows were used to compare causes; every unit was compared with the envelope"
+    ]
 
 
 def _unit_notes(explained: ExplainedSweep) -> list[str]:
@@ -65,7 +75,7 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
             0, f"the file has no column part: taken as {part}, by {analysis.part_guessed_by}"
         )
     if "youngs_modulus" not in chosen.named:
-        change = f"{100 * chosen.mean[0]:+.2g}".replace("-", "−")
+        change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
         found.append(f"Young's modulus calibrated by {change} % within its uncertainty")
     for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):
         s = term.sensitivity

@@ -7,6 +7,7 @@ from typing import Any
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.records import heading
@@ -22,6 +23,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         **heading(diagnosis.design),
         "verdict": outcome.verdict,
         "summary": summary(diagnosis),
+        **data_record(diagnosis),
         "causes": [_cause(c) for c in outcome.causes],
         "unexplained": [
             {"channel": u.channel, "rms": u.rms, "p_value": u.p_value, "what": u.what}

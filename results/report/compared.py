@@ -8,12 +8,20 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.stiffness_pair import StiffnessPair
+from flexspline.results.diagnosis.data_used import rows_used
 from flexspline.results.diagnosis.words import channel_words, figures_text
 from flexspline.results.numbers import grouped
 
 
 def measured(diagnosis: Diagnosis) -> list[list[str]]:
     """What was measured: name and text of each fact."""
+    facts = _facts(diagnosis)
+    if diagnosis.sweep is not None:
+        facts.append(["Rows used", rows_used(diagnosis.sweep.explained.prepared)])
+    return facts
+
+
+def _facts(diagnosis: Diagnosis) -> list[list[str]]:
     m = diagnosis.measurement
     if isinstance(m, Sweep):
         return [["Kind", "torque sweep, wave generator locked"], *_sweep(m)]

@@ -9,6 +9,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.data_used import calibrated_sentence
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
@@ -80,8 +81,12 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     tone: Literal["amber", "blue"] = "amber" if outcome.verdict in OPEN else "blue"
     yield Callout(tone, VERDICTS[outcome.verdict], summary(diagnosis))
     yield Heading("What was measured")
-    yield Facts(tuple((name, fact) for name, fact in measured(diagnosis)))
+    facts = tuple((name, fact) for name, fact in measured(diagnosis))
+    yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.sha256))))
     yield Paragraph(worded(compared(diagnosis, used)))
+    if diagnosis.calibration is not None:
+        sentence = calibrated_sentence(diagnosis.calibration, diagnosis.prediction)
+        yield Paragraph(worded(sentence))
 
 
 def _causes(outcome: DiagnosisOutcome) -> Iterable[Block]:

@@ -20,7 +20,12 @@ from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.end_points.decide import NAMING_NATS, decide
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.end_points.models import extended, gain_of, rivals_for_unit
+from flexspline.pipeline.diagnosis.end_points.models import (
+    calibration_of,
+    extended,
+    gain_of,
+    rivals_for_unit,
+)
 from flexspline.pipeline.diagnosis.end_points.next_measurement import next_measurement, separated
 from flexspline.pipeline.diagnosis.end_points.race import SUSPECTS, race, several_torques
 from flexspline.pipeline.diagnosis.end_points.regressors import rig_of
@@ -78,7 +83,8 @@ def diagnose_end_points(
     kept = best.best if named else null
     analysis = EndPointAnalysis(
         envelopes, units, mid_positions(deviations, prediction), null.common, null.share, kept.reading,
-        tuple(hypotheses), plans, several_torques(deviations),
+        tuple(hypotheses), plans, several_torques(deviations), calibration_of(kept, prediction),
+        len(some.unit),
     )  # fmt: skip
     outcome = DiagnosisOutcome(
         decision.verdict, decision.causes, decision.unexplained,

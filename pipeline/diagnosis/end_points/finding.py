@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, Explanation
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.pipeline.diagnosis.plans import PlanSeparation
@@ -60,7 +61,8 @@ class EndPointAnalysis:
     deviation that all units share [arcsec]; `share`: how much of the gap's stated variance is common.
     `reading_arcsec`: standard deviation of a total. `hypotheses`: the race, likeliest first.
     `plans`: further measurements by what they separate, best first. `several_torques`: whether some unit
-    was measured at more than one torque.
+    was measured at more than one torque. `calibration`: the gap common to all units, beside what was found.
+    `race_rows`: rows on which the hypotheses were compared.
     """
 
     envelopes: tuple[Envelope, ...]
@@ -72,6 +74,8 @@ class EndPointAnalysis:
     hypotheses: tuple[Hypothesis, ...]
     plans: tuple[PlanSeparation, ...]
     several_torques: bool
+    calibration: Calibration
+    race_rows: int
 
     def envelope_at(self, torque_Nm: float) -> Envelope:
         """Of one of the file's torques."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
@@ -28,6 +29,12 @@ FEWEST_UNITS = 3
 """To hold out one and still see what is common."""
 
 
+def calibration_of(weighed: UnitEvidence, prediction: Prediction) -> Calibration:
+    """The gap that all units share; the compliance stays as simulated."""
+    off, std = weighed.common
+    return Calibration(Estimate(prediction.gap_arcsec + off, std), bool(weighed.terms))
+
+
 def extended(
     weighed: UnitEvidence, deviations: UnitDeviations, names: Sequence[str], prediction: Prediction
 ) -> ExtendedModel:
@@ -37,7 +44,7 @@ def extended(
         elements[term.cause] = elements.get(term.cause, ()) + term.elements(float(amplitude))
     return ExtendedModel(
         prediction.compliance,
-        prediction.gap_arcsec + weighed.common[0],
+        calibration_of(weighed, prediction).gap_arcsec.value,
         {
             n: float(deviations.mid[rows].mean())
             for n, rows in zip(names, deviations.unit_rows, strict=True)

@@ -17,6 +17,14 @@ FEWEST_SWEEP_ROWS = 4
 
 
 @dataclass(frozen=True)
+class Averaging:
+    """How a long record was made shorter: rows in the file, and rows that went into means."""
+
+    rows_read: int
+    rows_averaged: int
+
+
+@dataclass(frozen=True)
 class Sweep:
     """Torque sweeps with the wave generator locked: `angle_arcsec` (n,) for each row of `history`."""
 
@@ -30,6 +38,8 @@ class Sweep:
     cycles_recorded: bool
     ignored: tuple[str, ...] = ()
     sha256: str = ""
+    averaging: Averaging | None = None
+    """None where the rows are those of the file."""
 
     def __len__(self) -> int:
         return len(self.angle_arcsec)

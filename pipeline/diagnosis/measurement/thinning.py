@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import crossing_band_Nm
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 MOST_ROWS = 6000
@@ -97,5 +97,6 @@ def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Swee
         None if h.input_angle_deg is None else h.input_angle_deg[first],
     )  # fmt: skip
     return replace(
-        sweep, history=history, angle_arcsec=mean(sweep.angle_arcsec), line=sweep.line[first]
-    )
+        sweep, history=history, angle_arcsec=mean(sweep.angle_arcsec), line=sweep.line[first],
+        averaging=Averaging(len(sweep), sum(map(len, groups))),
+    )  # fmt: skip

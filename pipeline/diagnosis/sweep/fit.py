@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -46,6 +47,17 @@ class SweepFit:
                 element = Element(term.shape, tuple(float(a) for a in amplitudes))
                 found[term.cause.id] = (*found.get(term.cause.id, ()), element)
         return found
+
+    @property
+    def calibration(self) -> Calibration:
+        """Gap and compliance without the effects found, by the posterior."""
+        p, mean, k = self.rig.prediction, self.posterior.mean, self.units
+        std = np.sqrt(np.diag(self.posterior.covariance))
+        return Calibration(
+            Estimate(p.gap_arcsec + float(mean[k + 1]), float(std[k + 1])),
+            bool(self.posterior.terms),
+            Estimate(p.compliance + float(mean[k]), float(std[k])),
+        )
 
     def measured_rig(self, mean: np.ndarray | None = None) -> Rig:
         """The rig with compliance and gap as measured."""

@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, design_matrix
-from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
+from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
 
 FEWEST_KEPT, PER_UNIT = 12, 4
 """Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
@@ -59,6 +59,11 @@ class PreparedSweep:
     rows_per_cycle: float
     noise: Noise
     offset_Nm: float = 0.0
+
+    @property
+    def row_counts(self) -> RowCounts:
+        """How many rows identify causes, and why the others do not."""
+        return row_counts(self.rig.history, self.band_Nm, self.outlier)
 
 
 def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> PreparedSweep:

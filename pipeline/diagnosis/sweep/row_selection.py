@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import rising
@@ -10,6 +12,36 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
 """Of the largest torque; of a unit's rows."""
+
+
+@dataclass(frozen=True)
+class RowCounts:
+    """Rows of a sweep by their use; a row left out is counted once, under the first reason that holds."""
+
+    used: int
+    crossing: int
+    turning: int
+    settling: int
+    outliers: int
+
+    @property
+    def total(self) -> int:
+        return self.used + self.crossing + self.turning + self.settling + self.outliers
+
+
+def row_counts(history: History, band_Nm: float, outlier: np.ndarray) -> RowCounts:
+    """How many rows name causes, and why the others do not; `outlier` (n,) mask."""
+    left = np.ones(len(history), bool)
+    counts = []
+    for reason in (
+        np.abs(history.torque_Nm) <= band_Nm,
+        turning(history),
+        settling(history),
+        outlier,
+    ):
+        counts.append(int((left & reason).sum()))
+        left &= ~reason
+    return RowCounts(int(left.sum()), *counts)
 
 
 def naming_rows(history: History, band_Nm: float) -> np.ndarray:

@@ -1,0 +1,108 @@
+"""What of a record was used and what it calibrates, in words and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.results.diagnosis.words import plus_minus
+from flexspline.results.numbers import grouped
+
+
+def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
+    """The file with its hash, rows by their use, and the calibration; what was not computed is absent."""
+    measurement = diagnosis.measurement
+    record: dict[str, Any] = {
+        "measurement": {"file": measurement.path.name, "sha256": measurement.sha256}
+    }
+    if diagnosis.sweep is not None:
+        record["rows"] = _rows(diagnosis.sweep.explained.prepared)
+    if diagnosis.calibration is not None:
+        record["calibrated"] = _calibrated(diagnosis.calibration)
+    return record
+
+
+def _rows(prepared: PreparedSweep) -> dict[str, Any]:
+    counts, averaging = prepared.row_counts, prepared.sweep.averaging
+    record: dict[str, Any] = {"read": counts.total if averaging is None else averaging.rows_read}
+    if averaging is not None:
+        record |= {"averaged": averaging.rows_averaged, "means": counts.total}
+    return record | {
+        "used": counts.used,
+        "left_out": {
+            "backlash_crossing": counts.crossing,
+            "torque_reversal": counts.turning,
+            "before_first_reversal": counts.settling,
+            "outlier": counts.outliers,
+        },
+    }
+
+
+def _calibrated(calibration: Calibration) -> dict[str, float]:
+    gap, compliance = calibration.gap_arcsec, calibration.compliance
+    record = {"gap_arcsec": gap.value, "gap_std_arcsec": gap.std}
+    if compliance is not None:
+        record |= {
+            "compliance_arcsec_per_Nm": compliance.value,
+            "compliance_std_arcsec_per_Nm": compliance.std,
+        }
+    return record
+
+
+def calibrated_sentence(calibration: Calibration, prediction: Prediction) -> str:
+    """Gap and compliance as fitted to the record, each with the simulated one."""
+    gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
+    parts = [f"gap {gap} arcsec"]
+    if calibration.compliance is not None:
+        compliance = _against(
+            calibration.compliance, prediction.compliance, prediction.compliance_std
+        )
+        parts.append(f"compliance {compliance} arcsec per N·m")
+    beside = ", without the effects found" if calibration.beside_effects else ""
+    return f"Calibrated on this record{beside}: {'; '.join(parts)}."
+
+
+def _against(measured: Estimate, simulated: float, std: float) -> str:
+    stated = plus_minus(simulated, std) if std else f"{simulated:.4g}"
+    return f"{plus_minus(measured.value, measured.std)} (simulated {stated})"
+
+
+def rows_used(prepared: PreparedSweep) -> str:
+    """How many of the rows identify causes."""
+    counts, averaging = prepared.row_counts, prepared.sweep.averaging
+    words = f"{grouped(counts.used, 0)} of {grouped(counts.total, 0)}"
+    return words if averaging is None else f"{words} means"
+
+
+def row_notes(prepared: PreparedSweep) -> list[str]:
+    """Rows used, and rows left out by their reason."""
+    counts, averaging = prepared.row_counts, prepared.sweep.averaging
+    found = []
+    if averaging is not None:
+        left = averaging.rows_read - averaging.rows_averaged
+        found.append(
+            f"{grouped(averaging.rows_read, 0)} rows were read and averaged to "
+            f"{grouped(counts.total, 0)} means of neighbouring rows; "
+            f"{grouped(left, 0)} rows (spikes, surplus cycles) are in no mean"
+        )
+    what = "rows" if averaging is None else "means"
+    found.append(
+        f"{rows_used(prepared)}{' rows' * (averaging is None)} were used for identification"
+    )
+    others = [
+        f"{grouped(count, 0)} {words}"
+        for count, words in (
+            (counts.turning, "at reversals of torque"),
+            (counts.settling, "before the first reversal at high torque"),
+            (counts.outliers, f"isolated outlier{'s' * (counts.outliers != 1)}"),
+        )
+        if count
+    ]
+    found.append(
+        f"{grouped(counts.crossing, 0)} {what} with |T| < {prepared.band_Nm:.3g} N·m (backlash crossing) "
+        "were not used for identification" + (f"; nor were {', '.join(others)}" if others else "")
+    )
+    return found
