@@ -8,11 +8,11 @@ from math import asin, ceil, pi, sin
 from flexspline.geometry.bounds import TINY, above, below, lengths
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.fields import SMALLEST_MM
-from flexspline.geometry.shapes import Cup, Hat, Shaft
+from flexspline.geometry.shapes import Flexspline, Shaft
 
 
 def bolt_faults(
-    prefix: str, part: Cup | Hat | Shaft, inner: tuple[str, float], outer: tuple[str, float]
+    prefix: str, part: Flexspline | Shaft, inner: tuple[str, float], outer: tuple[str, float]
 ) -> Iterator[DesignError]:
     """Holes that leave the ring between two diameters (key, mm), or touch each other."""
     n, circle, hole = part.bolt_count, part.bolt_circle_diameter_mm, part.bolt_hole_diameter_mm

@@ -8,17 +8,17 @@ from math import hypot, inf, sqrt
 from flexspline.geometry.bounds import TINY, from_zero, lengths, upto
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Flexspline
 
 PREFIX = "flexspline."
 
 
-def fault(f: Cup | Hat, key: str, reason: str) -> DesignError:
+def fault(f: Flexspline, key: str, reason: str) -> DesignError:
     """A fault of a key of the flexspline, with the value that it has."""
     return DesignError(PREFIX + key, getattr(f, key), reason)
 
 
-def corner_wall(f: Cup | Hat) -> float:
+def corner_wall(f: Flexspline) -> float:
     """Smallest wall between the inner and the outer fillet [mm]; not positive if they cross.
 
     With d the outer less the inner radius, wall t and diaphragm h, the arcs' centres are
@@ -29,18 +29,17 @@ def corner_wall(f: Cup | Hat) -> float:
     return d - hypot(d - t, d - h) if d > max(t, h) else min(t, h)
 
 
-def fillet_faults(f: Cup | Hat) -> Iterator[DesignError]:
+def fillet_faults(f: Flexspline) -> Iterator[DesignError]:
     """The first fillet without room; what the ring and the closed end leave must be sound already."""
     h, start, t = f.diaphragm_thickness_mm, f.ring_start, f.wall_thickness_mm
-    if isinstance(f, Cup):
-        key, boss = "boss_diameter_mm", f.boss_diameter_mm / 2
-        inner_radial, outer_radial = f.inner_radius - boss, f.wall_radius - boss
+    key, edge = f.land_edge, f.size(f.land_edge) / 2
+    if f.inward:
+        inner_radial, outer_radial = f.inner_radius - edge, f.wall_radius - edge
         inner_axial, outer_axial = start - h, f.shoulder_start
     else:
-        key, flange = "flange_inner_diameter_mm", f.flange_inner_diameter_mm / 2
-        inner_radial, outer_radial = flange - f.wall_radius, flange - f.inner_radius
+        inner_radial, outer_radial = edge - f.wall_radius, edge - f.inner_radius
         inner_axial, outer_axial = f.shoulder_start - h, start
-    end = f"{key} = {getattr(f, key):g}"
+    end = f"{key} = {f.size(key):g}"
     over = sqrt(2 * t * h)
     # less what leaves a wall of TINY: it shrinks by over / (over + t + h) of the fillet's growth
     through = f.inner_fillet_mm + (t + h + over) * (1 - 2 * TINY / over)
@@ -69,10 +68,10 @@ def fillet_faults(f: Cup | Hat) -> Iterator[DesignError]:
         return
 
 
-def _room_maker(f: Cup | Hat, lacking: float, radial: bool, key: str) -> str:
+def _room_maker(f: Flexspline, lacking: float, radial: bool, key: str) -> str:
     """Which key gives a fillet its room, and how far it must go."""
-    if radial and isinstance(f, Hat):
-        least = lengths(f.flange_inner_diameter_mm + 2 * lacking, LENGTH_mm.high)
+    if radial and not f.inward:
+        least = lengths(f.size(key) + 2 * lacking, LENGTH_mm.high)
         return f"{PREFIX}{key} to {least.split(' ')[1]} mm or more" if least else f"{PREFIX}{key}"
     names = (key,) if radial else ("ring_width_mm", "ring_offset_mm")
     for name in names:

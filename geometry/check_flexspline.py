@@ -22,10 +22,10 @@ from flexspline.geometry.culprits import culprits
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Flexspline
 
 
-def flexspline_faults(f: Cup | Hat, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:
+def flexspline_faults(f: Flexspline, teeth: Interval = (0.0, inf)) -> Iterator[DesignError]:
     """Everything that keeps the flexspline from being built, in the order to mend it.
 
     Each names a key and a range that holds whatever the keys named after it are; `teeth` are the ends that
@@ -34,28 +34,16 @@ def flexspline_faults(f: Cup | Hat, teeth: Interval = (0.0, inf)) -> Iterator[De
     wrong = list(culprits(f))
     yield from wrong
     ring = list(_ring_faults(f, teeth))
-    end = list(_cup_faults(f) if isinstance(f, Cup) else _hat_faults(f, not ring))
+    end = list(_inside_faults(f) if f.inward else _outside_faults(f, not ring))
     yield from ring
     yield from end
     if not ring and not end:  # the room for fillets is only defined then
         yield from fillet_faults(f)
-    if isinstance(f, Cup):
-        yield from bolt_faults(
-            PREFIX,
-            f,
-            ("bore_diameter_mm", f.bore_diameter_mm),
-            ("boss_diameter_mm", f.boss_diameter_mm),
-        )
-    else:
-        yield from bolt_faults(
-            PREFIX,
-            f,
-            ("flange_inner_diameter_mm", f.flange_inner_diameter_mm),
-            ("flange_outer_diameter_mm", f.flange_outer_diameter_mm),
-        )
+    inner, outer = f.land.inner, f.land.outer
+    yield from bolt_faults(PREFIX, f, (inner, f.size(inner)), (outer, f.size(outer)))
 
 
-def _ring_faults(f: Cup | Hat, teeth: Interval) -> Iterator[DesignError]:
+def _ring_faults(f: Flexspline, teeth: Interval) -> Iterator[DesignError]:
     h, length, wall = f.diaphragm_thickness_mm, f.length_mm, f.wall_thickness_mm
     rise = f.ring_thickness_mm - wall
     if h > upto(length - SMALLEST_MM):
@@ -68,7 +56,7 @@ def _ring_faults(f: Cup | Hat, teeth: Interval) -> Iterator[DesignError]:
                 f, "diaphragm_thickness_mm", f"must be {room} mm: below length_mm = {length:g}"
             )
         return
-    seat_floor, shoulder_floor = (h, 0.0) if isinstance(f, Cup) else (0.0, h)
+    seat_floor, shoulder_floor = (h, 0.0) if f.inward else (0.0, h)
     room_of = min(length - seat_floor, length - shoulder_floor - rise)
     tube = f"length_mm = {length:g} less diaphragm_thickness_mm = {h:g}"
     if not is_step(rise) or room_of < SMALLEST_MM - TINY / 2:
@@ -100,9 +88,9 @@ def _ring_faults(f: Cup | Hat, teeth: Interval) -> Iterator[DesignError]:
         )
 
 
-def thickest_ring(f: Cup | Hat) -> float:
+def thickest_ring(f: Flexspline) -> float:
     """The ring's thickness whose shoulder fills the tube, but for the thinnest ring [mm]."""
-    floor = 0.0 if isinstance(f, Cup) else f.diaphragm_thickness_mm
+    floor = 0.0 if f.inward else f.diaphragm_thickness_mm
     return upto(f.wall_thickness_mm + f.length_mm - floor - SMALLEST_MM)
 
 
@@ -112,30 +100,25 @@ def _ring_span(wall: float, ends: Interval) -> str:
     return beside(wall, "wall_thickness_mm", SMALLEST_MM, min(low, high), high)
 
 
-def _cup_faults(f: Cup) -> Iterator[DesignError]:
-    if f.boss_diameter_mm >= f.inner_diameter_mm - TINY:
+def _inside_faults(f: Flexspline) -> Iterator[DesignError]:
+    inner, outer = f.land.inner, f.land.outer
+    if f.size(outer) >= f.inner_diameter_mm - TINY:
         room = lengths(0, below(f.inner_diameter_mm))
         if room is None:
             least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
-            yield fault(f, "inner_diameter_mm", f"must be {least} mm: for a boss inside it")
+            reason = f"must be {least} mm: for a {f.land.noun} inside it"
+            yield fault(f, "inner_diameter_mm", reason)
         else:
-            yield fault(
-                f,
-                "boss_diameter_mm",
-                f"must be {room} mm: below inner_diameter_mm = {f.inner_diameter_mm:g}",
-            )
-    if f.bore_diameter_mm >= f.boss_diameter_mm - TINY:
-        yield fault(
-            f,
-            "bore_diameter_mm",
-            f"must be {from_zero(below(f.boss_diameter_mm))} mm: below boss_diameter_mm = "
-            f"{f.boss_diameter_mm:g}",
-        )
-    yield from _thickness_faults(f, "boss_thickness_mm", f.boss_thickness_mm, f.length_mm)
+            reason = f"must be {room} mm: below inner_diameter_mm = {f.inner_diameter_mm:g}"
+            yield fault(f, outer, reason)
+    if f.size(inner) >= f.size(outer) - TINY:
+        room = from_zero(below(f.size(outer)))
+        yield fault(f, inner, f"must be {room} mm: below {outer} = {f.size(outer):g}")
+    yield from _thickness_faults(f, f.length_mm)
 
 
-def _hat_faults(f: Hat, ring_fits: bool) -> Iterator[DesignError]:
-    inner, outer = f.flange_inner_diameter_mm, f.flange_outer_diameter_mm
+def _outside_faults(f: Flexspline, ring_fits: bool) -> Iterator[DesignError]:
+    inner, outer = f.size(f.land.inner), f.size(f.land.outer)
     most = LENGTH_mm.high - 2 * SMALLEST_MM  # the flange itself goes around it
     if 2 * f.ring_radius > most - 2 * SMALLEST_MM:
         # a ring as thin as the wall is the least; the wall must leave room for it too
@@ -148,42 +131,36 @@ def _hat_faults(f: Hat, ring_fits: bool) -> Iterator[DesignError]:
     if inner <= 2 * f.wall_radius + TINY or inner < least - 2 * TINY or inner > most:
         yield fault(
             f,
-            "flange_inner_diameter_mm",
+            f.land.inner,
             f"must be {lengths(least, most)} mm: above the tube's outside, inner_diameter_mm + 2 "
             f"wall_thickness_mm = {2 * f.wall_radius:g}, with room for the ring and for "
-            "flange_outer_diameter_mm",
+            f"{f.land.outer}",
         )
         return
     if outer <= inner + TINY:
         yield fault(
             f,
-            "flange_outer_diameter_mm",
-            f"must be {lengths(above(inner), LENGTH_mm.high)} mm: above flange_inner_diameter_mm = "
-            f"{inner:g}",
+            f.land.outer,
+            f"must be {lengths(above(inner), LENGTH_mm.high)} mm: above {f.land.inner} = {inner:g}",
         )
-    yield from _thickness_faults(
-        f,
-        "flange_thickness_mm",
-        f.flange_thickness_mm,
-        min(f.length_mm, touches) if ring_fits else f.length_mm,
-    )
+    yield from _thickness_faults(f, min(f.length_mm, touches) if ring_fits else f.length_mm)
 
 
-def _touches(f: Hat) -> float:
+def _touches(f: Flexspline) -> float:
     """The height that a flange taller than the shoulder must leave to the ring inside it [mm]."""
-    inner = f.flange_inner_diameter_mm / 2
+    inner = f.size(f.land.inner) / 2
     if inner > f.ring_radius + TINY:
         return inf
     return f.ring_start - max(0.0, f.ring_radius - inner)
 
 
-def _clear_of_the_ring(f: Hat) -> float:
+def _clear_of_the_ring(f: Flexspline) -> float:
     """Smallest diameter at which a flange as thin as the diaphragm clears the ring [mm]."""
     under = f.ring_start - f.diaphragm_thickness_mm - 2 * TINY
     return 2 * (f.ring_radius - under) + 2 * TINY if under > 0 else 2 * f.ring_radius + 4 * TINY
 
 
-def _too_wide(f: Hat, most: float) -> Iterator[DesignError]:
+def _too_wide(f: Flexspline, most: float) -> Iterator[DesignError]:
     """Which of the tube's own figures leaves no room for a flange."""
     figures = {
         "inner_diameter_mm": (f.inner_diameter_mm, most - 4 * SMALLEST_MM, 1.0),
@@ -199,21 +176,20 @@ def _too_wide(f: Hat, most: float) -> Iterator[DesignError]:
             yield fault(
                 f,
                 key,
-                f"must be {lengths(0, room / share)} mm: for a flange_outer_diameter_mm of at most "
+                f"must be {lengths(0, room / share)} mm: for a {f.land.outer} of at most "
                 f"{LENGTH_mm.high:g} mm",
             )
             return
 
 
-def _thickness_faults(
-    f: Cup | Hat, key: str, value: float, ceiling: float
-) -> Iterator[DesignError]:
+def _thickness_faults(f: Flexspline, ceiling: float) -> Iterator[DesignError]:
+    key, value = f.land.thickness, f.hole_depth
     h = f.diaphragm_thickness_mm
     if not is_step(value - h) or value >= ceiling - TINY:
         room = beside(h, "diaphragm_thickness_mm", SMALLEST_MM, h, max(below(ceiling), h))
         where = (
             f"below length_mm = {f.length_mm:g}"
             if ceiling == f.length_mm
-            else f"below the place z = {ceiling:g} where the ring reaches the flange"
+            else f"below the place z = {ceiling:g} where the ring reaches the {f.land.noun}"
         )
         yield fault(f, key, f"must be {room} mm: at least diaphragm_thickness_mm = {h:g}, {where}")

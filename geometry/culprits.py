@@ -12,22 +12,22 @@ from flexspline.geometry.check_fillets import fault
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Flexspline
 
 ENOUGH = 2
 """Others that contradict a figure."""
 
 
-def culprits(f: Cup | Hat) -> Iterator[DesignError]:
+def culprits(f: Flexspline) -> Iterator[DesignError]:
     """A length, inner diameter or boss that at least two others do not fit."""
     yield from _length(f)
-    yield from (_inside(f) if isinstance(f, Cup) else _outside(f))
+    yield from (_inside(f) if f.inward else _outside(f))
 
 
-def _length(f: Cup | Hat) -> Iterator[DesignError]:
+def _length(f: Flexspline) -> Iterator[DesignError]:
     h, fillet = f.diaphragm_thickness_mm, max(f.inner_fillet_mm, f.outer_fillet_mm)
     ring = f.ring_offset_mm + f.ring_width_mm
-    land = f.boss_thickness_mm if isinstance(f, Cup) else f.flange_thickness_mm
+    land = f.hole_depth
     if sum(x > f.length_mm + TINY for x in (h, ring, land, fillet)) < ENOUGH:
         return
     rise = max(f.ring_thickness_mm - f.wall_thickness_mm, 0.0)
@@ -37,37 +37,37 @@ def _length(f: Cup | Hat) -> Iterator[DesignError]:
             f,
             "length_mm",
             f"must be {least} mm: diaphragm, fillets, shoulder and ring lie along it, and the "
-            f"{'boss' if isinstance(f, Cup) else 'flange'} is shorter",
+            f"{f.land.noun} is shorter",
         )
 
 
-def _bolted(f: Cup | Hat) -> float:
+def _bolted(f: Flexspline) -> float:
     """The diameter that goes around the bolt holes [mm], 0 without."""
     circle, hole = f.bolt_circle_diameter_mm, f.bolt_hole_diameter_mm
     return circle + hole if f.bolt_count and circle and hole else 0.0
 
 
-def _inside(f: Cup) -> Iterator[DesignError]:
-    boss, bore, bolts = f.boss_diameter_mm, f.bore_diameter_mm, _bolted(f)
+def _inside(f: Flexspline) -> Iterator[DesignError]:
+    boss, bore, bolts = f.size(f.land.outer), f.size(f.land.inner), _bolted(f)
     fillet = max(f.inner_fillet_mm, f.outer_fillet_mm)
     inside = (boss, bore, bolts, fillet)
     if sum(x >= f.inner_diameter_mm - TINY for x in inside) >= ENOUGH:
         most = max(boss, above(bore), above(bolts))
         least = lengths(most + 2 * fillet + SMALLEST_MM, LENGTH_mm.high)
         if least is not None:
-            reason = f"must be {least} mm: boss, bore, bolt holes and fillets lie inside it"
+            reason = (
+                f"must be {least} mm: {f.land.noun}, bore, bolt holes and fillets lie inside it"
+            )
             yield fault(f, "inner_diameter_mm", reason)
     elif sum(x >= boss - TINY for x in (bore, bolts)) >= ENOUGH:
         room = lengths(max(bore, bolts) + SMALLEST_MM, below(f.inner_diameter_mm))
         if room is not None:
-            yield fault(
-                f, "boss_diameter_mm", f"must be {room} mm: bore and bolt holes lie inside it"
-            )
+            yield fault(f, f.land.outer, f"must be {room} mm: bore and bolt holes lie inside it")
 
 
-def _outside(f: Hat) -> Iterator[DesignError]:
+def _outside(f: Flexspline) -> Iterator[DesignError]:
     tube, fillet = 2 * f.wall_radius, max(f.inner_fillet_mm, f.outer_fillet_mm)
-    flange, outer = f.flange_inner_diameter_mm, f.flange_outer_diameter_mm
+    flange, outer = f.size(f.land.inner), f.size(f.land.outer)
     if max(flange, outer) > tube + TINY:
         return
     room = min(flange, outer)
@@ -78,6 +78,8 @@ def _outside(f: Hat) -> Iterator[DesignError]:
         range_ = lengths(0, most - 2 * fillet - SMALLEST_MM) or lengths(0, most - SMALLEST_MM)
         if range_ is not None:
             yield fault(
-                f, key, f"must be {range_} mm: the flange and its fillets lie outside the tube"
+                f,
+                key,
+                f"must be {range_} mm: the {f.land.noun} and its fillets lie outside the tube",
             )
             return

@@ -16,7 +16,7 @@ from flexspline.geometry import ranges
 from flexspline.geometry.fields import Micrometre, Percent, Table, within
 from flexspline.geometry.material import Material
 from flexspline.geometry.part import Part, PartName
-from flexspline.geometry.shapes import Cup, Hat, Shaft
+from flexspline.geometry.shapes import Flexspline, Shaft
 
 
 class Materials(Table):
@@ -117,7 +117,7 @@ class Design(Table):
     """One strain wave gear: flexspline, output shaft, materials, gear, play, load."""
 
     name: str = Field(min_length=1, max_length=200, description="of the design, for the report")
-    flexspline: Annotated[Cup | Hat, Field(discriminator="kind")]
+    flexspline: Annotated[Flexspline, Field(discriminator="kind")]
     shaft: Shaft
     material: Materials
     gear: Gear

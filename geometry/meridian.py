@@ -5,13 +5,15 @@ Written once; the CAD solid revolves it, the axisymmetric solver meshes it.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import acos, tan
+from typing import Any
 
 import numpy as np
 
 from flexspline.geometry.outline import SAME, Meridian, Point, Segment, distance
-from flexspline.geometry.shapes import Cup, Hat, Shaft
+from flexspline.geometry.shapes import Cup, Flexspline, Hat, Shaft
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def _pair(p: np.ndarray) -> Point:
     return float(p[0]), float(p[1])
 
 
-def _ring(f: Cup | Hat) -> list[_Corner]:
+def _ring(f: Flexspline) -> list[_Corner]:
     """Up the outside from the tube to the open rim and down the inside to the seat's lower end."""
     ri, rw, rr = f.inner_radius, f.wall_radius, f.ring_radius
     return [
@@ -74,7 +76,7 @@ def _ring(f: Cup | Hat) -> list[_Corner]:
     ]
 
 
-def _ring_cuts(f: Cup | Hat) -> list[Segment]:
+def _ring_cuts(f: Flexspline) -> list[Segment]:
     ri, rr = f.inner_radius, f.ring_radius
     cuts = [Segment((ri, f.ring_start), (rr, f.ring_start))]
     if f.ring_offset_mm > 0:
@@ -148,11 +150,16 @@ def shaft_meridian(s: Shaft) -> Meridian:
     return _close(corners, cuts)
 
 
-def meridian_of(shape: Cup | Hat | Shaft) -> Meridian:
+_OUTLINES: Mapping[type, Callable[[Any], Meridian]] = {
+    Cup: cup_meridian,
+    Hat: hat_meridian,
+    Shaft: shaft_meridian,
+}
+
+
+def meridian_of(shape: Flexspline | Shaft) -> Meridian:
     """Outline of any part."""
-    if isinstance(shape, Shaft):
-        return shaft_meridian(shape)
-    return cup_meridian(shape) if isinstance(shape, Cup) else hat_meridian(shape)
+    return _OUTLINES[type(shape)](shape)
 
 
 def with_narrow_seat(outline: Meridian, share: float) -> Meridian:

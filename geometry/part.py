@@ -9,7 +9,7 @@ from typing import Literal
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian
-from flexspline.geometry.shapes import BoltCircle, Cup, Hat, Shaft, Slot
+from flexspline.geometry.shapes import BoltCircle, Flexspline, Shaft, Slot
 
 PartName = Literal["flexspline", "shaft"]
 SHARE_OF_RADIUS = 1 / 20
@@ -23,7 +23,7 @@ fillets, at 1/45 at the grip."""
 class Part:
     """The flexspline or the shaft."""
 
-    shape: Cup | Hat | Shaft
+    shape: Flexspline | Shaft
     material: Material
 
     @property

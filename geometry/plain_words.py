@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.schema import Location, allowed, dotted, keys_of
+from flexspline.geometry.shapes import KINDS
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails, ValidationError
 
-KINDS = ("cup", "hat")
 _NOUNS = {str: "text", bool: "true or false", dict: "a table", list: "a list"}
 
 
@@ -35,7 +35,7 @@ def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
         location = (*location, "kind")
         value = data["flexspline"].get("kind", MISSING)
         verb = "give" if value is MISSING else "must be"
-        return DesignError(dotted(location), value, f'{verb} "cup" or "hat"')
+        return DesignError(dotted(location), value, f"{verb} {_or(KINDS)}")
     if e["type"] == "missing":
         return DesignError(dotted(location), MISSING, f"give {allowed(location, kind)}")
     wrong = f", not {_NOUNS[type(e['input'])]}" if _is_wrong_type(e) else ""
@@ -48,7 +48,7 @@ def _is_wrong_type(e: ErrorDetails) -> bool:
 
 def without_tag(location: Location) -> Location:
     """Pydantic puts the chosen kind after ``flexspline``; it is no key of the file."""
-    if location[:1] == ("flexspline",) and location[1:2] in (("cup",), ("hat",)):
+    if location[:1] == ("flexspline",) and location[1:2] in [(kind,) for kind in KINDS]:
         return (location[0], *location[2:])
     return location
 
@@ -60,14 +60,19 @@ def kind_of(data: Mapping[str, Any]) -> str | None:
     return kind if kind in KINDS else None
 
 
+def _or(words: Iterable[str]) -> str:
+    return " or ".join(f'"{word}"' for word in words)
+
+
 def _unknown(location: Location, kind: str | None) -> str:
     table, key = location[:-1], str(location[-1])
     known = keys_of(table, kind)
     if table == ("flexspline",) and kind:
-        other = KINDS[1 - KINDS.index(kind)]
-        own = [k for k in known if k not in keys_of(table, other)]
-        if key in keys_of(table, other):
-            return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
+        others = {other: keys_of(table, other) for other in KINDS if other != kind}
+        for other, theirs in others.items():
+            if key in theirs:
+                own = [k for k in known if k not in theirs]
+                return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
     near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
     if near:
         return f"unknown key; did you mean {near[0]}?"

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
-from flexspline.geometry.shapes import Cup
 
 ROOT_TOLERANCE = 0.15
 """Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""
@@ -105,15 +104,10 @@ def _corner(design: Design) -> Iterator[str]:
 
 def _wave_generator_room(design: Design) -> Iterator[str]:
     f = design.flexspline
-    if isinstance(f, Cup):
-        key, value = "boss_thickness_mm", f.boss_thickness_mm
-        reaches = "the wave generator's place"
-    else:
-        key, value = "flange_thickness_mm", f.flange_thickness_mm
-        reaches = "the circular spline's place"
-    if value > f.ring_start:
+    reaches = f"the {'wave generator' if f.inward else 'circular spline'}'s place"
+    if f.hole_depth > f.ring_start:
         yield (
-            f"flexspline.{key} = {value:g} reaches above the ring's lower edge z = "
+            f"flexspline.{f.land.thickness} = {f.hole_depth:g} reaches above the ring's lower edge z = "
             f"{f.ring_start:g} mm, {reaches}"
         )
 

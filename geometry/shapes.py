@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import Literal
+from typing import ClassVar, Literal, get_args
 
 from pydantic import Field
 
@@ -44,7 +44,22 @@ class _Bolted(Table):
         return BoltCircle(self.bolt_count, circle / 2, hole / 2)
 
 
+@dataclass(frozen=True)
+class Land:
+    """The thick part of a flexspline's closed end, which bolts to the shaft: its noun, and the design keys of
+    its two diameters and its thickness."""
+
+    noun: str
+    inner: str
+    outer: str
+    thickness: str
+
+
 class _Flexspline(_Bolted):
+    land: ClassVar[Land]
+    inward: ClassVar[bool]
+    """Whether the closed end lies inside the tube."""
+
     inner_diameter_mm: Length = Field(description="mm, of the tube, under the wave generator")
     wall_thickness_mm: Length = Field(description="mm, of the smooth tube")
     ring_thickness_mm: Length = Field(
@@ -69,6 +84,20 @@ class _Flexspline(_Bolted):
     tooth_flank: Literal["involute", "trapezoid"] = Field(
         default="involute", description="involute or trapezoid, where teeth are drawn"
     )
+
+    def size(self, key: str) -> float:
+        """The value of a key that holds a length [mm]."""
+        return float(getattr(self, key))
+
+    @property
+    def land_edge(self) -> str:
+        """The key of the diameter where the diaphragm meets the land."""
+        return self.land.outer if self.inward else self.land.inner
+
+    @property
+    def hole_depth(self) -> float:
+        """z at which the bolt holes end [mm]: they run through the land."""
+        return self.size(self.land.thickness)
 
     @property
     def length(self) -> float:
@@ -109,6 +138,8 @@ class _Flexspline(_Bolted):
 class Cup(_Flexspline):
     """A cup: the closed end carries a thick boss that bolts to the shaft."""
 
+    land = Land("boss", "bore_diameter_mm", "boss_diameter_mm", "boss_thickness_mm")
+    inward = True
     kind: Literal["cup"] = Field(description="cup or hat")
     boss_diameter_mm: Length = Field(description="mm, thick centre that bolts to the shaft")
     boss_thickness_mm: Length = Field(description="mm, from z = 0")
@@ -116,24 +147,25 @@ class Cup(_Flexspline):
         default=0.0, description="mm, through hole in the boss; 0: none"
     )
 
-    @property
-    def hole_depth(self) -> float:
-        """z at which the bolt holes end [mm]: they run through the boss."""
-        return self.boss_thickness_mm
-
 
 class Hat(_Flexspline):
     """A hat (silk hat): the diaphragm runs outwards to a bolted flange."""
 
+    land = Land(
+        "flange", "flange_inner_diameter_mm", "flange_outer_diameter_mm", "flange_thickness_mm"
+    )
+    inward = False
     kind: Literal["hat"] = Field(description="cup or hat")
     flange_outer_diameter_mm: Length = Field(description="mm, outside of the bolted flange")
     flange_inner_diameter_mm: Length = Field(description="mm, where the flange's thick part begins")
     flange_thickness_mm: Length = Field(description="mm, from z = 0")
 
-    @property
-    def hole_depth(self) -> float:
-        """z at which the bolt holes end [mm]: they run through the flange."""
-        return self.flange_thickness_mm
+
+Flexspline = Cup | Hat
+KINDS: tuple[str, ...] = tuple(
+    get_args(c.model_fields["kind"].annotation)[0] for c in get_args(Flexspline)
+)
+"""What `flexspline.kind` may be."""
 
 
 class ShaftSegment(Table):

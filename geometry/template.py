@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Any
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
 from flexspline.geometry.toml_text import quoted
 
@@ -91,8 +92,20 @@ _HAT_SHAFT: Table = {
 }
 
 
-def template(kind: Literal["cup", "hat"] = "cup") -> str:
-    """Text of a design file that loads as it stands, every key with its meaning and unit."""
+_FIRST: dict[str, tuple[Table, Table]] = {"cup": (_CUP, _CUP_SHAFT), "hat": (_HAT, _HAT_SHAFT)}
+"""Flexspline and shaft of each kind."""
+
+
+def template(kind: str = "cup") -> str:
+    """Text of a design file that loads as it stands, every key with its meaning and unit.
+
+    Raises
+    ------
+    DesignError : no such kind.
+    """
+    if kind not in _FIRST:
+        known = " or ".join(f'"{k}"' for k in _FIRST)
+        raise DesignError("kind", kind, f"must be {known}")
     title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
     lines = [title, *_lines((), _values(kind), kind, OPTIONAL, optional=False)]
     return "\n".join(lines) + "\n"
@@ -106,10 +119,11 @@ def design_text(design: Design) -> str:
 
 
 def _values(kind: str) -> Table:
+    flexspline, shaft = _FIRST[kind]
     return {
         "name": f"my {kind}",
-        "flexspline": _CUP if kind == "cup" else _HAT,
-        "shaft": _CUP_SHAFT if kind == "cup" else _HAT_SHAFT,
+        "flexspline": flexspline,
+        "shaft": shaft,
         "material": {"flexspline": _STEEL, "shaft": _STEEL},
         "gear": {
             "module_mm": 0.2,

@@ -9,7 +9,6 @@ from math import pi, sqrt
 from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import PartName
-from flexspline.geometry.shapes import Cup
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
 
 NOT_SOLVED = (
@@ -72,7 +71,7 @@ def _nominal_mises(design: Design) -> Iterator[tuple[PartName, str, float]]:
     """Part, place, and von Mises stress √3·τ there per torque [MPa per N·m], by equilibrium alone."""
     f = design.flexspline
     yield "flexspline", "the flexspline's tube", _tube(f.wall_radius, f.inner_radius)
-    inside = f.boss_diameter_mm / 2 if isinstance(f, Cup) else f.wall_radius
+    inside = f.size(f.land_edge) / 2 if f.inward else f.wall_radius
     shear = NMM_PER_NM / (2 * pi * inside**2 * f.diaphragm_thickness_mm)
     yield "flexspline", f"the diaphragm at r = {inside:g} mm", sqrt(3) * shear
     for s in design.shaft.segment:

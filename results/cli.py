@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
@@ -235,13 +235,9 @@ def init(
 ) -> None:
     """Print a commented design file to start from."""
     with answered():
-        from flexspline.geometry.errors import DesignError
         from flexspline.geometry.template import template
 
-        kinds: dict[str, Literal["cup", "hat"]] = {"cup": "cup", "hat": "hat"}
-        if kind not in kinds:
-            raise DesignError("kind", kind, 'must be "cup" or "hat"')
-        show(template(kinds[kind]).removesuffix("\n"))
+        show(template(kind).removesuffix("\n"))
 
 
 @app.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import Material
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
 from flexspline.results.numbers import grouped, with_power
@@ -164,14 +164,13 @@ def _row(entry: Quantity, value: float, bounds: str) -> Row:
     }
 
 
-def _end(f: Cup | Hat) -> str:
+def _end(f: Flexspline) -> str:
     """What bolts to the shaft."""
-    if isinstance(f, Cup):
-        return f"boss ⌀ {f.boss_diameter_mm:g} × {f.boss_thickness_mm:g}, bore ⌀ {f.bore_diameter_mm:g} mm"
-    return (
-        f"flange ⌀ {f.flange_inner_diameter_mm:g} to {f.flange_outer_diameter_mm:g} × "
-        f"{f.flange_thickness_mm:g} mm"
-    )
+    land = f.land
+    inner, outer = (f"{f.size(key):g}" for key in (land.inner, land.outer))
+    if f.inward:
+        return f"{land.noun} ⌀ {outer} × {f.hole_depth:g}, bore ⌀ {inner} mm"
+    return f"{land.noun} ⌀ {inner} to {outer} × {f.hole_depth:g} mm"
 
 
 def _holes(count: int) -> str:

@@ -13,6 +13,7 @@ from aiohttp import WSMsgType, web
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import LARGEST_BYTES, design_from, tables_from
+from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.template import design_text, template
 from flexspline.results.studio.desk import Desk
 from flexspline.results.studio.fields import form, received
@@ -104,9 +105,9 @@ async def _start(request: web.Request) -> web.Response:
 async def _open(request: web.Request) -> web.Response:
     """A design as TOML, as JSON tables, or a template's name, checked: its tables and its form."""
     try:
-        kind = request.query.get("kind")
-        if kind in ("cup", "hat"):
-            tables = tables_from(template("hat" if kind == "hat" else "cup").encode(), kind)
+        kind = request.query.get("kind", "")
+        if kind in KINDS:
+            tables = tables_from(template(kind).encode(), kind)
         elif request.content_type == "application/json":
             return _json(_opened(received(await _sent(request))))
         else:

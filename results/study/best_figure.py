@@ -65,7 +65,7 @@ def best_figure(result: StudyResult) -> Figure:
         ):
             detail = _axes(figure, LEFT_IN + SECTION_IN + 0.35, up, *DETAIL_IN)
             _section(detail, base, design)
-            _framed(axes, detail, name, corner, window, base.flexspline.kind == "hat")
+            _framed(axes, detail, name, corner, window, not base.flexspline.inward)
     axes.set_xlabel("z in mm")
     figure.text(
         LEFT_IN / WIDE_IN, 0.12 / high,
