@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.tetwild import signed_volumes
-from flexspline.geometry.surfaces import Plane, Surface
+from flexspline.geometry.surfaces import Plane, Surface, sector_planes
 
 ROUNDS = 40
 """Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the
@@ -38,6 +38,28 @@ def snap_to_surfaces(
         out[nodes[fine]] = moved[fine]
         if len(group) > 1 and not fine.all():
             out[nodes[~fine]] = _nearest_alone(points[nodes[~fine]], group, limit)
+    return out
+
+
+def into_sector_planes(
+    points: np.ndarray,
+    faces: np.ndarray,
+    facet_surface: np.ndarray,
+    surfaces: Sequence[Surface],
+    sector_deg: float,
+) -> np.ndarray:
+    """Nodes of the symmetry planes put into them, whatever else may be undone later.
+
+    Nodes of both planes go onto the axis: put into one plane and then the other they leave the first.
+    """
+    out = points.copy()
+    in_planes = np.zeros(len(points), int)
+    for plane in sector_planes(sector_deg):
+        mine = [i for i, s in enumerate(surfaces) if s.patch == plane.patch]
+        nodes = np.unique(faces[np.isin(facet_surface, mine)])
+        out[nodes] = plane.project(out[nodes])
+        in_planes[nodes] += 1
+    out[in_planes == 2, :2] = 0.0
     return out
 
 

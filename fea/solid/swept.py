@@ -17,8 +17,9 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import INTERFACE, Column, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
-from flexspline.fea.solid.mesh import MeshSpec, boundary_faces, straightened, with_middles
+from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.prisms import along, cut, extruded, revolved
+from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import snap_to_surfaces
 from flexspline.fea.solid.swept_sizing import (

@@ -10,7 +10,7 @@ from skfem import MeshTet
 from structured import from_cylindrical
 
 from flexspline.fea.solid.imprint import Meshed, smooth_patch_edges, with_patch_edges
-from flexspline.fea.solid.mesh import boundary_faces
+from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.geometry.outline import Segment

@@ -13,8 +13,11 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from flexspline.fea.solid.errors import MesherError, MeshQualityError
-from flexspline.fea.solid.mesh import JACOBIAN_RATIO, _check, _in_planes, _refuse_flat, mesh_surface
+from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
+from flexspline.fea.solid.quadratic import JACOBIAN_RATIO
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.snap import into_sector_planes
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 from flexspline.fea.types import Elastic, TetMesh
@@ -135,7 +138,8 @@ def test_nodes_of_both_symmetry_planes_go_onto_the_axis() -> None:
     )
     points = np.array([[0.03, 0.01, 0], [2.0, 0.1, 0], [1.7, 1.1, 0], [0.02, 0.02, 1.0]])
     faces = np.array([[0, 1, 3], [0, 3, 2]])
-    moved = _in_planes(points, faces, np.array([start, end]), surface)
+    owners = np.array([start, end])
+    moved = into_sector_planes(points, faces, owners, surface.surfaces, surface.sector_deg)
     assert np.abs(moved[[0, 3], :2]).max() == 0
     for plane, nodes in zip(sector_planes(surface.sector_deg), ([0, 1, 3], [0, 2, 3]), strict=True):
         assert plane.project(moved[nodes]) == pytest.approx(moved[nodes], abs=1e-12)
@@ -144,9 +148,9 @@ def test_nodes_of_both_symmetry_planes_go_onto_the_axis() -> None:
 def test_an_element_without_volume_is_refused() -> None:
     """Two nodes beside the axis went to one place of it; the solver met a singular matrix."""
     points = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-    _refuse_flat(points, np.array([[0, 2, 3, 1]]))
+    refuse_flat(points, np.array([[0, 2, 3, 1]]))
     with pytest.raises(MeshQualityError, match="2 elements are flat"):
-        _refuse_flat(points, np.array([[0, 2, 3, 1], [1, 2, 3, 4], [0, 1, 2, 4]]))
+        refuse_flat(points, np.array([[0, 2, 3, 1], [1, 2, 3, 4], [0, 1, 2, 4]]))
 
 
 def test_a_wrong_patch_is_refused(shaft) -> None:
@@ -157,7 +161,7 @@ def test_a_wrong_patch_is_refused(shaft) -> None:
     largest = np.argsort(-facet_areas(mesh.nodes, mesh.facets[mine]))
     fewer[mine[largest[: len(mine) // 10 + 1]]] = 0  # at least a tenth of the area
     with pytest.raises(MeshQualityError, match="patch 'grip'"):
-        _check(replace(mesh, facet_patch=fewer), surface)
+        check_against_cad(replace(mesh, facet_patch=fewer), surface)
 
 
 def test_a_bent_symmetry_plane_is_refused(shaft) -> None:
@@ -165,13 +169,13 @@ def test_a_bent_symmetry_plane_is_refused(shaft) -> None:
     nodes = mesh.nodes.copy()
     nodes[mesh.nodes_on("symmetry_end")[0]] += 0.001
     with pytest.raises(MeshQualityError, match="off the plane"):
-        _check(replace(mesh, nodes=nodes), surface)
+        check_against_cad(replace(mesh, nodes=nodes), surface)
 
 
 def test_lost_volume_is_refused(shaft) -> None:
     surface, mesh = shaft
     with pytest.raises(MeshQualityError, match="mm³"):
-        _check(replace(mesh, cells=mesh.cells[: len(mesh.cells) // 2]), surface)
+        check_against_cad(replace(mesh, cells=mesh.cells[: len(mesh.cells) // 2]), surface)
 
 
 @pytest.mark.parametrize("holes", [pytest.param(1, marks=pytest.mark.long), 3])

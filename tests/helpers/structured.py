@@ -8,7 +8,7 @@ from math import degrees
 import numpy as np
 
 from flexspline.fea.solid.elements import linear_mesh
-from flexspline.fea.solid.mesh import boundary_faces
+from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 

@@ -1,0 +1,57 @@
+"""What a mesher's mesh must hold before anything is solved on it: volume, patch areas, planes of symmetry."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.fea.solid.elements import element_volumes, facet_areas
+from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.tetwild import signed_volumes
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.surfaces import sector_planes
+from flexspline.geometry.tagged import TaggedSurface
+
+AREA_TOLERANCE = 0.005
+"""A patch whose mesh area is farther than this from its CAD area is refused: parabolas for arcs of a coarse
+mesh leave 0.1 %, facets on the wrong side of a patch edge more."""
+VOLUME_TOLERANCE = 0.01
+"""Parabolas for arcs of a coarse mesh lose 0.1 %; a mesh with a hole closed is off by more."""
+OFF_PLANE = 1e-6
+"""Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
+FLAT = 1e-7
+"""Least volume over the cube of the longest edge; 0.12 for a regular tetrahedron, 0.006 or more in meshes."""
+
+
+def refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
+    """Beside the axis two nodes can go to one place of it, and the tetrahedron between has no volume."""
+    corner = points[tets]
+    sides = [corner - np.roll(corner, k, axis=1) for k in (1, 2)]
+    longest = np.linalg.norm(sides, axis=3).max(axis=(0, 2))
+    flat = signed_volumes(points, tets) < FLAT * longest**3
+    if flat.any():
+        raise MeshQualityError(
+            f"{int(flat.sum())} elements are flat once their nodes are on the CAD"
+        )
+
+
+def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
+    """Compare volume and patch areas with the CAD's, and symmetry planes with themselves."""
+    size = np.ptp(mesh.nodes, axis=0).max()
+    for plane in sector_planes(mesh.sector_deg):
+        nodes = mesh.nodes[mesh.nodes_on(plane.patch)]
+        # at 180° both planes are one, and its facets all go by the first name
+        off = np.abs(plane.project(nodes) - nodes).max(initial=0.0)
+        if off > OFF_PLANE * size:
+            raise MeshQualityError(f"a node of {plane.patch} lies {off:.3g} mm off the plane")
+    volume = element_volumes(mesh.nodes, mesh.cells).sum()
+    if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
+        raise MeshQualityError(
+            f"the mesh holds {volume:.6g} mm³, the CAD solid {surface.volume:.6g} mm³"
+        )
+    for patch, wanted in surface.patch_areas.items():
+        area = facet_areas(mesh.nodes, mesh.on(patch)).sum()
+        if abs(area / wanted - 1) > AREA_TOLERANCE:
+            raise MeshQualityError(
+                f"patch '{patch}' has {area:.6g} mm² in the mesh, {wanted:.6g} mm² in the CAD,"
+                f" allowed difference {AREA_TOLERANCE:.0%}"
+            )
