@@ -1,12 +1,21 @@
-"""A larger sector from a smaller one by reflection: the lobes and the ellipse reuse the torsion mesh."""
+"""A larger sector from a smaller one by reflection, up to the whole part.
+
+The lobes and the ellipse reuse the torsion mesh; pictures and files show a part in the round.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
+Parity = Literal["symmetric", "antisymmetric"]
+"""What a reflection does to a displacement: torsion, even or at the lobes, is antisymmetric, the wave
+generator's ellipse symmetric."""
 MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 """Ten nodes with corners 1 and 2 exchanged: a reflection turns the element inside out."""
 MIRRORED_FACET = [0, 2, 1, 5, 4, 3]
@@ -21,17 +30,55 @@ def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
     return np.column_stack([r * np.cos(phi), r * np.sin(phi), points[:, 2]])
 
 
+@dataclass(frozen=True)
+class Unfolding:
+    """A larger sector, and where its nodes come from.
+
+    Its cells are the copies' one after the other, each in the order of the sector's; copy k, counted from
+    angle 0, is reflected where k is odd.
+
+    Attributes
+    ----------
+    node : (n,) the sector's node that each is an image of. copy : (n,) the copy it belongs to.
+    copies : how many. sector_deg : angle of one.
+    """
+
+    mesh: TetMesh
+    node: np.ndarray
+    copy: np.ndarray
+    copies: int
+    sector_deg: float
+
+    def vectors(self, values: np.ndarray, parity: Parity) -> np.ndarray:
+        """A vector field (n, 3), Cartesian, from the sector's; `parity`: what a reflection does to it."""
+        found = values[self.node]
+        odd = self.copy % 2 == 1
+        found[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
+        turn = np.radians((self.copy + odd) * self.sector_deg)
+        c, s = np.cos(turn), np.sin(turn)
+        x, y, z = found.T
+        return np.column_stack([c * x - s * y, s * x + c * y, z])
+
+
 def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
+    """The sector from 0 to `sector_deg`; see `unfolding`."""
+    return unfolding(mesh, sector_deg).mesh
+
+
+def unfolding(mesh: TetMesh, sector_deg: float) -> Unfolding:
     """The sector from 0 to `sector_deg`, a whole multiple of the mesh's, reflected at each plane.
 
     At 360° it is closed: the last copy's plane is the first one's, and no plane of symmetry is left.
-    That takes an even number of copies of a sector whose two planes have their own names.
+
+    Raises
+    ------
+    ValueError : no whole multiple, or 360° by an odd number of copies.
     """
     times = round(sector_deg / mesh.sector_deg)
     if times < 1 or abs(times * mesh.sector_deg - sector_deg) > 1e-9 * sector_deg:
         raise ValueError(f"{sector_deg} is no multiple of the sector {mesh.sector_deg}")
     closed = sector_deg == 360 and times > 1
-    if closed and (times % 2 or times == 2):
+    if closed and times % 2:
         raise ValueError(f"copies of the sector {mesh.sector_deg} cannot be closed to 360°")
     n = len(mesh.nodes)
     r = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1])
@@ -52,17 +99,21 @@ def unfolded(mesh: TetMesh, sector_deg: float) -> TetMesh:
         phi = (k + 1) * step - angle if odd else k * step + angle
         nodes.append(np.column_stack([r * np.cos(phi), r * np.sin(phi), mesh.nodes[:, 2]]))
         cells.append(owner[k][mesh.cells[:, MIRRORED_CELL] if odd else mesh.cells])
-        names = [mesh.patches[i] for i in mesh.facet_patch]
         drop = {inner[k % 2]} if k < times - 1 else set()
         drop |= {inner[(k - 1) % 2]} if k else set()
         drop |= {SYMMETRY_START} if closed and k in (0, times - 1) else set()
-        keep = np.array([name not in drop for name in names])
+        keep = ~np.isin(mesh.facet_patch, [i for i, p in enumerate(mesh.patches) if p in drop])
         facets.append(owner[k][(mesh.facets[:, MIRRORED_FACET] if odd else mesh.facets)[keep]])
         patches.append(_renamed(mesh, mesh.facet_patch[keep], last=k == times - 1 and odd))
-    return _compact(
-        np.concatenate(nodes), np.concatenate(cells), np.concatenate(facets),
+    every = np.concatenate(cells)
+    order = _corners_first(every, times * n)
+    number = np.full(times * n, -1)
+    number[order] = np.arange(len(order))
+    larger = TetMesh(
+        np.concatenate(nodes)[order], number[every], number[np.concatenate(facets)],
         np.concatenate(patches), mesh.patches, sector_deg,
     )  # fmt: skip
+    return Unfolding(larger, order % n, order // n, times, mesh.sector_deg)
 
 
 def _renamed(mesh: TetMesh, facet_patch: np.ndarray, last: bool) -> np.ndarray:
@@ -73,13 +124,8 @@ def _renamed(mesh: TetMesh, facet_patch: np.ndarray, last: bool) -> np.ndarray:
     return np.where(facet_patch == start, end, facet_patch)
 
 
-def _compact(
-    nodes: np.ndarray, cells: np.ndarray, facets: np.ndarray, facet_patch: np.ndarray,
-    patches: tuple[str, ...], sector_deg: float,
-) -> TetMesh:  # fmt: skip
-    """Drop the nodes that another copy owns; corners first."""
-    corners = np.unique(cells[:, :4])
-    order = np.concatenate([corners, np.setdiff1d(np.unique(cells), corners)])
-    number = np.full(len(nodes), -1)
-    number[order] = np.arange(len(order))
-    return TetMesh(nodes[order], number[cells], number[facets], facet_patch, patches, sector_deg)
+def _corners_first(cells: np.ndarray, nodes: int) -> np.ndarray:
+    """Which of so many nodes the cells use; those that another copy owns are not among them."""
+    corner, used = np.zeros(nodes, bool), np.zeros(nodes, bool)
+    corner[cells[:, :4]] = used[cells] = True
+    return np.concatenate([np.flatnonzero(corner), np.flatnonzero(used & ~corner)])

@@ -1,5 +1,7 @@
 """The whole part from its sector: count, volume, orientation, seams, displacement."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hand_made_tube import (
@@ -12,6 +14,7 @@ from hand_made_tube import (
     twisted,
 )  # fmt: skip
 
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 from flexspline.results.renders.surface import opening, skin
 from flexspline.results.renders.whole import whole_part
 
@@ -59,6 +62,19 @@ def test_torsion_is_continued_as_torsion(sector_deg, around):
 def test_ellipse_is_continued_as_ellipse(sector_deg, around):
     _, whole = assembled(sector_deg, around, oval, "symmetric")
     np.testing.assert_allclose(whole.displacement, oval(whole.nodes), atol=1e-14)
+
+
+def test_halves_whose_planes_go_by_one_name_are_joined_all_the_same():
+    """At 180° both planes are one, and meshers' facets in it all go by the first name."""
+    half = tube(180.0, 12)
+    start, end = half.patches.index(SYMMETRY_START), half.patches.index(SYMMETRY_END)
+    one = np.where(half.facet_patch == end, start, half.facet_patch)
+    whole = whole_part(
+        replace(half, facet_patch=one), twisted(half.nodes), half.nodes[:, 2], "antisymmetric"
+    )
+    assert len(np.unique(np.round(whole.nodes, 6), axis=0)) == len(whole.nodes)
+    names = {whole.patches[i] for i in skin(whole).patch}
+    assert names == {"", "mount", "mesh", "seat"}
 
 
 def test_sector_that_does_not_fit_is_refused():
