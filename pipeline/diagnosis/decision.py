@@ -1,8 +1,8 @@
-"""From weighed explanations to a verdict: the rules that sweeps, end points and specimens share.
+"""From the evidence of explanations to a verdict: the rules that sweeps, end points and specimens share.
 
-Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/unit_likelihood.py`
-(block covariance) and `specimens/laplace.py` (Laplace's approximation). What follows from evidence is decided
-here. All log quantities are in nats.
+Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
+(block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
+decided here. All log quantities are in nats.
 """
 
 from __future__ import annotations

@@ -1,4 +1,15 @@
-"""A measurement and a design in, a diagnosis out."""
+"""A measurement and a design in, a diagnosis out.
+
+Each kind of measurement goes the same way, in a folder of its own; its `diagnose.py` names the steps:
+
+| step | sweep/ | end_points/ | specimens/ |
+|---|---|---|---|
+| hypotheses | `regressors.py` | `regressors.py` | `parameters.py` |
+| evidence of a set of them | `evidence.py` | `evidence.py` | `evidence.py` |
+| race of sets | `race.py` | `race.py` | `race.py` |
+| causes, rivals, verdict; the rules are in `decision.py` | `identification.py` | `decide.py` | `decide.py` |
+| next measurement | `next_measurement.py` | `next_measurement.py` | `next_measurement.py` |
+"""
 
 from __future__ import annotations
 

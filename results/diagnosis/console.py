@@ -23,6 +23,7 @@ from flexspline.results.diagnosis.words import (
 )
 
 WIDTH = 96
+"""Letters of a wrapped line; rows of causes reach 107."""
 
 
 def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:

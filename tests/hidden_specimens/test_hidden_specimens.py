@@ -21,8 +21,8 @@ from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.bench import Bench, row_designs
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances
-from flexspline.pipeline.diagnosis.specimens.diagnose import weighed
-from flexspline.pipeline.diagnosis.specimens.laplace import SpecimenData
+from flexspline.pipeline.diagnosis.specimens.diagnose import explain
+from flexspline.pipeline.diagnosis.specimens.evidence import SpecimenData
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
@@ -59,7 +59,7 @@ def answers(
         for kind in KINDS:
             for _ in range(each * (3 if kind == "clean" else 1)):
                 h = hidden(name, seed, kind, rng)
-                _, explained = weighed(bench, data_of(fe, h.specimens), h.specimens, made.design)
+                _, explained = explain(bench, data_of(fe, h.specimens), h.specimens, made.design)
                 found = explained.decision
                 yield Answer(kind, h.cause, h.size, found.verdict, found.causes)
 

@@ -18,6 +18,7 @@ class ClearanceOffset(Cause):
     unit = "arcsec"
     exact = True
     shape_doubt = 0.003
+    """Of 12 made-up records one and two deviations cover 92 and 100 %; without it, 83 and 100."""
     vary = "temperature_C"
     reveals = "finely spaced torques around zero, and the temperature held at 20 °C"
 

@@ -22,6 +22,7 @@ class DirectionAsymmetry(Cause):
     unit = "%"
     tunable = ("exponent", "rounding_Nm")
     shape_doubt = 0.02
+    """Of 12 made-up records one and two deviations cover 75 and 100 %; without it, 67 and 100."""
     reveals = "the same sweep with the gear turned round on the rig, to exclude the torque cell"
 
     def shapes(self, rig: Rig) -> list[Shape]:

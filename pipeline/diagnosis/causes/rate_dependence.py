@@ -18,6 +18,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import (
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
+"""Of the rate: twist that levels off with it or steepens; refined, so that steps of a third do."""
 
 
 class RateDependence(Cause):
@@ -32,6 +33,7 @@ class RateDependence(Cause):
     positive = True
     tunable = ("lag_s", "exponent")
     shape_doubt = 0.02
+    """Of 12 made-up records one and two deviations cover 75 and 92 %; without it, 58 and 83."""
     vary = "torque_rate"
     reveals = "the same sweep ten times slower and ten times faster"
 

@@ -10,7 +10,9 @@ from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shap
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 SATURATION = (0.2, 0.5)
+"""Settling times as shares of the record, refined."""
 EXPONENTS = (1.0, 0.5, 1.6)
+"""Of time: steady, slowing as √t, quickening; refined."""
 SECONDS_PER_HOUR = 3600.0
 """The magnitude is per hour, time is in s."""
 
@@ -26,6 +28,7 @@ class SensorDrift(Cause):
     unit = "arcsec/h"
     tunable = ("exponent", "settling_s")
     shape_doubt = 0.02
+    """Of 11 made-up records one and two deviations cover 64 and 100 %; without it, as many."""
     vary = "time_s"
     needs_time = True
     shows_over = "time_s"

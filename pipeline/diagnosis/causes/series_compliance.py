@@ -20,6 +20,7 @@ class SeriesCompliance(Cause):
     unit = "%"
     exact = True
     shape_doubt = 0.003
+    """Of 9 made-up records one and two deviations cover 89 and 100 %; without it, 78 and 89."""
     vary = "input_angle_deg"
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 

@@ -14,8 +14,14 @@ LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees"
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
 """Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
 KNEES = (0.12, 0.2, 0.3, 0.45, 0.6, 0.75)
+"""Shares of the largest torque at which the stiffness steps up: from within the lower of CHORDS to just below
+the upper; refined within LIMITS."""
 SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
+"""Of the smooth laws, the same."""
 POWERS = (0.5, 0.6, 0.72)
+"""Of torque, below 1: the twist levels off; refined within LIMITS."""
+SHARES = (0.35, 0.65)
+"""Of the soft twist that ends at the first of two knees: the lesser and the greater part; refined."""
 LIMITS = {
     0: (0.1, 0.78),
     1: (0.1, 0.7),
@@ -61,7 +67,7 @@ class StiffnessHardening(Cause):
                 "largest_torque_Nm": rig.torque_Nm,
             }
             for p, q in TWO_KNEES
-            for share in (0.35, 0.65)
+            for share in SHARES
             for held in (0, 1, 2)
         ]  # fmt: skip
         return found

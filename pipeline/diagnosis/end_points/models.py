@@ -1,4 +1,4 @@
-"""From weighed end points to extended models, and what they are worth on units left out."""
+"""From the evidence of end points to extended models, and what they are worth on units left out."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.end_points.evidence import (
+    UnitDeviations,
+    UnitEvidence,
+    unit_evidence,
+)
 from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.pipeline.diagnosis.end_points.regressors import (
     EndPointRegressor,
     end_point_regressors,
-)
-from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
-    UnitDeviations,
-    UnitEvidence,
-    unit_evidence,
 )
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -29,28 +29,28 @@ FEWEST_UNITS = 3
 """To hold out one and still see what is common."""
 
 
-def calibration_of(weighed: UnitEvidence, prediction: Prediction) -> Calibration:
+def calibration_of(evidence: UnitEvidence, prediction: Prediction) -> Calibration:
     """The gap that all units share; the compliance stays as simulated."""
-    off, std = weighed.common
-    return Calibration(Estimate(prediction.gap_arcsec + off, std), bool(weighed.terms))
+    off, std = evidence.common
+    return Calibration(Estimate(prediction.gap_arcsec + off, std), bool(evidence.terms))
 
 
 def extended(
-    weighed: UnitEvidence, deviations: UnitDeviations, names: Sequence[str], prediction: Prediction
+    evidence: UnitEvidence, deviations: UnitDeviations, names: Sequence[str], prediction: Prediction
 ) -> ExtendedModel:
     """The calibrated simulation with the terms of a hypothesis; a unit's own gap beside the common one."""
     elements: dict[str, tuple[Element, ...]] = {}
-    for term, amplitude in zip(weighed.terms, weighed.mean, strict=True):
+    for term, amplitude in zip(evidence.terms, evidence.mean, strict=True):
         elements[term.cause] = elements.get(term.cause, ()) + term.elements(float(amplitude))
     return ExtendedModel(
         prediction.compliance,
-        calibration_of(weighed, prediction).gap_arcsec.value,
+        calibration_of(evidence, prediction).gap_arcsec.value,
         {
             n: float(deviations.mid[rows].mean())
             for n, rows in zip(names, deviations.unit_rows, strict=True)
         },
         elements,
-        {n: (0.0, float(weighed.own[u])) for u, n in enumerate(names)},
+        {n: (0.0, float(evidence.own[u])) for u, n in enumerate(names)},
     )
 
 

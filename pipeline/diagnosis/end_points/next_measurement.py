@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.plans import MeasurementPlan, PlanSeparation,
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
 AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none."""
 ROWS = 64
 """Of one loop."""
 READING_ARCSEC = 1.0

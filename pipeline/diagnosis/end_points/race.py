@@ -11,22 +11,25 @@ import numpy as np
 from scipy.special import logsumexp
 
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
-from flexspline.pipeline.diagnosis.end_points.regressors import (
-    EndPointRegressor,
-    end_point_regressors,
-)
-from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
     unit_evidence,
+)
+from flexspline.pipeline.diagnosis.end_points.regressors import (
+    EndPointRegressor,
+    end_point_regressors,
 )
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 
 SUSPECTS = 5
 """Units that may have a cause of their own: those furthest from the prediction."""
 PAIR_NATS = -2.0
-"""Log prior odds of two causes against one."""
+"""Log prior odds of two causes against one, 1 to 7."""
 UNNAMED_NATS = -2.0
+"""Log prior odds of a curve without a name against a cause, 1 to 7: at equal evidence a cause is named."""
+UNNAMED_SPREAD = 0.3
+"""Prior standard deviation of that curve, of the predicted angle: as wide as `stiffness_hardening`'s."""
 UNNAMED = "?torque_Nm"
 CONCAVE = {"clearance_offset", "friction_hysteresis", "stiffness_hardening"}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the
@@ -62,7 +65,12 @@ def race(
         curve = (deviations.torque / rig.torque_Nm) ** 2
         terms.append(
             EndPointRegressor(
-                UNNAMED, "total", curve, 0.3 * rig.scale_arcsec, False, Element({}, (1.0,))
+                UNNAMED,
+                "total",
+                curve,
+                UNNAMED_SPREAD * rig.scale_arcsec,
+                False,
+                Element({}, (1.0,)),
             )
         )
     ids = list(dict.fromkeys(t.cause for t in terms))
@@ -97,9 +105,9 @@ def _of(
     odds: float,
     null: UnitEvidence,
 ) -> Hypothesis:
-    weighed = [unit_evidence(deviations, terms) for terms in sets]
-    scores = [w.evidence for w in weighed]
-    best = weighed[int(np.argmax(scores))]
+    each = [unit_evidence(deviations, terms) for terms in sets]
+    scores = [e.evidence for e in each]
+    best = each[int(np.argmax(scores))]
     score = float(logsumexp(scores)) - log(len(scores)) - null.evidence + odds
     free = unit_evidence(deviations, [replace(t, spread=FREE * t.spread) for t in best.terms])
     allowed = all(not t.positive or m > 0 for t, m in zip(best.terms, free.mean, strict=True))

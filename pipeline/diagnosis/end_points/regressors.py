@@ -9,13 +9,20 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import SINGLE
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
-HARDENING = ({"law": 0, "parameter": 0.2}, {"law": 0, "parameter": 0.45}, {"law": 0, "parameter": 0.8},
-             {"law": 1, "parameter": 0.35}, {"law": 3, "parameter": 1.0}, {"law": 4, "parameter": 0.1},
-             {"law": 4, "parameter": 0.3}, {"law": 4, "parameter": 1.0})  # fmt: skip
+HARDENING = tuple(
+    {"law": LAWS[law], "parameter": parameter}
+    for law, parameter in (
+        ("knee", 0.2), ("knee", 0.45), ("knee", 0.8), ("tanh", 0.35), ("cubic", 1.0),
+        ("rational", 0.1), ("rational", 0.3), ("rational", 1.0),
+    )
+)  # fmt: skip
+"""Few of `stiffness_hardening`'s shapes, early and late bends of each: ends at some torques show whether
+the twist levels off, not how. They are not refined, so they reach further than its LIMITS."""
 HELD = (0, 2)
 """Stiffness as simulated at full load, or near zero."""
 FRICTION_SHARES = (0.04, 0.3, 0.6)

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
-from flexspline.pipeline.diagnosis.end_points.finding import MidPositions, UnitFinding
-from flexspline.pipeline.diagnosis.end_points.unit_likelihood import (
+from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
     readings,
 )
+from flexspline.pipeline.diagnosis.end_points.finding import MidPositions, UnitFinding
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import Prediction
 

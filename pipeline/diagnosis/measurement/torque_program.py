@@ -22,6 +22,10 @@ PARTS = 60
 """Of a cycle."""
 CLEAR = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+DEADBAND_SIGMAS = 2.0
+"""Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
+MAD_PER_SIGMA, FIFTH_PER_SIGMA = 0.6745, 0.2533
+"""Of |x| for x normal with deviation 1: its median Φ⁻¹(3/4), and what a fifth of it lies below, Φ⁻¹(3/5)."""
 LARGEST_NOISE = 0.02
 """Of the largest torque: what looks like more is no noise."""
 
@@ -106,7 +110,7 @@ def ramp_s(history: History) -> float:
 
 def deadband_Nm(history: History) -> float:
     """Half the reversal of torque that may be noise: what has a memory is driven without such."""
-    return 2 * torque_noise_Nm(history)
+    return DEADBAND_SIGMAS * torque_noise_Nm(history)
 
 
 def shortest_lag_s(history: History) -> float:
@@ -134,9 +138,11 @@ def torque_noise_Nm(history: History) -> float:
         span = np.maximum(t[2:] - t[:-2], 1e-12)
         share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
         off = torque[1:-1] - (1 - share) * torque[:-2] - share * torque[2:]
-        line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / 0.6745
-        third = np.median(np.abs(np.diff(torque, 3))) / 0.6745 / np.sqrt(20)
-        first = np.quantile(np.abs(np.diff(torque)), 0.2) / 0.2533 / np.sqrt(2)
+        line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA
+        third = (
+            np.median(np.abs(np.diff(torque, 3))) / MAD_PER_SIGMA / np.sqrt(20)
+        )  # 1² + 3² + 3² + 1²
+        first = np.quantile(np.abs(np.diff(torque)), 0.2) / FIFTH_PER_SIGMA / np.sqrt(2)
         found.append(min(line, third, first))
     largest = float(np.abs(history.torque_Nm).max())
     return min(float(np.median(found)), LARGEST_NOISE * largest) if found else 0.0

@@ -8,6 +8,7 @@ from math import pi
 Factors = dict[str, float]
 
 
+# what one of each unit is in ours: N·m, arcsec, s
 TORQUE: Factors = {"Nm": 1.0, "Nmm": 1e-3}
 ANGLE: Factors = {
     "arcsec": 1.0, "arcmin": 60.0, "deg": 3600.0,

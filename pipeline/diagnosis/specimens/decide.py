@@ -20,7 +20,7 @@ import numpy as np
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.decision import Decision, chance, decided, is_rival, probability
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
-from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 

@@ -13,8 +13,8 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMe
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_designs
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
+from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance, specimen_parameters
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
@@ -61,7 +61,7 @@ def diagnose_specimens(
         design.solver.tolerance_pct / 100,
         design.uncertainty.youngs_modulus_pct / 100,
     )
-    found, explanation = weighed(bench, data, specimens, design)
+    found, explanation = explain(bench, data, specimens, design)
     fe, chosen, decision = found.data.fe, explanation.chosen, explanation.decision
     before, calibrated, after = _held_out(found.data, found.null_fit, chosen)
     analysis = SpecimenAnalysis(
@@ -84,7 +84,7 @@ def diagnose_specimens(
     return outcome, analysis
 
 
-def weighed(
+def explain(
     bench: Bench, data: SpecimenData, specimens: Specimens, design: Design
 ) -> tuple[SpecimenRace, SpecimenExplanation]:
     """The race, run again where a dimension was found: with FE at what was found."""

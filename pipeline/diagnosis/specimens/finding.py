@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 

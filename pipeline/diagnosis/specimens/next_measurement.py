@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.outcome import NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
-from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit
+from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
 
 FACTORS = (0.6, 1.6)

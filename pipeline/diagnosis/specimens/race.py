@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from scipy.special import logsumexp
 
-from flexspline.pipeline.diagnosis.specimens.laplace import LaplaceFit, SpecimenData, fit
+from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit, SpecimenData, fit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter
 
 SECOND_FROM = 7

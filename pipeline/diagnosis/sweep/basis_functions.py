@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 SPLINE = 6
-"""Degree of a smooth function over a channel, Legendre polynomials."""
+"""Degree of a smooth function over a channel, Legendre polynomials: up to five turns. More turns are
+waves and ripples, which begin with 3 half periods."""
 MOST_LEVELS = 8
-"""Columns of one nuisance term at most."""
+"""Columns of one nuisance term at most: as each costs evidence, more would never pay."""
 
 
 def smooth(x: np.ndarray, degree: int = SPLINE) -> np.ndarray:

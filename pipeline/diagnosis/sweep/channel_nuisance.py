@@ -15,6 +15,8 @@ TELLING = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 WAVES = range(3, 61)
 """Half periods over the time of the record."""
+STEADY_K = 0.3
+"""A temperature that varies by less is constant to a usual sensor's ±0.3 K at 0 °C (IEC 60751, class B)."""
 DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
@@ -83,7 +85,7 @@ def over_cycle(rig: Rig) -> Made:
 def over_temperature(rig: Rig) -> Made:
     """What temperature can do beside a gap linear in it."""
     temperature = rig.history.temperature_C
-    if temperature is None or np.ptp(temperature) < 0.3:
+    if temperature is None or np.ptp(temperature) < STEADY_K:
         return
     torque = rig.history.torque_Nm / rig.torque_Nm
     warm = (temperature - REFERENCE_C) / max(np.abs(temperature - REFERENCE_C).max(), 1e-9)

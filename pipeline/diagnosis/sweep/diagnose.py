@@ -2,6 +2,7 @@
 
 | step | file |
 |---|---|
+| read the file (`../diagnose.py`) | `measurement/record.py`, `measurement/table.py` |
 | shorten a long record | `measurement/thinning.py` |
 | choose rows, estimate the noise | `row_selection.py`, `measurement/noise.py`, `prepare.py` |
 | evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |

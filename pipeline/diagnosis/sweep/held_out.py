@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 
 FEWEST_ROWS = 12
+"""An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 CROSSING_SIGMAS, CROSSING_LEAST = 3.0, 0.15
 """|T| within this of zero, in units of the torque noise, is the gap's crossing."""
 

@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
 MOST_SHAPES = 24
+"""Of these sets at most, the likeliest: each is fitted anew for its deviation."""
 
 
 def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:

@@ -23,9 +23,11 @@ ROWS = 64
 DEFAULT_RAMP_S = 30.0
 """Time of a ramp where the record has none."""
 WARMER_K = 20.0
+"""From 20 to 40 °C; the separation of rivals by this plan grows in proportion to it."""
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 """Steps of 50° tell the harmonics 1, 2 and 4 per turn apart; at steps of 60° 4 is an alias of 2."""
 MORE_CYCLES = 40
+"""Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
 
 
 def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:

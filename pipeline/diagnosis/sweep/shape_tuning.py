@@ -12,6 +12,8 @@ from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 STEPS = 4
+"""Gauss-Newton steps at most: together they change a parameter by up to a factor e² (LONGEST). Doubled, they
+change no verdict of 12 made-up records (`tests/hidden`, seed 77)."""
 STEP_STD = 0.4
 """Prior standard deviation of the log of a shape parameter, about where a step starts."""
 LONGEST = 0.5

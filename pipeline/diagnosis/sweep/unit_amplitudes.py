@@ -10,6 +10,8 @@ from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 OWN_NATS = 5.0
 """Evidence that separate amplitudes must gain over a common one."""
+SHARE_STD = 2.0
+"""Prior standard deviation of a unit's amplitude, of the common one: none of it, or thrice, is likely."""
 SHOWS, SHOWS_NOT = 4.0, 2.0
 """Standard deviations from zero of an amplitude that a unit surely has, and surely need not have."""
 
@@ -70,11 +72,15 @@ def unit_amplitudes(identified: Identification, cause: str) -> UnitAmplitudes:
 def _fit(
     y: np.ndarray, rest: np.ndarray, prior: np.ndarray, apart: np.ndarray
 ) -> tuple[tuple[np.ndarray, np.ndarray], float]:
-    """Amplitudes (k,) of `apart` with covariance, and the evidence; their prior is 0 ± 2."""
+    """Amplitudes (k,) of `apart` with covariance, and the evidence; their prior is 0 ± SHARE_STD."""
     k = apart.shape[1]
     x = np.hstack([rest, apart])
-    precision = np.diag(np.concatenate([prior, np.full(k, 0.25)]))
+    precision = np.diag(np.concatenate([prior, np.full(k, SHARE_STD**-2)]))
     matrix, right = x.T @ x + precision, x.T @ y
     inverse = np.linalg.inv(matrix)
-    evidence = right @ inverse @ right / 2 - np.linalg.slogdet(matrix)[1] / 2 + k * np.log(0.25) / 2
+    evidence = (
+        right @ inverse @ right / 2
+        - np.linalg.slogdet(matrix)[1] / 2
+        + k * np.log(SHARE_STD**-2) / 2
+    )
     return ((inverse @ right)[-k:], inverse[-k:, -k:]), float(evidence)

@@ -26,6 +26,7 @@ YLABELS: Mapping[Effect, str] = {
 FAR = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
+"""Inches, as in `panels`; wider apart, for each panel has a title and an axis of its own."""
 OFFSET = "torque_offset"
 BESIDE = 25
 """Letters of the magnitude that fit beside a panel in full size."""

@@ -13,6 +13,7 @@ from flexspline.results.figures.words import fit
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
+"""Units drawn, a figure of 14 inches; of more, those furthest out."""
 ROW = 0.42
 """Inches of a row of bars."""
 

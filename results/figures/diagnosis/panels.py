@@ -19,12 +19,17 @@ if TYPE_CHECKING:
 RISING, FALLING = PALETTE[1], PALETTE[2]
 """Colours of the two branches."""
 DPI = 150
+"""Dots per inch: a line of 1.6 points is 3 dots."""
 WIDTH = 8.0
+"""Inches, of all figures of a diagnosis."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.8, 0.95, 0.62, 0.72
 """Inches: height of a panel; above all, below all, and between rows of panels."""
 BINS = 14
+"""Of a mean line over a panel of 3.2 inches: a quarter of an inch each."""
 FEWEST = 4
+"""Values of which a mean is drawn: it scatters half as much as they."""
 LEVELS = 16
+"""Distinct values up to which a channel is drawn level by level: as many as bins, about."""
 DODGE = 0.012
 """Share of a channel's range by which the branches stand apart where it has levels."""
 APART = 0.04

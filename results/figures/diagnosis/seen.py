@@ -27,6 +27,7 @@ LABELS = {
     "unit": "unit under test",
 }
 LONGEST_NAME = 12
+"""Letters of a name below an axis; where one is longer, all are numbered instead."""
 
 
 @dataclass(frozen=True)

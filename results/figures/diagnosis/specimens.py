@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST_NAMES = 24
+"""Names below an axis of 7 inches, 0.29 inch each; of more, every k-th is written."""
 
 
 def write_stiffness(path: Path, found: SpecimenAnalysis) -> None:

@@ -14,7 +14,9 @@ from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_CAUSES = 4
+"""Panels drawn, of the largest causes: together 8.2 inches high."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.25, 0.95, 0.6, 0.55
+"""Inches, as in `panels`."""
 
 
 def shared_causes(shown: SweepPictureData) -> dict[str, UnitAmplitudes]:

@@ -21,9 +21,12 @@ NOISES = (0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05)
 USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 """One percent, within a factor of two, is what torsion rigs reach."""
 ROUNDS = 8
+"""Of Gauss-Newton at most: of 333 fits of the example and two made-up sets 303 are done after five, 3 not
+after eight."""
 STEP = 1e-4
 """Of a prior standard deviation, for forward differences: doubles round them at 1e-12 of it."""
 PAIR_NATS = -1.0
+"""Log prior odds of a second term, 1 to 2.7."""
 MOST_ZONE = 1.2
 """Beyond the lobes there is nowhere to go; a fifth is allowed for noise."""
 
