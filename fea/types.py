@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.geometry.material import Material
 
 NMM_PER_NM = 1000.0
+"""N·mm in one N·m: inside lengths are mm, stiffnesses are told in N·m/rad."""
 
 
 @dataclass(frozen=True)

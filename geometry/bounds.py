@@ -31,12 +31,12 @@ def above(limit: float) -> float:
 
 def is_step(height: float) -> bool:
     """No step, or one that the CAD kernel sees [mm]."""
-    return height == 0 or height >= LENGTH_mm.low - 1e-9
+    return height == 0 or height >= LENGTH_mm.low - 1e-9  # rounding of a difference of lengths
 
 
 def step_up(level: float, step: float = LENGTH_mm.low) -> float:
     """The smallest length [mm] that is a step above another."""
-    return level + step - 5e-10
+    return level + step - 5e-10  # half of what `is_step` lets pass
 
 
 def span(low: float, high: float, digits: int = DIGITS) -> str | None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import cadquery as cq
 
 WHOLE = 360.0
+"""[deg]"""
 OVER_mm = 0.01
 """How far a hole's tool reaches beyond a face, so that the cut has no coplanar cap: less than any gap."""
 
@@ -118,4 +119,5 @@ def write_step(solid: cq.Solid, path: Path) -> None:
 
 def write_stl(solid: cq.Solid, path: Path, chord_error: float) -> None:
     """Binary STL of the solid within `chord_error` [mm]."""
-    solid.exportStl(str(path), tolerance=chord_error, angularTolerance=radians(10))
+    turn = radians(10)  # 36 facets around a small hole, where the chords ask for fewer
+    solid.exportStl(str(path), tolerance=chord_error, angularTolerance=turn)

@@ -74,7 +74,7 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
     if bearing.bearing_play_model != "involute" or gear.centre_distance_mm <= 0:
         return
     c, limit = bearing.radial_clearance_um, gear.bearing_play_limit_um
-    if c > limit * (1 + 1e-12):
+    if c > limit * (1 + 1e-12):  # rounding of the cosine
         yield DesignError(
             "bearing.radial_clearance_um",
             c,

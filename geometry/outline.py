@@ -150,7 +150,7 @@ class Meridian:
         found = []
         for i, s in enumerate(self.segments):
             before = self.segments[i - 1]
-            if s.start[0] > SAME and before.tangent(1) @ s.tangent(0) < 1 - 1e-6:
+            if s.start[0] > SAME and before.tangent(1) @ s.tangent(0) < 1 - 1e-6:  # a turn of 0.08°
                 found.append(s.start)
         return tuple(found)
 

@@ -73,7 +73,8 @@ def _unknown(location: Location, kind: str | None) -> str:
             if key in theirs:
                 own = [k for k in known if k not in theirs]
                 return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
-    near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
+    # a key may be 3000 letters long, and difflib's time grows with their square
+    near = get_close_matches(key[:200], known, n=1)
     if near:
         return f"unknown key; did you mean {near[0]}?"
     where = f"[{dotted(table)}]" if table else "the design"

@@ -123,7 +123,8 @@ def _mesh_faces(shape: cq.Shape, chord_error: float) -> None:
     """Triangulate all faces at once, so that neighbours share their edges' points."""
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
 
-    BRepMesh_IncrementalMesh(shape.wrapped, chord_error, False, 0.2, False)
+    turn = 0.2  # rad: some 31 chords around, however small a fillet or a hole
+    BRepMesh_IncrementalMesh(shape.wrapped, chord_error, False, turn, False)
 
 
 def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:

@@ -19,6 +19,7 @@ OPTIONAL: frozenset[Location] = frozenset(
 )
 """Written as comments: their absence means something."""
 
+# The cup is that of examples/xb1-40.toml; the hat has the same tube, shorter.
 _STEEL = {
     "name": "34CrNiMo6",
     "youngs_modulus_GPa": 206.0,

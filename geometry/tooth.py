@@ -148,7 +148,7 @@ def ring_ends(design: Design) -> tuple[float, float]:
     pitch, land = gear.module_mm * gear.teeth_flexspline / 2, SMALLEST_LAND * gear.module_mm
     if f.teeth == "none" or pitch - land <= f.wall_radius + SAME:
         return 0.0, inf
-    margin = 1e-6 * gear.module_mm
+    margin = 1e-6 * gear.module_mm  # below the digits in which the ends are told
     low, high = f.wall_radius, pitch - land - margin
     if _gap(design, low) < land:
         inside, outside = high, low
@@ -201,7 +201,7 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
         return
     if _land(design, radians(gear.pressure_angle_deg)) < land:
         small, large = PRESSURE_ANGLE_deg.low, gear.pressure_angle_deg
-        while large - small > 1e-4:
+        while large - small > 1e-4:  # degrees: the end is told in six digits
             middle = (small + large) / 2
             pointed = _land(design, radians(middle)) < land
             small, large = (small, middle) if pointed else (middle, large)

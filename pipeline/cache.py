@@ -119,6 +119,7 @@ _MISSING: Any = object()
 def content_key(inputs: Mapping[str, Any]) -> str:
     """SHA-256 of the inputs' canonical JSON; floats enter with all their digits."""
     text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), default=_plain)
+    # 160 bits: no two inputs ever meet by chance, and names of files stay short
     return hashlib.sha256(text.encode()).hexdigest()[:40]
 
 

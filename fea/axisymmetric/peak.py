@@ -122,6 +122,7 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     """
     corner = mesh.points[mesh.triangles]
     longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
+    # nodes at the border average over triangles that begin up to half a distance beyond it
     near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
     return near & (longest > exclusion_mm / 2)
 

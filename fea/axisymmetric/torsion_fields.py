@@ -119,7 +119,7 @@ def inverse_radius_bound(space: Space) -> np.ndarray:
     corner = space.places[space.dofs[:, :3], 0]
     a, b = corner.min(axis=1)[:, None], corner.max(axis=1)[:, None]
     c, r = (a + b) / 2, space.r
-    away = a > 1e-9 * b
+    away = a > 1e-9 * b  # else on the axis, but for rounding
     at_zero = np.where(away, a * b * c**2, 1.0)
     return np.where(away, (1 - (r - a) * (r - b) * (r - c) ** 2 / at_zero) / r, 0.0)
 

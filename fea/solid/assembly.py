@@ -15,6 +15,7 @@ from skfem import BilinearForm
 
 from flexspline.fea.solid.elements import basis_of, quadratic_mesh
 from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.outline import SAME
 
 CHUNK = 20_000
 """Elements handled at once: bounds the memory of the gradients at quadrature points."""
@@ -40,7 +41,7 @@ class NodeFrames:
     @classmethod
     def cylindrical(cls, nodes: np.ndarray) -> NodeFrames:
         radius = np.hypot(nodes[:, 0], nodes[:, 1])
-        on_axis = radius < 1e-9
+        on_axis = radius < SAME
         safe = np.where(on_axis, 1.0, radius)
         c = np.where(on_axis, 1.0, nodes[:, 0] / safe)
         s = np.where(on_axis, 0.0, nodes[:, 1] / safe)

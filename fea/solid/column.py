@@ -27,6 +27,7 @@ NARROW_OF_RADIUS, NARROW_OF_HEIGHT = 0.1, 0.02
 column's height is left to the mesher: fair triangles in it are too many (30 000 elements on a cup's
 land of 0.05 mm, 400 000 on one of 0.005)."""
 LARGEST_ARC = pi / 2
+"""[rad] Of an outline's arc, which stays clearly below the 180° that `Segment` allows."""
 CORE = 0.5
 """Where the column reaches the axis, the plan's triangles end at this share of the holes' nearest radius:
 within, they would have the sector's angle, a needle's."""

@@ -15,6 +15,16 @@ CUT_EDGES = 2.0
 """How far cuts reach from patch edges, in the first mesh's smallest edges. Beside the middle of a wide cut
 the winding number is 1/2, where fTetWild's filter, an approximation, takes an element for outside: cuts
 across thick walls became cracks."""
+FAR_WALLS_OF_SHAFT, FAR_WALLS = 0.45, 5
+"""Largest edge in walls: two elements and more through a shaft's wall, one layer of long ones in
+a thin tube."""
+NEAR_SHARE = 0.4
+"""Smallest edge over the largest, in shafts. In flexsplines it is the wall: on the example's cup 0.4 → 2 mm,
+whose K is 0.7 % high (docs/decisions.md, Grading)."""
+GROWTH = 0.7
+"""Of the edge length per distance from the singular edges, of that same mesh."""
+ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
+"""How far the mesher may stray, in a flexspline's wall and a shaft's largest edge: the nodes are put back."""
 FINEST_SHARE = 20
 """The largest edge is at least this share of the outer radius: a wall of a hundredth of it needs one
 layer of long elements, not a part full of short ones."""
@@ -27,26 +37,27 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
     ------
     SolidError : that edge asks for more points on a radian of the part's outside than any mesh may have.
     """
+    # `far` also leaves six or eight edges along a short part, and three from the axis outwards in a thick one
     if isinstance(part.shape, Shaft):
         segments = part.shape.segment
         wall = min(s.outer_diameter_mm - s.inner_diameter_mm for s in segments) / 2
         outer = max(s.outer_diameter_mm for s in segments) / 2
         on_axis = any(s.inner_diameter_mm == 0 for s in segments)
-        far = min(max(0.45 * wall, outer / FINEST_SHARE), part.length / 8, outer / 3)
-        near, envelope = 0.4 * far, far / 100
+        far = min(max(FAR_WALLS_OF_SHAFT * wall, outer / FINEST_SHARE), part.length / 8, outer / 3)
+        near, envelope = NEAR_SHARE * far, far / ENVELOPES_PER_FAR
     else:
         f = part.shape
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
         on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
-        far = min(max(5 * wall, outer / FINEST_SHARE), part.length / 6, outer / 3)
-        near, envelope = min(wall, far / 2, outer / 50), wall / 20
+        far = min(max(FAR_WALLS * wall, outer / FINEST_SHARE), part.length / 6, outer / 3)
+        near, envelope = min(wall, far / 2, outer / 50), wall / ENVELOPES_PER_WALL
     if edge_length_mm is not None:
         far = edge_length_mm
         refuse_beyond(outer * part.length / far**2, far)  # before CAD makes chords as fine
         near = min(near, far)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(
-        grading=Grading(near, far, growth=0.7),
+        grading=Grading(near, far, growth=GROWTH),
         envelope=envelope,
         snap_limit=5 * envelope,
         # half the outer radius: elements twice as long around the tube, fair ones at the bolts

@@ -17,6 +17,7 @@ from flexspline.fea.solid.errors import SolveError
 
 Back = Callable[[np.ndarray], np.ndarray]
 PARDISO_OUT_OF_MEMORY = -2
+"""oneMKL's code for "not enough memory"."""
 
 
 @contextmanager

@@ -48,7 +48,7 @@ def iterative_bytes(unknowns: int, entries: float) -> float:
 def check_before_assembly(unknowns: int) -> None:
     """Raise MemoryShortError where neither the assembly nor any solve after it can fit."""
     entries = ENTRIES_PER_UNKNOWN * unknowns
-    matrix = 12 * entries
+    matrix = 12 * entries  # bytes: a double and a 32-bit column each
     least = min(direct_bytes(unknowns, entries), iterative_bytes(unknowns, entries))
     need = max(ASSEMBLY_ENTRY_BYTES * entries, matrix + least)
     there = available_bytes()
@@ -84,7 +84,7 @@ def _of_machine() -> float:
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
-                return float(line.split()[1]) * 1024
+                return float(line.split()[1]) * 1024  # /proc/meminfo counts kB of 1024 bytes
     except OSError:
         pass
     try:  # macOS: all there is, for want of what is free

@@ -15,6 +15,8 @@ ROUNDS = 40
 distance, so 40 reach rounding."""
 AGREED = 1e-8
 """[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
+SETTLED = 1e-6
+"""[mm] Nearer than this to a surface is on it: a nanometre, where the smallest length of a design is 1 µm."""
 
 
 def snap_to_surfaces(
@@ -86,7 +88,7 @@ def _common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndar
         if np.abs(moved - before).max() < AGREED:
             break
     off = np.max([np.abs(s.project(moved) - moved).max(axis=1) for s in group], axis=0)
-    return moved, off < 1e-6
+    return moved, off < SETTLED
 
 
 def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -> np.ndarray:

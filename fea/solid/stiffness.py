@@ -25,6 +25,8 @@ from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
 
 Mesher = Callable[[MeshSpec], TetMesh]
 MAX_LEVELS = 5
+"""Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
+their edges go to as little as 1/256."""
 EFFICIENCY = (1.5, 3.1)
 """Range of c believed: 1.5 to 2.8 on cups, hats and shafts, swept and not, against two-sided bounds."""
 USUAL_EFFICIENCY = 2.0

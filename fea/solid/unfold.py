@@ -19,6 +19,7 @@ generator's ellipse symmetric."""
 MIRRORED_CELL = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 """Ten nodes with corners 1 and 2 exchanged: a reflection turns the element inside out."""
 MIRRORED_FACET = [0, 2, 1, 5, 4, 3]
+"""The same of six: corners, then the middles of the edges 01, 12, 20."""
 
 
 def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
@@ -75,7 +76,7 @@ def unfolding(mesh: TetMesh, sector_deg: float) -> Unfolding:
     ValueError : no whole multiple, or 360° by an odd number of copies.
     """
     times = round(sector_deg / mesh.sector_deg)
-    if times < 1 or abs(times * mesh.sector_deg - sector_deg) > 1e-9 * sector_deg:
+    if times < 1 or abs(times * mesh.sector_deg - sector_deg) > 1e-9 * sector_deg:  # of rounding
         raise ValueError(f"{sector_deg} is no multiple of the sector {mesh.sector_deg}")
     closed = sector_deg == 360 and times > 1
     if closed and times % 2:

@@ -56,4 +56,4 @@ def thickness(stiffness: Callable[[float, float], float], inner: float, wanted: 
     high = inner
     while excess(high) < 0:
         high *= 2
-    return float(brentq(excess, 0.0, high, xtol=1e-15 * inner))
+    return float(brentq(excess, 0.0, high, xtol=1e-15 * inner))  # a few roundings

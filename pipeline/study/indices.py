@@ -13,6 +13,7 @@ from math import e
 import numpy as np
 
 CONFIDENCE = 0.95
+"""Usual in statistics; the intervals are told with it."""
 MOST_GROUPS = 64
 """Of sample blocks, left out in turn: a standard deviation from so many is known to 9 %."""
 PRINTED = 0.005

@@ -64,7 +64,7 @@ def grid(study: Study) -> Grid:
     taken = int(np.prod([n for n in fixed.values() if n] or [1]))
     open_keys = [k for k, n in fixed.items() if not n]
     share = (budget / taken) ** (1 / len(open_keys)) if open_keys else 0.0
-    each = max(2, int(share + 1e-9))
+    each = max(2, int(share + 1e-9))  # 125 ** (1 / 3) is 4.999…
     axes: dict[str, list[float]] = {}
     for key, span in spans.items():
         if span.values is not None:

@@ -27,6 +27,7 @@ FIRST_STEP = 0.12
 SHORTER = 0.85
 """Per failure; with LONGER it rests at one success in five or so (Rechenberg's 1/5 rule)."""
 LONGER = 1.6
+"""Per success: 2.9 failures, ln 1.6 over −ln 0.85, take it back."""
 SHORTEST = 1e-4
 """Of a key's span: no drawing states a dimension finer."""
 CHANGES = 0.2

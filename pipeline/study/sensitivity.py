@@ -34,6 +34,7 @@ ENERGY_TOLERANCE = 1e-3
 NARROWER = 0.25
 """Times the step, where a step cannot be built; TRIES of them end at a step of 0.06 %."""
 TRIES = 4
+"""Steps that are tried, each NARROWER than the last."""
 
 
 @dataclass(frozen=True)

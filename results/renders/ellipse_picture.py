@@ -29,6 +29,7 @@ _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0)
 """Along the minor axis more than the major, so that the ellipse's long side lies across. The first
 that shows the peak is drawn; the last looks into a hat from its flange."""
 _ALONG_AXIS = View(-90.0, 89.999)
+"""Not 90°, where "up" has no direction."""
 _STILL = 1e-2
 """Edges that move by less than this part of the size coincide with the deformed ones: not drawn."""
 

@@ -27,6 +27,7 @@ INSET, LARGE_INSET = (440, 480), (600, 640)
 _MAIN_AT, _INSET_AT = (40, 116), (930, 176)
 _LABEL_AT = (1150, 850)
 _DPI = 100
+"""Places in pixels, from the left and the lower edge; of the label its middle line."""
 _TITLE, _SUBTITLE, _TEXT, _NOTE = 50, 38, 44, 34
 """Text heights in pixels: printed 80 mm wide, half size, the smallest is still 1.7 mm."""
 

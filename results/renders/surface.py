@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 _FOUR = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""A six-node facet (corners, then middles of 01, 12, 20) as four flat triangles."""
 CREASE_DEG = 30.0
 """Facets that turn by more than this meet in a drawn edge."""
 

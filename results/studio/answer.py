@@ -28,6 +28,7 @@ from flexspline.results.style import PALETTE
 STIFFNESSES = ("K_b", *get_args(RimCase), "K_e", "K_series")
 PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
 LINE_POINTS = 25
+"""Of the torque–angle line: it is straight, its band bends."""
 ESTIMATED = "≈\u2009"
 """Before bounds that are no theorems."""
 Found = Mapping[str, Any]

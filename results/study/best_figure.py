@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHOWN = 3
+"""Designs, a row each."""
 WIDE_IN, SECTION_IN, DETAIL_IN = 9.0, 4.7, (3.0, 0.95)
 """The figure's width, the sections' width, a detail's width and height."""
 ROW_IN, LEFT_IN, FOOT_IN = 1.0, 0.75, 0.75
 DETAIL_WALLS = 3.2
 """A detail's height in wall thicknesses of the thickest wall shown."""
 MARGIN_MM = 0.5
+"""Around what is shown."""
 
 
 def write_best(path: Path, result: StudyResult) -> None:

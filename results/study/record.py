@@ -14,6 +14,7 @@ from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.why import disagreement, incomplete, misses, signed
 
 SHOWN = 5
+"""Best designs that the summary lists."""
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
