@@ -26,7 +26,7 @@ CUTS = (
     np.array([[0, 1, 2, 4], [0, 4, 2, 5], [0, 4, 5, 3]]),
 )
 """Corners of the three tetrahedra of a prism whose least node is corner 0: both quadrilaterals at it are
-cut from it, and the face opposite from 1 to 5, or from 2 to 4 (Dompierre and others, How to subdivide pyramids,
+cut from it, and the face opposite from 1 to 5, or from 2 to 4 (Dompierre et al., How to subdivide pyramids,
 prisms and hexahedra into tetrahedra, 1999)."""
 
 
