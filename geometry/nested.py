@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Shaft
 
 NO_HOLES: dict[str, Any] = {
     "bolt_count": 0,
@@ -43,12 +43,12 @@ def nested_bodies(part: Part) -> NestedBodies:
     15.5
     """
     shape, bolts = part.shape, part.bolts
-    if bolts is None or not isinstance(shape, Cup | Hat):
+    if bolts is None or isinstance(shape, Shaft):
         raise ValueError("only a flexspline with bolt holes lies between two bodies of revolution")
-    if isinstance(shape, Cup):
-        edge = {"bore_diameter_mm": 2 * (bolts.radius + bolts.hole_radius)}
+    if shape.inward:
+        edge = {shape.land.inner: 2 * (bolts.radius + bolts.hole_radius)}
     else:
-        edge = {"flange_outer_diameter_mm": 2 * (bolts.radius - bolts.hole_radius)}
+        edge = {shape.land.outer: 2 * (bolts.radius - bolts.hole_radius)}
     whole = shape.model_copy(update=NO_HOLES)
     return NestedBodies(
         replace(part, shape=whole.model_copy(update=edge)), replace(part, shape=whole)

@@ -117,7 +117,7 @@ def _whole(path: Path, write: Callable[[Path], object]) -> Path:
 
 def _is_whole(data: bytes, suffix: str) -> bool:
     if suffix == ".stl":
-        triangles = int.from_bytes(data[80:84], "little")
+        triangles = int.from_bytes(data[80:84], "little")  # after 80 bytes of text
         return len(data) == STL_HEAD_BYTES + STL_TRIANGLE_BYTES * triangles > STL_HEAD_BYTES
     return bool(data) and data.rstrip().endswith(ENDINGS.get(suffix, b""))
 

@@ -84,7 +84,7 @@ def answered(path: Path | None = None) -> Iterator[None]:
         raise typer.Exit(2) from None
     except KeyboardInterrupt:
         tell("flexspline: interrupted; run the same command again to resume")
-        raise typer.Exit(130) from None
+        raise typer.Exit(130) from None  # 128 and the number of SIGINT, as shells count
     except ComputationError as error:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(1) from None

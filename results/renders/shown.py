@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 MATT = {"ambient": 0.5, "diffuse": 0.62, "specular": 0.0}
+"""Shares of VTK's light, no gloss: where colours mean no stress, shading shows the shape."""
 FLAT_LIT = {"ambient": 0.7, "diffuse": 0.36, "specular": 0.0}
 """Little shading, so that the colour stays the one in the scale."""
 

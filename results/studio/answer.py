@@ -146,6 +146,7 @@ def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
     """The positive branch; the negative one mirrors it."""
     load = design.load.torque_Nm
     torque = np.linspace(0, REACH, LINE_POINTS) * load
+    # at 0 itself it is the gap's middle; the line begins at the gap's end
     angle = angle_rad(design, np.maximum(torque, 1e-9 * load), K_b, K_e) * ARCSEC_PER_RAD
     return {
         "load_Nm": load,
