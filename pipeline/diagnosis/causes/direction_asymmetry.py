@@ -9,6 +9,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+STARTS = ((1.0, 0.0), (0.88, 0.0), (1.12, 0.0), (1.0, 0.12), (1.0, 0.3))
+"""Exponent, and rounding as a share of the largest torque; both are refined within `possible`."""
+
 
 class DirectionAsymmetry(Cause):
     """Compliance c ± a for torque of either sign: twist a·|T| with a [arcsec per N·m].
@@ -28,7 +31,7 @@ class DirectionAsymmetry(Cause):
     def shapes(self, rig: Rig) -> list[Shape]:
         return [
             {"exponent": n, "rounding_Nm": r * rig.torque_Nm, "largest_torque_Nm": rig.torque_Nm}
-            for n, r in ((1.0, 0.0), (0.88, 0.0), (1.12, 0.0), (1.0, 0.12), (1.0, 0.3))
+            for n, r in STARTS
         ]
 
     def possible(self, shape: Shape) -> bool:

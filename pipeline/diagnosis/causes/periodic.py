@@ -15,6 +15,10 @@ HARMONICS = ((1,), (2,), (4,), (1, 2), (2, 4), (1, 2, 4))
 KEYS = ("harmonic", "second_harmonic", "third_harmonic")
 
 
+VARIES = 0.1
+"""Of a unit amplitude: a harmonic that varies by less over the positions is a constant there."""
+
+
 class PeriodicShapes:
     """A cause whose shapes are sets of harmonics."""
 
@@ -41,7 +45,7 @@ def harmonic_shapes(rig: Rig) -> list[Shape]:
     places = np.radians(np.unique(np.mod(angle, 360.0)))
 
     def varies(n: int) -> bool:
-        return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > 0.1)
+        return bool(np.ptp(np.cos(n * places)) + np.ptp(np.sin(n * places)) > VARIES)
 
     seen = {n for n in (1, 2, 4) if len(places) == 1 or varies(n)}
     return [dict(zip(KEYS, map(float, n), strict=False)) for n in HARMONICS if seen.issuperset(n)]

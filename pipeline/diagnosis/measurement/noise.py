@@ -19,8 +19,14 @@ FINEST_ARCSEC = 0.005
 """No instrument reads finer; a record without any noise would make every equation singular."""
 LAGS = 24
 """Rows over which the residual's autocovariance is matched."""
+LAG_0_WEIGHT = 3.0
+"""Of the variance against the autocovariances, in matching: it has the largest value and the least error."""
+MEMORIES = 16
+"""Correlation times tried, in even steps of their log: up to 50 rows they are 36 % apart."""
 OUTLIER_SIGMAS = 5.0
 """One row of normal noise in 1.7 million lies further off."""
+SAME_PLACE = 0.01
+"""Of the largest torque: outliers so near to each other, in other cycles, are at one place."""
 LONGEST_OUTLIER = 2
 """Rows: three in a row are a finding."""
 BAND_SIGMAS, BAND_SHARE = 4.0, 0.035
@@ -107,8 +113,8 @@ def estimated(
     cov *= grow
     longest = max(1.0, LONGEST_OF_CYCLE * rows_per_cycle)
     best: tuple[float, Noise] | None = None
-    weight = np.r_[3.0, np.ones(lags)]
-    for time in np.geomspace(0.5, longest, 16) if longest > 0.5 else [0.5]:
+    weight = np.r_[LAG_0_WEIGHT, np.ones(lags)]
+    for time in np.geomspace(0.5, longest, MEMORIES) if longest > 0.5 else [0.5]:
         rho = float(np.exp(-1 / time))
         basis = np.column_stack([np.eye(lags + 1)[0], rho ** np.arange(lags + 1)])
         amount, misfit = nnls(basis * weight[:, None], cov * weight)
@@ -138,7 +144,7 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
             out[a:b] = False
     rows = np.flatnonzero(out)
     rising = np.gradient(history.torque_Nm) > 0
-    near = 0.01 * np.abs(history.torque_Nm).max()
+    near = SAME_PLACE * np.abs(history.torque_Nm).max()
     for i in rows:
         same = (
             (np.abs(history.torque_Nm[rows] - history.torque_Nm[i]) < near)

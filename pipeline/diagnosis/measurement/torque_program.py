@@ -22,6 +22,12 @@ PARTS = 60
 """Of a cycle."""
 CLEAR = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+FAST = 0.95
+"""Quantile of rates, or of steps, that is a ramp's: most rows may lie in holds."""
+RANGE_SIGMAS = 6.0
+"""Range of 450 rows of normal noise, in its standard deviations, on average."""
+FEWEST_FOR_NOISE = 8
+"""Rows of a unit; of fewer a median of third differences rests on less than five."""
 DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 MAD_PER_SIGMA, FIFTH_PER_SIGMA = 0.6745, 0.2533
@@ -45,7 +51,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     noise = torque_noise_Nm(history)
     # a ramp's step, from moves over a small part of a cycle: most rows may lie in holds
     coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
-    step = np.quantile(np.abs(torque[coarse:] - torque[:-coarse]), 0.95) / coarse
+    step = np.quantile(np.abs(torque[coarse:] - torque[:-coarse]), FAST) / coarse
     width = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, max(1, len(rows) // 20)))
     span = np.maximum(t[width:] - t[:-width], 1e-12)
     return Rates(width, (torque[width:] - torque[:-width]) / span)
@@ -60,7 +66,7 @@ def ramp_rate(history: History) -> float:
         if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
             continue
         rate = np.abs(rates_of(history, rows).values)
-        fast = np.quantile(rate, 0.95)
+        fast = np.quantile(rate, FAST)
         moving = rate[rate > MOVING * fast]
         if len(moving):
             found.append(float(np.median(moving)))
@@ -73,7 +79,7 @@ def holds(history: History) -> list[np.ndarray]:
     if fast == 0:
         return []
     noise = torque_noise_Nm(history)
-    span = SPAN * float(np.abs(history.torque_Nm).max()) + 6 * noise
+    span = SPAN * float(np.abs(history.torque_Nm).max()) + RANGE_SIGMAS * noise
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST:
@@ -82,7 +88,7 @@ def holds(history: History) -> list[np.ndarray]:
         rates = rates_of(history, rows)
         width, rate = rates.width, np.abs(rates.values)
         t = history.time_s[rows]
-        floor = 4 * noise / np.maximum(t[width:] - t[:-width], 1e-12)
+        floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
         limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
         edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
         for i, j in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
@@ -132,7 +138,7 @@ def torque_noise_Nm(history: History) -> float:
     found = []
     for rows in history.unit_slices:
         torque = history.torque_Nm[rows]
-        if len(torque) < 8:
+        if len(torque) < FEWEST_FOR_NOISE:
             continue
         t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
         span = np.maximum(t[2:] - t[:-2], 1e-12)

@@ -23,6 +23,8 @@ USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 ROUNDS = 8
 """Of Gauss-Newton at most: of 333 fits of the example and two made-up sets 303 are done after five, 3 not
 after eight."""
+MOST_STEP = 3.0
+"""Prior standard deviations that a round may move a parameter: beyond, the linear model is not trusted."""
 STEP = 1e-4
 """Of a prior standard deviation, for forward differences: doubles round them at 1e-12 of it."""
 PAIR_NATS = -1.0
@@ -122,7 +124,7 @@ def fit(data: SpecimenData, terms: Sequence[SpecimenParameter]) -> LaplaceFit:
             noise = noises[int(np.argmax(scores))][1]
         inner = slope.T @ (slope / noise[:, None] ** 2) + np.eye(len(at))
         new = centre + spread * np.linalg.solve(inner, slope.T @ (target / noise**2))
-        new = np.clip(new, at - 3 * spread, at + 3 * spread)
+        new = np.clip(new, at - MOST_STEP * spread, at + MOST_STEP * spread)
         done = np.abs((new - at) / spread).max() < 1e-3 and round_ > 3
         at = new
         model = log_compliance(data.fe, terms, at)

@@ -9,7 +9,7 @@
 | evidence of any set of them | `evidence.py` |
 | race: search sets, tune shapes, estimate the noise again | `race.py`, `search.py`, `shape_tuning.py` |
 | identify causes and rivals | `identification.py`, rules in `../decision.py` |
-| the same with a shifted torque reading | `torque_offset.py`, `offset_race.py` |
+| the same with a shifted torque reading | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | verdict | `../decision.py` |

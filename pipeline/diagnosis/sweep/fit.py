@@ -22,6 +22,10 @@ LINEAR = {"series_compliance": 0, "clearance_offset": 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
 
+SLOPE_STEP = 0.3
+"""Of a standard deviation, for slopes of magnitudes: near enough to the mean to be first order."""
+
+
 @dataclass(frozen=True)
 class SweepFit:
     """A fitted set of terms on one race."""
@@ -86,7 +90,7 @@ class SweepFit:
         std = np.sqrt(np.diag(self.posterior.covariance))
         for j in range(self.units, len(std)):
             step = np.zeros(len(std))
-            step[j] = 0.3 * std[j]
+            step[j] = SLOPE_STEP * std[j]
             for c, value in self.magnitudes(self.posterior.mean + step).items():
                 slope[c][j] = (value - at_mean[c]) / step[j]
         return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slope.items()}

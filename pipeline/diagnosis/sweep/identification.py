@@ -21,6 +21,8 @@ others' misfit may feed it."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
+MOST_WEAK = 4
+"""Causes that are taken out again, one at a time, where they are not worth their place."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
 
@@ -56,7 +58,7 @@ def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification
     search = Search(evidence)
     best = _plausible(evidence, search, search.run())
     nats: dict[str, float] = {}
-    for _ in range(4):
+    for _ in range(MOST_WEAK):
         without = {c: _without(evidence, best, c) for c in best.named(evidence)}
         nats = {c: best.score - w.score for c, w in without.items()}
         limit = NAMING_NATS if len(nats) == 1 and not beside else SECOND_NATS

@@ -23,6 +23,8 @@ from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, design_matrix
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
 
+ROWS_PER_PARAMETER = 6
+"""Of the local parabolas, three parameters each, in a cycle of 216 rows: windows are a twelfth of it."""
 FEWEST_KEPT, PER_UNIT = 12, 4
 """Rows that are needed, and for each further unit: it has a zero, a stiffness and a gap."""
 
@@ -91,7 +93,9 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
     outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
     good = ~outlier[kept]
     kept &= ~outlier
-    noise = estimated(rough[good], stretches_of(history, kept), per_cycle, int(kept.sum()) // 6)
+    noise = estimated(
+        rough[good], stretches_of(history, kept), per_cycle, int(kept.sum()) // ROWS_PER_PARAMETER
+    )
     return PreparedSweep(
         sweep,
         prediction,

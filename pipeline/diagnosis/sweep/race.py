@@ -36,6 +36,12 @@ TUNINGS, KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
+GOOD_PART = 0.5
+"""Of the best set's evidence: a cause that explains less by itself is not tuned alone."""
+WORTH_TUNING = 1.0
+"""Nats that a round of tuning must gain for another one."""
+
+
 @dataclass(frozen=True)
 class ExplainedSweep:
     """A prepared sweep and what its race identified.
@@ -94,7 +100,7 @@ def _with_tuned_shapes(now: GaussianEvidence) -> GaussianEvidence:
         now = wider
         named = Search(now, lambda t: t.cause is not None)
         before, best = best.score, named.run([best.terms, ()])
-        if best.score < before + 1.0:
+        if best.score < before + WORTH_TUNING:
             break
     return now
 
@@ -106,7 +112,7 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     may change once each is tuned.
     """
     evidence = search.evidence
-    enough = 0.5 * best.log_evidence
+    enough = GOOD_PART * best.log_evidence
     found = {
         c.terms for owners, c in search.best.items() if len(owners) == 1 and c.log_evidence > enough
     }

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence_gains import RegressorGroup
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
-"""Nats against each cause named: one of thirteen (2.6), and an even chance of none (2)."""
+"""Nats against each cause named: one of thirteen (2.6), and odds of 1 to 7 that one acts at all (1.9)."""
 NUISANCE_COST = 9.0
 """Against each nuisance term: at equal evidence a named cause is preferred."""
 ELEMENT_COST = 1.0
@@ -21,7 +21,7 @@ BEAM, PER_OWNERS, PER_SINGLE = 18, 3, 8
 """Sets that grow on; of one set of owners; of one owner's single terms. The beam halved or doubled changes no
 verdict of 34 made-up records (`tests/hidden`, seed 77)."""
 MOST_TERMS = 8
-"""Of a set. Doubled, it changes no verdict of 12 of these records: none needs so many."""
+"""Of a set. Doubled, it changes no verdict of 12 of them (every third): none needs so many."""
 WORTH = 0.5
 """Nats that a larger set must gain for the search to go on."""
 
