@@ -1,11 +1,14 @@
 """The validation page: every verification test hands in its case, one command writes them down.
 
-And what a machine may lack: a test marked `opengl` is skipped, with the reason, where VTK cannot draw, one
+What a machine may lack: a test marked `opengl` is skipped, with the reason, where VTK cannot draw, one
 marked `cad` where the CAD kernel cannot be loaded.
+
+And what the whole suite shares: one cache, one finished run of an example.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,7 +16,9 @@ from pathlib import Path
 
 import pytest
 from cad_kernel import why_no_cad
+from finished_run import FinishedRun, finished_run
 from opengl import why_no_pictures
+from shell import ONE_THREAD
 from validation_page import TOPICS, Row, has_case, markdown
 
 from flexspline.geometry.kernel import CadKernelError
@@ -36,7 +41,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_cmdline_main(config: pytest.Config) -> None:
     """Where pytest-xdist is there, the whole suite runs two files at a time unless `-n` says otherwise.
 
-    A page is written by the process that ran the tests: one, whatever `-n` says.
+    A page is written by the process that ran the tests: one, whatever `-n` says. Two workers on two cores
+    take a thread each: those of the linear algebra libraries would wait for each other in a loop that keeps
+    a core busy. A run of the example cup on a loaded machine, processor time: 52 s with two, 43 s with one.
     """
     if not config.pluginmanager.hasplugin("xdist") or hasattr(config, "workerinput"):
         return
@@ -45,6 +52,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         option.numprocesses = 0
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
         option.numprocesses, option.dist = 2, "loadfile"
+        for name, count in ONE_THREAD.items():  # which the workers inherit
+            os.environ.setdefault(name, count)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -81,6 +90,27 @@ def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     with skipped_without_cad():
         return (yield)
+
+
+@pytest.fixture(scope="session")
+def suite_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of this run of the suite, the same on every worker (the recipe of pytest-xdist's manual)."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "suite"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def suite_cache(suite_folder: Path) -> None:
+    """The commands' cache where a test sets no other; new each time, as its keys do not hold the program."""
+    os.environ.setdefault("FLEXSPLINE_CACHE", str(suite_folder / "cache"))
+
+
+@pytest.fixture(scope="session")
+def finished_cup(suite_folder: Path) -> FinishedRun:
+    """`flexspline run examples/xb1-40.toml`, from an empty cache: the suite's only whole one."""
+    return finished_run("xb1-40", suite_folder)
 
 
 @pytest.fixture

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import doctest
 import importlib
-import json
 import re
 import runpy
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from finished_run import finished_run
 from opengl import why_no_pictures
 
 from flexspline.geometry.load import load_design
@@ -76,15 +74,10 @@ def test_readme_names_every_command() -> None:
     [pytest.param(p, marks=MARKS.get(p.stem, ())) for p in DESIGNS],
     ids=lambda p: p.stem,
 )
-def test_example_runs(path: Path, tmp_path: Path) -> None:
+def test_example_runs(path: Path, suite_folder: Path) -> None:
     """The whole main job on every example; they are the size of real work."""
-    out = subprocess.run(
-        [sys.executable, "-m", "flexspline.results.cli", "run", str(path), "--out", str(tmp_path), "--json"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert out.returncode == 0, out.stderr
-    result = json.loads(out.stdout)
-    design = load_design(path)
+    run = finished_run(path.stem, suite_folder)
+    result, design = run.result, load_design(path)
     assert not warnings(design)
     low, high = result["K_b_bounds_Nm_per_rad"]
     assert low <= result["K_b_Nm_per_rad"] <= high
@@ -95,7 +88,7 @@ def test_example_runs(path: Path, tmp_path: Path) -> None:
         > result["K_b_lobes_Nm_per_rad"]
         > result["K_b_lobes_unsupported_Nm_per_rad"]
     )
-    assert (tmp_path / "report.pdf").stat().st_size > 10_000
+    assert (run.folder / "report.pdf").stat().st_size > 10_000
     missing = set(result.get("pictures_missing", {}))
-    assert {p.stem for p in tmp_path.glob("*.png")} - {"convergence"} == PICTURES - missing
+    assert {p.stem for p in run.folder.glob("*.png")} - {"convergence"} == PICTURES - missing
     assert not missing or why_no_pictures()

@@ -7,6 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+"""Environment of a process whose linear algebra takes one thread."""
+
 
 def environment(
     cache: Path, scratch: Path | None = None, threads: int | None = None
@@ -16,7 +19,7 @@ def environment(
     if scratch is not None:
         env["TMPDIR"] = str(scratch)
     if threads is not None:
-        env |= dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS"), str(threads))
+        env |= dict.fromkeys(ONE_THREAD, str(threads))
     return env
 
 

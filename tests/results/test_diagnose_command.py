@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
+from finished_run import FinishedRun
 from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -218,8 +219,14 @@ def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -
     assert "the model is of XB1-40 cup, not of" in result.stderr
 
 
-def test_run_shows_the_added_terms(done: tuple[Path, dict], tmp_path: Path) -> None:
+def test_run_shows_the_added_terms(
+    done: tuple[Path, dict],
+    finished_cup: FinishedRun,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Every stage of a run; the keys stay as without a model."""
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
     model = done[0] / "extended_model.toml"
     result = flexspline("run", CUP, "--model", model, "--out", tmp_path, "--json")
     assert result.exit_code == 0, result.stderr

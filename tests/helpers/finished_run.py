@@ -1,0 +1,57 @@
+"""A whole run of an example, made once and read by many tests, on whichever worker they are."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from shell import run
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PATIENCE_S = 1800
+"""Longer than any run takes on a loaded machine."""
+
+
+@dataclass(frozen=True)
+class FinishedRun:
+    """Of `flexspline run --json`. Nothing in its folders may be changed."""
+
+    design: Path
+    folder: Path
+    """What it wrote."""
+    cache: Path
+    """Empty before it; other commands on this design may use it, and add to it."""
+    stderr: str
+    result: dict
+    """As printed."""
+
+
+def finished_run(example: str, suite: Path) -> FinishedRun:
+    """The run of an example; `suite` is the folder of this run of the suite.
+
+    Raises
+    ------
+    AssertionError : the run failed, with what it said.
+    """
+    here, design = suite / example, EXAMPLES / f"{example}.toml"
+    out, cache, said = here / "out", here / "cache", here / "said.json"
+    here.mkdir(exist_ok=True)
+    with one_at_a_time(here / "lock"):
+        if not said.exists():
+            done = run("run", design, "--out", out, "--json", cache=cache, timeout_s=PATIENCE_S)
+            assert done.returncode == 0, done.stderr
+            said.write_text(json.dumps([done.stdout, done.stderr]), encoding="utf-8")
+    stdout, stderr = json.loads(said.read_text(encoding="utf-8"))
+    return FinishedRun(design, out, cache, stderr, json.loads(stdout))
+
+
+@contextmanager
+def one_at_a_time(path: Path) -> Iterator[None]:
+    """SQLite's lock on a file: on every system, and free again when its holder dies."""
+    with closing(sqlite3.connect(path, timeout=PATIENCE_S, isolation_level=None)) as database:
+        database.execute("BEGIN EXCLUSIVE")
+        yield
