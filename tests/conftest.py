@@ -27,6 +27,13 @@ PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
+SLOWEST = (
+    "test_cli", "test_hidden", "test_documents", "test_face", "test_document_commands", "test_size",
+    "test_legibility_diagnosis", "test_study_command", "test_sensitivity", "test_no_network",
+    "test_specimens", "test_studio_work", "test_diagnose_command",
+)  # fmt: skip
+"""Files that take half a minute or more, begun first so that no worker is left alone with one at the end.
+The first makes the run that others read."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -52,6 +59,7 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         option.numprocesses = 0
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
         option.numprocesses, option.dist = 2, "loadfile"
+        option.loadscopereorder = False  # `SLOWEST` says the order
         for name, count in ONE_THREAD.items():  # which the workers inherit
             os.environ.setdefault(name, count)
 
@@ -64,6 +72,11 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[ROWS] = []
     if config.getoption("--write-validation"):
         config.option.markexpr = ""  # the long ones too: the page is whole or not written
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {name: i for i, name in enumerate(SLOWEST)}
+    items.sort(key=lambda item: place.get(item.path.stem, len(place)))
 
 
 @contextmanager
@@ -111,6 +124,12 @@ def suite_cache(suite_folder: Path) -> None:
 def finished_cup(suite_folder: Path) -> FinishedRun:
     """`flexspline run examples/xb1-40.toml`, from an empty cache: the suite's only whole one."""
     return finished_run("xb1-40", suite_folder)
+
+
+@pytest.fixture
+def cup_solved(finished_cup: FinishedRun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What commands and functions ask of the example cup has been solved: their cache is that run's."""
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
 
 
 @pytest.fixture

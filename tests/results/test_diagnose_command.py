@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
-from finished_run import FinishedRun
 from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -122,15 +121,13 @@ def test_the_model_tells_where_it_comes_from(done: tuple[Path, dict]) -> None:
     assert magnitudes == {c["id"]: c["magnitude"] for c in said["causes"]}
 
 
-def test_same_input_gives_the_same_files(done: tuple[Path, dict], tmp_path: Path) -> None:
+def test_same_input_gives_the_same_files_and_says_it_in_words(
+    done: tuple[Path, dict], tmp_path: Path
+) -> None:
     folder, _ = done
-    flexspline("diagnose", CUP, SWEEP, *GIVEN, "--out", tmp_path)
+    result = flexspline("diagnose", CUP, SWEEP, *GIVEN, "--out", tmp_path)
     for path in folder.iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
-
-
-def test_terminal_words(tmp_path: Path) -> None:
-    result = flexspline("diagnose", CUP, SWEEP, *GIVEN, "--out", tmp_path)
     assert "Causes identified" in result.stdout
     assert "arcsec/K" in result.stdout
     assert "Measure next" in result.stdout
@@ -220,13 +217,9 @@ def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -
 
 
 def test_run_shows_the_added_terms(
-    done: tuple[Path, dict],
-    finished_cup: FinishedRun,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    done: tuple[Path, dict], cup_solved: None, tmp_path: Path
 ) -> None:
     """Every stage of a run; the keys stay as without a model."""
-    monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
     model = done[0] / "extended_model.toml"
     result = flexspline("run", CUP, "--model", model, "--out", tmp_path, "--json")
     assert result.exit_code == 0, result.stderr
