@@ -115,21 +115,16 @@ def suite_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def suite_cache(suite_folder: Path) -> None:
+def suite_cache(suite_folder: Path) -> Path:
     """The commands' cache where a test sets no other; new each time, as its keys do not hold the program."""
-    os.environ.setdefault("FLEXSPLINE_CACHE", str(suite_folder / "cache"))
+    os.environ["FLEXSPLINE_CACHE"] = str(suite_folder / "cache")
+    return suite_folder / "cache"
 
 
 @pytest.fixture(scope="session")
-def finished_cup(suite_folder: Path) -> FinishedRun:
-    """`flexspline run examples/xb1-40.toml`, from an empty cache: the suite's only whole one."""
-    return finished_run("xb1-40", suite_folder)
-
-
-@pytest.fixture
-def cup_solved(finished_cup: FinishedRun, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What commands and functions ask of the example cup has been solved: their cache is that run's."""
-    monkeypatch.setenv("FLEXSPLINE_CACHE", str(finished_cup.cache))
+def finished_cup(suite_folder: Path, suite_cache: Path) -> FinishedRun:
+    """`flexspline run examples/xb1-40.toml`: what the suite's cache holds of this cup from then on."""
+    return finished_run("xb1-40", suite_folder, suite_cache)
 
 
 @pytest.fixture

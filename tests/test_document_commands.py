@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import typer
 from document_blocks import Block, alike, blocks, missing
+from finished_run import FinishedRun
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -69,7 +70,9 @@ def run_page(shown: list[Block], folder: Path) -> None:
 
 
 @pytest.mark.parametrize("page", RUN, ids=lambda p: p.stem)
-def test_commands_run_and_say_what_is_shown(page: Path, cup_solved: None, tmp_path: Path) -> None:
+def test_commands_run_and_say_what_is_shown(
+    page: Path, finished_cup: FinishedRun, tmp_path: Path
+) -> None:
     run_page([b for b in blocks(page) if not b.long], desk(tmp_path))
 
 

@@ -39,7 +39,7 @@ def test_docstring_examples(
 ) -> None:
     monkeypatch.chdir(ROOT)
     if name == "flexspline.pipeline.face":  # its examples ask for the cup's K and stress
-        request.getfixturevalue("cup_solved")
+        request.getfixturevalue("finished_cup")
     outcome = doctest.testmod(importlib.import_module(name))
     assert outcome.attempted
     assert not outcome.failed
@@ -78,9 +78,9 @@ def test_readme_names_every_command() -> None:
     [pytest.param(p, marks=MARKS.get(p.stem, ())) for p in DESIGNS],
     ids=lambda p: p.stem,
 )
-def test_example_runs(path: Path, suite_folder: Path) -> None:
+def test_example_runs(path: Path, suite_folder: Path, suite_cache: Path) -> None:
     """The whole main job on every example; they are the size of real work."""
-    run = finished_run(path.stem, suite_folder)
+    run = finished_run(path.stem, suite_folder, suite_cache)
     result, design = run.result, load_design(path)
     assert not warnings(design)
     low, high = result["K_b_bounds_Nm_per_rad"]

@@ -11,6 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from finished_run import FinishedRun
 
 import flexspline
 
@@ -104,7 +105,9 @@ def test_the_command_prints_the_version() -> None:
     assert done.stdout == f"{flexspline.__version__}\n" == f"{version('flexspline')}\n"
 
 
-def test_the_page_runs(cup_solved: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_page_runs(
+    finished_cup: FinishedRun, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     """Every block of docs/python.md, one after the other, as in a notebook."""
     text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)

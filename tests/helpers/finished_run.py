@@ -24,21 +24,21 @@ class FinishedRun:
     folder: Path
     """What it wrote."""
     cache: Path
-    """Empty before it; other commands on this design may use it, and add to it."""
+    """Other commands use it and add to it."""
     stderr: str
     result: dict
     """As printed."""
 
 
-def finished_run(example: str, suite: Path) -> FinishedRun:
-    """The run of an example; `suite` is the folder of this run of the suite.
+def finished_run(example: str, suite: Path, cache: Path) -> FinishedRun:
+    """The run of an example; `suite` is the folder of this run of the suite, `cache` its cache.
 
     Raises
     ------
     AssertionError : the run failed, with what it said.
     """
     here, design = suite / example, EXAMPLES / f"{example}.toml"
-    out, cache, said = here / "out", here / "cache", here / "said.json"
+    out, said = here / "out", here / "said.json"
     here.mkdir(exist_ok=True)
     with one_at_a_time(here / "lock"):
         if not said.exists():

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
+from finished_run import FinishedRun
 from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -217,7 +218,7 @@ def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -
 
 
 def test_run_shows_the_added_terms(
-    done: tuple[Path, dict], cup_solved: None, tmp_path: Path
+    done: tuple[Path, dict], finished_cup: FinishedRun, tmp_path: Path
 ) -> None:
     """Every stage of a run; the keys stay as without a model."""
     model = done[0] / "extended_model.toml"
