@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Literal
+
 from hypothesis import strategies as st
 
 Segments = list[tuple[float, float, float]]
@@ -15,38 +18,74 @@ def share(low: float, high: float) -> st.SearchStrategy[float]:
     return st.one_of(st.sampled_from([low, high]), st.floats(low, min(high, 0.95)))
 
 
-@st.composite
-def cups(draw: st.DrawFn) -> dict[str, str]:
-    """Cups over the whole range of proportions, fillets and holes up to what fits and beyond."""
+@dataclass(frozen=True)
+class Tube:
+    """What cups and hats have in common, in mm."""
+
+    radius: float
+    """Inner."""
+    length: float
+    wall: float
+    ring: float
+    """Thickness of the toothed ring."""
+    width: float
+    offset: float
+    diaphragm: float
+
+    @property
+    def below(self) -> float:
+        """From z = 0 to the ring."""
+        return self.length - self.offset - self.width
+
+    @property
+    def values(self) -> dict[str, float]:
+        return {
+            "inner_diameter_mm": 2 * self.radius,
+            "wall_thickness_mm": self.wall,
+            "ring_thickness_mm": self.ring,
+            "length_mm": self.length,
+            "ring_width_mm": self.width,
+            "ring_offset_mm": self.offset,
+            "diaphragm_thickness_mm": self.diaphragm,
+        }
+
+
+def tube(draw: st.DrawFn, kind: Literal["cup", "hat"]) -> Tube:
+    """A cup's diaphragm lies below the seat, inside; a hat's below the ring's shoulder, outside."""
     ri, length = draw(st.floats(5, 60)), draw(st.floats(5, 80))
     wall = ri * draw(st.floats(0.005, 0.15))
     ring = wall * draw(st.one_of(st.just(1.0), st.floats(1, 3)))
     h = length * draw(st.floats(0.005, 0.3))
-    room = min(length - h, length - ring + wall)
+    shoulder = ring - wall
+    room = length - (max(h, shoulder) if kind == "cup" else h + shoulder)
     width = room * draw(share(0.05, 0.9))
     offset = (room - width) * draw(st.one_of(st.just(0.0), st.floats(0, 0.9)))
-    below = length - offset - width
-    boss = ri * draw(st.floats(0.2, 0.95))
+    return Tube(ri, length, wall, ring, width, offset, h)
+
+
+def thicker(draw: st.DrawFn, tube: Tube) -> float:
+    """Of a boss or flange: from the diaphragm's thickness to nearly the whole length."""
+    more = draw(st.one_of(st.just(0.0), st.floats(0, 0.9)))
+    return tube.diaphragm + (tube.length - tube.diaphragm) * more
+
+
+@st.composite
+def cups(draw: st.DrawFn) -> dict[str, str]:
+    """Cups over the whole range of proportions, fillets and holes up to what fits and beyond."""
+    t = tube(draw, "cup")
+    boss = t.radius * draw(st.floats(0.2, 0.95))
     bore = boss * draw(st.one_of(st.just(0.0), st.floats(0.05, 0.9)))
     hole = (boss - bore) * draw(st.floats(0.05, 0.9))
-    circle = boss + bore + draw(st.floats(-0.5, 0.5)) * (boss - bore - hole)
-    inner_fillet = min(ri - boss, below - h) * draw(share(0, 1))
-    outer_fillet = min(ri + wall - boss, below - ring + wall) * draw(share(0, 1))
-    values = {
-        "inner_diameter_mm": 2 * ri,
-        "wall_thickness_mm": wall,
-        "ring_thickness_mm": ring,
-        "length_mm": length,
-        "ring_width_mm": width,
-        "ring_offset_mm": offset,
-        "diaphragm_thickness_mm": h,
+    inside = min(t.radius - boss, t.below - t.diaphragm)
+    outside = min(t.radius + t.wall - boss, t.below - t.ring + t.wall)
+    values = t.values | {
         "boss_diameter_mm": 2 * boss,
-        "boss_thickness_mm": h + (length - h) * draw(st.one_of(st.just(0.0), st.floats(0, 0.9))),
+        "boss_thickness_mm": thicker(draw, t),
         "bore_diameter_mm": 2 * bore,
-        "inner_fillet_mm": inner_fillet,
-        "outer_fillet_mm": outer_fillet,
+        "inner_fillet_mm": inside * draw(share(0, 1)),
+        "outer_fillet_mm": outside * draw(share(0, 1)),
         "bolt_count": draw(st.integers(0, 8)),
-        "bolt_circle_diameter_mm": circle,
+        "bolt_circle_diameter_mm": boss + bore + draw(st.floats(-0.5, 0.5)) * (boss - bore - hole),
         "bolt_hole_diameter_mm": hole,
     }
     return {f"flexspline.{k}": repr(v) for k, v in values.items()}
@@ -55,30 +94,18 @@ def cups(draw: st.DrawFn) -> dict[str, str]:
 @st.composite
 def hats(draw: st.DrawFn) -> dict[str, str]:
     """Hats over the whole range of proportions, fillets and holes up to what fits and beyond."""
-    ri, length = draw(st.floats(5, 60)), draw(st.floats(5, 80))
-    wall = ri * draw(st.floats(0.005, 0.15))
-    ring = wall * draw(st.one_of(st.just(1.0), st.floats(1, 3)))
-    h = length * draw(st.floats(0.005, 0.3))
-    room = min(length, length - ring + wall - h)
-    width = room * draw(share(0.05, 0.9))
-    offset = (room - width) * draw(st.one_of(st.just(0.0), st.floats(0, 0.9)))
-    below = length - offset - width
-    inner = (ri + wall) * draw(st.floats(1.02, 2))
+    t = tube(draw, "hat")
+    wall = t.radius + t.wall
+    inner = wall * draw(st.floats(1.02, 2))
     outer = inner * draw(st.floats(1.05, 2))
     hole = (outer - inner) * draw(st.floats(0.05, 0.9))
-    values = {
-        "inner_diameter_mm": 2 * ri,
-        "wall_thickness_mm": wall,
-        "ring_thickness_mm": ring,
-        "length_mm": length,
-        "ring_width_mm": width,
-        "ring_offset_mm": offset,
-        "diaphragm_thickness_mm": h,
+    values = t.values | {
         "flange_outer_diameter_mm": 2 * outer,
         "flange_inner_diameter_mm": 2 * inner,
-        "flange_thickness_mm": h + (length - h) * draw(st.one_of(st.just(0.0), st.floats(0, 0.9))),
-        "inner_fillet_mm": min(inner - ri - wall, below - ring + wall - h) * draw(share(0, 1)),
-        "outer_fillet_mm": min(inner - ri, below) * draw(share(0, 1)),
+        "flange_thickness_mm": thicker(draw, t),
+        "inner_fillet_mm": min(inner - wall, t.below - t.ring + t.wall - t.diaphragm)
+        * draw(share(0, 1)),
+        "outer_fillet_mm": min(inner - t.radius, t.below) * draw(share(0, 1)),
         "bolt_count": draw(st.integers(0, 8)),
         "bolt_circle_diameter_mm": inner
         + outer
