@@ -57,10 +57,11 @@ def pool(workers: int, scheduler: str) -> Iterator[WorkerPool]:
         yield here
 
 
-def plain(folder: Path) -> Path:
-    """The example without holes, a body of revolution, written to `folder`."""
+def plain(folder: Path, tolerance_pct: float = 5.0) -> Path:
+    """The example without holes, a body of revolution, written to `folder`; solved in a second."""
     path = folder / "plain.toml"
-    path.write_text(CUP.read_text(encoding="utf-8").replace("bolt_count = 6", "bolt_count = 0"))
+    text = CUP.read_text(encoding="utf-8").replace("bolt_count = 6", "bolt_count = 0")
+    path.write_text(f"{text}\n[solver]\ntolerance_pct = {tolerance_pct}\n", encoding="utf-8")
     return path
 
 

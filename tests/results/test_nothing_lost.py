@@ -33,13 +33,13 @@ PEAK = "wave_generator_peak_mises_MPa"
 
 @pytest.fixture
 def revolved(tmp_path: Path) -> Path:
-    """The hole-free cup on a shaft without its keyway, to 2 %: everything on the meridian."""
+    """The hole-free cup on a shaft without its keyway, to 5 %: everything on the meridian."""
     text = EXAMPLE.read_text(encoding="utf-8")
     before, _, rest = text.partition("[shaft.keyway]")
     _, _, after = rest.partition("[material.flexspline]")
     path = tmp_path / "revolved.toml"
     path.write_text(
-        f"{before}[material.flexspline]{after}\n[solver]\ntolerance_pct = 2.0\n", encoding="utf-8"
+        f"{before}[material.flexspline]{after}\n[solver]\ntolerance_pct = 5.0\n", encoding="utf-8"
     )
     return path
 
@@ -115,7 +115,7 @@ def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):
     for module in ("torsion", "lobes"):
         monkeypatch.setattr(f"flexspline.fea.axisymmetric.{module}.MOST_TRIANGLES", 10)
     text = revolved.read_text(encoding="utf-8")
-    revolved.write_text(text.replace("pct = 2.0", "pct = 1.0"), encoding="utf-8")
+    revolved.write_text(text.replace("pct = 5.0", "pct = 1.0"), encoding="utf-8")
     answer = asked("stiffness", revolved)
     assert answer.status == 0
     low, high = answer.record["K_b_bounds_Nm_per_rad"]
