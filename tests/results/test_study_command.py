@@ -150,3 +150,7 @@ def test_sensitivity_prints_its_table_as_json(tmp_path: Path) -> None:
     said = json.loads(done.stdout)
     assert said == json.loads((tmp_path / "sensitivity.json").read_text())
     assert {"key", "value_mm", "figure", "adjoint_Nm_per_rad_per_mm"} <= set(said["sensitivity"][0])
+    assert [s for s in said["sensitivity"] if not s.get("agree")] == []
+    for figure in ("K_b_Nm_per_rad", "K_e_Nm_per_rad"):  # Euler, as in test_sensitivity.py
+        own = [s["pct_per_pct"] for s in said["sensitivity"] if s["figure"] == figure]
+        assert sum(own) == pytest.approx(3.0, abs=0.01)
