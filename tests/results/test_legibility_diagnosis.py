@@ -57,10 +57,14 @@ def end_points(path, units):
 
 
 def specimens(path, names, keys):
+    """Of four designs in turn, over the whole range: each design is a set of solves."""
     rng = np.random.default_rng(1)
     lines = [",".join(("specimen", "part", *keys, "stiffness_Nm_per_rad"))]
     for i, name in enumerate(names):
-        values = [f"{nominal + step * i:g}" for nominal, step in keys.values()]
+        values = [
+            f"{nominal + step * (i % 4) * (len(names) - 1) / 3:g}"
+            for nominal, step in keys.values()
+        ]
         K = 0.8 * 31329 * (1 + 0.01 * rng.normal())
         lines.append(",".join((name, "flexspline", *values, f"{K:.0f}")))
     path.write_text("\n".join(lines) + "\n")
