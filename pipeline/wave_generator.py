@@ -7,8 +7,9 @@ from math import dist, hypot, radians
 from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.fea.solid.cases import Model, ellipse
+from flexspline.fea.solid.cases import ellipse
 from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.solid.unfold import unfolded

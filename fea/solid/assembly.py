@@ -13,8 +13,9 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
 
-from flexspline.fea.solid.elements import basis_of, quadratic_mesh
-from flexspline.fea.types import Elastic, TetMesh
+from flexspline.fea.solid.elements import basis_of
+from flexspline.fea.solid.space import SolidSpace
+from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import SAME
 
 CHUNK = 20_000
@@ -56,10 +57,10 @@ class NodeFrames:
         return np.einsum("nab,nb->na", self.axes, u)
 
 
-def stiffness_matrix(mesh: TetMesh, material: Elastic, frames: NodeFrames) -> csr_matrix:
+def stiffness_matrix(space: SolidSpace, material: Elastic, frames: NodeFrames) -> csr_matrix:
     """Symmetric matrix (3n, 3n) N/mm; unknown 3·node + component."""
-    n = len(mesh.nodes)
-    pairs, d = _derivatives(mesh)
+    n = len(space.node)
+    pairs, d = _derivatives(space)
     row, column = pairs // n, pairs % n
     blocks = np.empty((3, 3, len(pairs)))
     trace = material.mu * (d[0, 0] + d[1, 1] + d[2, 2])
@@ -73,21 +74,20 @@ def stiffness_matrix(mesh: TetMesh, material: Elastic, frames: NodeFrames) -> cs
     return bsr_matrix((data, column, starts), shape=(3 * n, 3 * n)).tocsr()
 
 
-def _derivatives(mesh: TetMesh) -> tuple[np.ndarray, dict[tuple[int, int], np.ndarray]]:
+def _derivatives(space: SolidSpace) -> tuple[np.ndarray, dict[tuple[int, int], np.ndarray]]:
     """Pairs of nodes (p,) that share an element, row·n + column rising, and D_ij (p,) for each.
 
     All forms have this one pattern, so the elements' entries find their places once.
     """
-    n, m = len(mesh.nodes), len(mesh.cells)
+    n, m = len(space.node), len(space.cells)
     # as scikit-fem's element matrices: trial function (column), test function (row), element
-    numbers = mesh.cells.T[None] * n + mesh.cells.T[:, None]
+    numbers = space.cells.T[None] * n + space.cells.T[:, None]
     pairs, place = np.unique(numbers, return_inverse=True)
     place = place.reshape(numbers.shape)
-    curved = quadratic_mesh(mesh.nodes, mesh.cells)
     d = {ij: np.zeros(len(pairs)) for ij in FORMS}
     for start in range(0, m, CHUNK):
         part = np.arange(start, min(start + CHUNK, m))
-        basis, where = basis_of(curved, elements=part), place[..., part].ravel()
+        basis, where = basis_of(space.curved, elements=part), place[..., part].ravel()
         for ij, form in FORMS.items():
             d[ij] += np.bincount(where, form.elemental(basis).data, len(pairs))
     opposite = np.empty(len(pairs), int)

@@ -1,7 +1,4 @@
-"""Load cases of a solid model: what is held, what is driven, what is loaded, and the stiffness of it.
-
-All constraints are on cylindrical components (radial, tangential, axial) of nodes.
-"""
+"""Load cases of a solid model: what is held, what is driven, what is loaded, and the stiffness of it."""
 
 from __future__ import annotations
 
@@ -9,19 +6,15 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
-from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.errors import SolveError
-from flexspline.fea.solid.memory import SolverKind, check_before_assembly
-from flexspline.fea.solid.solver import Solution, solve
-from flexspline.fea.solid.twolevel import corner_interpolation
-from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
-from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.fea.solid.memory import SolverKind
+from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
+from flexspline.fea.solid.solver import Solution
+from flexspline.fea.types import NMM_PER_NM, TetMesh
 
-RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
 BALANCE_LIMIT = 1e-6
 """Energy and reaction give the same K to this; measured 1e-12 to 1e-10."""
 
@@ -42,75 +35,6 @@ class Solved:
     solver: SolverKind
 
 
-@dataclass(frozen=True)
-class Model:
-    """A mesh with its assembled stiffness matrix, shared by all load cases on it."""
-
-    mesh: TetMesh
-    material: Elastic
-    frames: NodeFrames
-    matrix: csr_matrix
-    solve_by: SolverKind | None = None
-    """How to solve; by unknowns and memory when absent."""
-
-    @classmethod
-    def of(cls, mesh: TetMesh, material: Elastic) -> Model:
-        """Assemble. Raises MemoryShortError, before, where that or the solve would not fit."""
-        check_before_assembly(3 * len(mesh.nodes))
-        frames = NodeFrames.cylindrical(mesh.nodes)
-        return cls(mesh, material, frames, stiffness_matrix(mesh, material, frames))
-
-    @property
-    def copies(self) -> float:
-        return 360.0 / self.mesh.sector_deg
-
-
-class Supports:
-    """Prescribed components; what is set later wins."""
-
-    def __init__(self, model: Model) -> None:
-        n = len(model.mesh.nodes)
-        self._mask = np.zeros((n, 3), bool)
-        self._value = np.zeros((n, 3))
-        self._model = model
-
-    def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
-        self._mask[nodes, component] = True
-        self._value[nodes, component] = value
-
-    def symmetry(self, antisymmetric: bool) -> None:
-        mesh = self._model.mesh
-        for patch in (SYMMETRY_START, SYMMETRY_END):
-            nodes = mesh.nodes_on(patch)
-            if antisymmetric:
-                self.set(nodes, RADIAL)
-                self.set(nodes, AXIAL)
-                # the axis lies in both planes: what is normal to one lies in the other
-                self.set(nodes[self._model.frames.radius[nodes] == 0], TANGENTIAL)
-            else:
-                self.set(nodes, TANGENTIAL)
-                axis = nodes[self._model.frames.radius[nodes] == 0]
-                if mesh.sector_deg != 180:
-                    self.set(axis, RADIAL)
-
-    def hold(self, patch: str) -> None:
-        nodes = self._model.mesh.nodes_on(patch)
-        for component in (RADIAL, TANGENTIAL, AXIAL):
-            self.set(nodes, component)
-
-    def solve(self, load: np.ndarray) -> Solution:
-        fixed = np.flatnonzero(self._mask.ravel())
-        model = self._model
-        return solve(
-            model.matrix,
-            load,
-            fixed,
-            self._value.ravel()[fixed],
-            lambda: corner_interpolation(model.mesh, model.frames),
-            model.solve_by,
-        )
-
-
 def torsion(model: Model, driven: str) -> Solved:
     """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
 
@@ -120,7 +44,7 @@ def torsion(model: Model, driven: str) -> Solved:
     """
     supports = Supports(model)
     supports.symmetry(antisymmetric=True)
-    nodes = model.mesh.nodes_on(driven)
+    nodes = model.on(driven)
     for component in (RADIAL, AXIAL):
         supports.set(nodes, component)
     supports.set(nodes, TANGENTIAL, model.frames.radius[nodes])
@@ -128,7 +52,7 @@ def torsion(model: Model, driven: str) -> Solved:
     solution = supports.solve(np.zeros(model.matrix.shape[0]))
     twice_energy = solution.unknowns @ (model.matrix @ solution.unknowns)
     torque = solution.reactions[3 * nodes + TANGENTIAL] @ model.frames.radius[nodes]
-    held = model.mesh.nodes_on("mount")
+    held = model.on("mount")
     opposite = solution.reactions[3 * held + TANGENTIAL] @ model.frames.radius[held]
     for other in (twice_energy, -opposite):
         if abs(other / torque - 1) > BALANCE_LIMIT:
@@ -148,7 +72,7 @@ def lobes(model: Model, supported: bool) -> Solved:
     supports = Supports(model)
     supports.symmetry(antisymmetric=True)
     if supported:
-        supports.set(model.mesh.nodes_on("seat"), RADIAL)
+        supports.set(model.on("seat"), RADIAL)
     supports.hold("mount")
     load, torque = _lobe_load(model)
     load *= NMM_PER_NM / (torque * model.copies)
@@ -178,7 +102,7 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
     """`mount` held, `seat` given the radial displacement w0·cos 2φ, its other components free."""
     supports = Supports(model)
     supports.symmetry(antisymmetric=False)
-    nodes = model.mesh.nodes_on("seat")
+    nodes = model.on("seat")
     phi = np.arctan2(model.mesh.nodes[nodes, 1], model.mesh.nodes[nodes, 0])
     supports.set(nodes, RADIAL, w0_mm * np.cos(2 * phi))
     supports.hold("mount")

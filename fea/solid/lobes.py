@@ -18,8 +18,9 @@ from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.torsion import bulk
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
-from flexspline.fea.solid.cases import Model, lobes
+from flexspline.fea.solid.cases import lobes
 from flexspline.fea.solid.column import INTERFACE
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import EFFICIENCY, level_of
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_matrix
+from skfem import condense
 
 from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import SolveError
@@ -58,10 +59,7 @@ def solve(
     u[fixed] = values
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed, assume_unique=True)
     how = by or choose_solver(len(free), matrix.nnz, corners is not None)
-    rows = matrix[free]
-    right = load[free] - rows @ u
-    inner = rows[:, free].tocsr()
-    del rows  # as large as the matrix
+    inner, right = condense(matrix, load, x=u, I=free, expand=False)
     error_energy = 0.0
     if how == "iterative" and corners is not None:
         u[free], error_energy = iterate(inner, right, free, corners())

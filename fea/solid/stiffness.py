@@ -17,8 +17,9 @@ import numpy as np
 
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
-from flexspline.fea.solid.cases import Model, Solved, torsion
+from flexspline.fea.solid.cases import Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh

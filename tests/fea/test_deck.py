@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
-from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import NODES
 from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.model import Model
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of

@@ -9,8 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
-from flexspline.fea.solid.cases import Model, Supports
+from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.elements import (
     basis_of,
     facet_points,
@@ -18,6 +17,7 @@ from flexspline.fea.solid.elements import (
     reference_values,
     tet_rule,
 )
+from flexspline.fea.solid.model import Model, Supports
 from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
@@ -33,7 +33,7 @@ def cartesian_model(mesh: TetMesh, material: Elastic) -> Model:
     """A model whose supports hold x, y, z components."""
     n = len(mesh.nodes)
     frames = NodeFrames(np.tile(np.eye(3), (n, 1, 1)), np.zeros(n))
-    return Model(mesh, material, frames, stiffness_matrix(mesh, material, frames))
+    return Model.in_frames(mesh, material, frames)
 
 
 def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:

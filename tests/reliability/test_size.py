@@ -24,7 +24,8 @@ KEYED = bases.EXAMPLES / "keyed-shaft.toml"
 SOLVE = """
 import json, resource, sys, time
 from dataclasses import replace
-from flexspline.fea.solid.cases import Model, torsion
+from flexspline.fea.solid.cases import torsion
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import MemoryShortError
 from flexspline.fea.solid.sizing import Grading

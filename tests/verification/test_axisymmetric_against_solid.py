@@ -16,9 +16,10 @@ import pytest
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.fea.solid.cases import Model, ellipse, lobes
+from flexspline.fea.solid.cases import ellipse, lobes
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error

@@ -21,7 +21,7 @@ from cartesian import (
 )
 from elliptic_plate import POINT_D, quarter
 
-from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.model import Supports
 from flexspline.fea.solid.stress import nodal_stress
 from flexspline.fea.types import Elastic
 

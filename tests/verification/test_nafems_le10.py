@@ -11,7 +11,7 @@ import pytest
 from cartesian import X, Y, Z, cartesian_model, displacement, surface_load
 from elliptic_plate import POINT_D, quarter
 
-from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.model import Supports
 from flexspline.fea.solid.stress import nodal_stress
 from flexspline.fea.types import Elastic
 

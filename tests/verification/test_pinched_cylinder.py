@@ -15,7 +15,7 @@ from cartesian import X, Y, Z, at, cartesian_model, displacement, surface_load, 
 from scipy.optimize import brentq
 from structured import bent_box, from_cylindrical
 
-from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.model import Supports
 from flexspline.fea.types import Elastic
 
 RADIUS, LENGTH, THICKNESS = 300.0, 600.0, 3.0

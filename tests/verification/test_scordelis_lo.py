@@ -15,7 +15,7 @@ import pytest
 from cartesian import X, Y, Z, at, body_load, cartesian_model, displacement, through_thickness
 from structured import bent_box, from_cylindrical
 
-from flexspline.fea.solid.cases import Supports
+from flexspline.fea.solid.model import Supports
 from flexspline.fea.types import Elastic
 
 RADIUS, LENGTH, THICKNESS, WEIGHT = 25.0, 50.0, 0.25, 90.0

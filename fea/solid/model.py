@@ -1,0 +1,98 @@
+"""A solid model and its supports: prescribed cylindrical components (radial, tangential, axial) of nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
+from flexspline.fea.solid.memory import SolverKind, check_before_assembly
+from flexspline.fea.solid.solver import Solution, solve
+from flexspline.fea.solid.space import SolidSpace
+from flexspline.fea.solid.twolevel import corner_interpolation
+from flexspline.fea.types import Elastic, TetMesh
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+
+RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Model:
+    """A mesh with its assembled stiffness matrix, shared by all load cases on it."""
+
+    mesh: TetMesh
+    material: Elastic
+    frames: NodeFrames
+    matrix: csr_matrix
+    space: SolidSpace
+    """Its patches as scikit-fem's boundaries."""
+    solve_by: SolverKind | None = None
+    """How to solve; by unknowns and memory when absent."""
+
+    @classmethod
+    def of(cls, mesh: TetMesh, material: Elastic) -> Model:
+        """Assemble. Raises MemoryShortError, before, where that or the solve would not fit."""
+        check_before_assembly(3 * len(mesh.nodes))
+        return cls.in_frames(mesh, material, NodeFrames.cylindrical(mesh.nodes))
+
+    @classmethod
+    def in_frames(cls, mesh: TetMesh, material: Elastic, frames: NodeFrames) -> Model:
+        """Assemble with components along the axes given at each node."""
+        space = SolidSpace.of(mesh)
+        return cls(mesh, material, frames, stiffness_matrix(space, material, frames), space)
+
+    def on(self, patch: str) -> np.ndarray:
+        """Sorted nodes on a patch, its edges included."""
+        return self.space.on(patch)
+
+    @property
+    def copies(self) -> float:
+        return 360.0 / self.mesh.sector_deg
+
+
+class Supports:
+    """Prescribed components; what is set later wins."""
+
+    def __init__(self, model: Model) -> None:
+        n = len(model.mesh.nodes)
+        self._mask = np.zeros((n, 3), bool)
+        self._value = np.zeros((n, 3))
+        self._model = model
+
+    def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
+        self._mask[nodes, component] = True
+        self._value[nodes, component] = value
+
+    def symmetry(self, antisymmetric: bool) -> None:
+        mesh = self._model.mesh
+        for patch in (SYMMETRY_START, SYMMETRY_END):
+            nodes = self._model.on(patch)
+            if antisymmetric:
+                self.set(nodes, RADIAL)
+                self.set(nodes, AXIAL)
+                # the axis lies in both planes: what is normal to one lies in the other
+                self.set(nodes[self._model.frames.radius[nodes] == 0], TANGENTIAL)
+            else:
+                self.set(nodes, TANGENTIAL)
+                axis = nodes[self._model.frames.radius[nodes] == 0]
+                if mesh.sector_deg != 180:
+                    self.set(axis, RADIAL)
+
+    def hold(self, patch: str) -> None:
+        nodes = self._model.on(patch)
+        for component in (RADIAL, TANGENTIAL, AXIAL):
+            self.set(nodes, component)
+
+    def solve(self, load: np.ndarray) -> Solution:
+        fixed = np.flatnonzero(self._mask.ravel())
+        model = self._model
+        return solve(
+            model.matrix,
+            load,
+            fixed,
+            self._value.ravel()[fixed],
+            lambda: corner_interpolation(model.mesh, model.frames),
+            model.solve_by,
+        )

@@ -1,0 +1,60 @@
+"""A solid mesh as scikit-fem has it: quadratic, its patches as named boundaries, and its numbers.
+
+`TetMesh` numbers middle nodes as its maker did (an unfolded sector copy by copy, a test's brick by bricks),
+scikit-fem by its own edges. Here, and nowhere else, one is turned into the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexspline.fea.solid.elements import quadratic_mesh
+from flexspline.fea.types import TetMesh
+
+
+@dataclass(frozen=True)
+class SolidSpace:
+    """P2 fields on a sector.
+
+    Attributes
+    ----------
+    curved : scikit-fem's MeshTet2; patches that have facets are its boundaries.
+    cells : (m, 10) the mesh's. node : (n,) the mesh's node of each of scikit-fem's numbers.
+    """
+
+    curved: Any
+    cells: np.ndarray
+    node: np.ndarray
+
+    @classmethod
+    def of(cls, mesh: TetMesh) -> SolidSpace:
+        curved = quadratic_mesh(mesh.nodes, mesh.cells)
+        facets = _facet_numbers(curved, mesh)
+        named = {p: facets[mesh.facet_patch == i] for i, p in enumerate(mesh.patches) if p}
+        curved = curved.with_boundaries({p: mine for p, mine in named.items() if len(mine)})
+        node = np.empty(len(mesh.nodes), int)
+        node[curved.dofs.element_dofs.T] = mesh.cells
+        return cls(curved, mesh.cells, node)
+
+    def on(self, patch: str) -> np.ndarray:
+        """Sorted nodes on a patch, its edges included; none where the part has no such patch."""
+        boundaries = self.curved.boundaries or {}
+        if patch not in boundaries:
+            return np.empty(0, int)
+        return np.sort(self.node[self.curved.dofs.get_facet_dofs(boundaries[patch]).flatten()])
+
+
+def _facet_numbers(curved: Any, mesh: TetMesh) -> np.ndarray:
+    """scikit-fem's number (k,) of each facet; its own are in rising order of their corners."""
+    n = int(mesh.cells[:, :4].max()) + 1
+    theirs, ours = (
+        (corners[0] * n + corners[1]) * n + corners[2]
+        for corners in (
+            curved.facets.astype(np.int64),
+            np.sort(mesh.facets[:, :3], axis=1).T.astype(np.int64),
+        )
+    )
+    return np.searchsorted(theirs, ours)
