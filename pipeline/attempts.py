@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.enclosure import NestingError
 
 T = TypeVar("T")
 
@@ -17,9 +18,14 @@ class Attempts:
         self.missing: dict[str, str] = {}
 
     def get(self, name: str, make: Callable[[], T]) -> T | None:
-        """The figure, or None where its computation failed; bugs and wrong designs pass through."""
+        """The figure, or None where its computation failed; bugs and wrong designs pass through.
+
+        So does a NestingError: one of two models is wrong, and no figure of either is to be trusted.
+        """
         try:
             return make()
+        except NestingError:
+            raise
         except ComputationError as fault:
             self.missing[name] = str(fault)
         except MemoryError as fault:

@@ -7,11 +7,15 @@ case (`geometry.nested` says which bodies; docs/theory.md proves it).
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
+
+SLACK = 1e-4
+"""Of K: what parabolas for arcs may do to a solid model, ten times what was measured (`fea.solid.swept`)."""
 
 
 class NestingError(ComputationError):
@@ -47,24 +51,88 @@ def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
 
 
 def between(cut: Stiffness, whole: Stiffness) -> Stiffness:
-    """The enclosure by two solved bodies; K is its middle. Raises NestingError."""
+    """The enclosure by two solved bodies; K is its middle.
+
+    Ends that are estimates may cross where holes take off less than the estimates are wrong by: then the
+    bounds go from the one to the other.
+
+    Raises
+    ------
+    NestingError : ends that are theorems cross.
+    """
     lower, upper = cut.lower_Nm_per_rad, whole.upper_Nm_per_rad
-    if lower > upper:
+    guaranteed = cut.guaranteed and whole.guaranteed
+    if lower > upper and guaranteed:
         raise NestingError("the part with the ring of its holes cut out", lower,
                            "the part without holes", upper)  # fmt: skip
-    gap = (whole.K_Nm_per_rad - cut.K_Nm_per_rad) / whole.K_Nm_per_rad
+    gap = max(0.0, 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad)
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
-        lower_Nm_per_rad=lower,
-        upper_Nm_per_rad=upper,
-        guaranteed=cut.guaranteed and whole.guaranteed,
+        lower_Nm_per_rad=min(lower, upper),
+        upper_Nm_per_rad=max(lower, upper),
+        guaranteed=guaranteed,
         model="axisymmetric",
         symmetry="two bodies of revolution",
         method=(
-            "between the part without holes and the part with the ring of its holes cut out (less material "
-            f"is never stiffer), {gap:.2%} apart; of both: {whole.method}"
+            "from the part with the ring of its holes cut out to the part without holes (less material is "
+            f"never stiffer), whose K are {gap:.2%} apart; of each: {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
         shortfall=cut.shortfall or whole.shortfall,
+    )
+
+
+def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Stiffness:
+    """K of the solid model where its enclosure says more, or less, than its own estimate.
+
+    Where half of the enclosure is within `tolerance`·K, or it is the narrower of the two, its ends are the
+    bounds; else each end is the better of both. K is the solid's, moved into the bounds; the middle of
+    the enclosure where that is known better.
+
+    Raises
+    ------
+    NestingError : the two have nothing in common.
+    """
+    check_against(solid, enclosure)
+    half = solid.half_width
+    narrow = enclosure.half_width <= max(tolerance, half)
+    if narrow:
+        lower, upper = enclosure.bounds_Nm_per_rad
+    else:
+        lower = max(solid.lower_Nm_per_rad, enclosure.lower_Nm_per_rad)
+        upper = min(solid.upper_Nm_per_rad, enclosure.upper_Nm_per_rad)
+        lower, upper = min(lower, upper), max(lower, upper)  # apart by rounding, or by SLACK
+    if half <= enclosure.half_width:
+        K, how = solid, f"the solid model's, within its bounds: {solid.method}"
+    else:
+        K, how = enclosure, f"the middle of its bounds, which the solid model knows to ± {half:.2%}"
+    return replace(
+        solid,
+        K_Nm_per_rad=min(max(K.K_Nm_per_rad, lower), upper),
+        lower_Nm_per_rad=lower,
+        upper_Nm_per_rad=upper,
+        guaranteed=narrow and enclosure.guaranteed,
+        method=f"K is {how}; bounds {enclosure.method}",
+        shortfall="" if enclosure.half_width <= tolerance else solid.shortfall,
+    )
+
+
+def check_against(solid: Stiffness, enclosure: Stiffness) -> None:
+    """Raise NestingError where the solid model's bounds and the enclosure have nothing in common."""
+    if overlap(solid, enclosure):
+        return
+    if solid.lower_Nm_per_rad > enclosure.upper_Nm_per_rad:
+        raise NestingError("the solid model", solid.lower_Nm_per_rad,
+                           "the part without holes", enclosure.upper_Nm_per_rad)  # fmt: skip
+    raise NestingError("the part with the ring of its holes cut out", enclosure.lower_Nm_per_rad,
+                       "the solid model", solid.upper_Nm_per_rad)  # fmt: skip
+
+
+def overlap(solid: Stiffness, enclosure: Stiffness) -> bool:
+    """Whether both may be true."""
+    slack = SLACK * enclosure.K_Nm_per_rad
+    return (
+        solid.lower_Nm_per_rad <= enclosure.upper_Nm_per_rad + slack
+        and solid.upper_Nm_per_rad >= enclosure.lower_Nm_per_rad - slack
     )

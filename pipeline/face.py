@@ -56,7 +56,7 @@ def stiffness(
     Raises
     ------
     DesignError : no such part or case, or the design asks for a model that the part does not allow.
-    ComputationError : no mesh or no solution; lift-off asked of a part with bolt holes.
+    ComputationError : no mesh or no solution; lift-off asked of the solid model.
 
     Examples
     --------

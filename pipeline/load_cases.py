@@ -16,6 +16,13 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.enclosed_part import (
+    enclosure_if_any,
+    enclosure_of,
+    may_answer,
+    tolerance_of,
+)
+from flexspline.pipeline.enclosure import held_within
 from flexspline.pipeline.parts import PartModel, is_lasting
 from flexspline.pipeline.solid_lobes import solid_lobes
 from flexspline.pipeline.wave_generator import solid_ellipse
@@ -36,7 +43,7 @@ STRESS_TOLERANCE = 0.005
 class LoadCase:
     """How one load case of the rim is solved, and what it is called while it is.
 
-    `solid` is None where only bodies of revolution are solved.
+    `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part.
     """
 
     title: str
@@ -48,7 +55,7 @@ class LoadCase:
 class RimAnswers:
     """K_b of the lobe cases by the name of its figure, and the peak stress on the ellipse; None: not found.
 
-    `K_b_lobes_contact` (the seat may lift off) is absent where only the solid model applies: lift-off
+    `K_b_lobes_contact` (the seat may lift off) is absent where the solid model is asked for: lift-off
     breaks the symmetry that makes that model small.
     """
 
@@ -59,11 +66,12 @@ class RimAnswers:
 def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
     revolved = flexspline.axisymmetric
+    every = revolved or may_answer(flexspline)
     peak = _revolved_peak if revolved else _solid_peak
     found = {
         f"K_b_{case}": tried.get(f"K_b_{case}", partial(rim_stiffness, flexspline, case))
         for case in RIM_CASES
-        if revolved or CASES[case].solid is not None
+        if every or CASES[case].solid is not None
     }
     return RimAnswers(found, tried.get("wave_generator_peak", lambda: peak(flexspline)))
 
@@ -71,20 +79,43 @@ def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
     """K_b of one lobe case, by the model that the part's stiffness uses.
 
+    A part with bolt holes is answered by two bodies of revolution where they lie within the tolerance.
+
     Raises
     ------
     DesignError
-    ComputationError : the solve failed; or the case is for bodies of revolution and the part is none.
+    ComputationError : the solve failed; or lift-off is asked of the solid model.
     """
     asked = CASES[case]
     if flexspline.axisymmetric:
         return asked.revolved(flexspline)
+    if may_answer(flexspline):
+        return _of_holed(flexspline, asked)
     if asked.solid is None:
         raise ComputationError(
-            f"{asked.title} ({case}) is solved for bodies of revolution only: without bolt holes,"
-            ' and with solver.model = "auto" or "axisymmetric"'
+            f"{asked.title} ({case}) is solved on the meridian only: not with solver.model ="
+            f' "{flexspline.context.design.solver.model}"; "auto" works'
         )
     return asked.solid(flexspline)
+
+
+def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
+    """The enclosure; where it is too wide the solid model's K within it, if there is such a model."""
+    if asked.solid is None:
+        return enclosure_of(flexspline, asked.revolved)
+    enclosure = enclosure_if_any(flexspline, asked.revolved)
+    if enclosure is None:
+        return asked.solid(flexspline)
+    tolerance = tolerance_of(flexspline)
+    if enclosure.half_width <= tolerance:
+        return enclosure
+    try:
+        solid = asked.solid(flexspline)
+    except (ComputationError, MemoryError) as fault:
+        return replace(
+            enclosure, shortfall=f"{enclosure.shortfall}, and the solid model failed: {fault}"
+        )
+    return held_within(solid, enclosure, tolerance)
 
 
 def _solid_peak(flexspline: PartModel) -> StressPeak:

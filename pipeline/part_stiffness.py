@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.drawn_teeth import of_toothed
+from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
+from flexspline.pipeline.enclosure import check_against, held_within, overlap
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 
@@ -36,43 +39,68 @@ class TwistedPart:
 def part_stiffness(model: PartModel) -> Stiffness:
     """K by the design's `solver.model`: axisymmetric where the part allows it, else solid.
 
+    A flexspline with bolt holes lies between two bodies of revolution: the solid model's K is held
+    within them, or, with `solver.model = "solid"`, only checked against them.
+
     Raises
     ------
     DesignError : as `PartModel.axisymmetric` and `PartModel.is_swept`.
+    NestingError : the solid model's K lies outside.
     ComputationError, MemoryError : of the first mesh.
     """
-    if not model.axisymmetric:
-        return twisted_part(model).stiffness
-    found = _revolved_stiffness(model)
+    found = _revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
     return of_toothed(found) if model.toothed else found
 
 
 def _revolved_stiffness(model: PartModel) -> Stiffness:
-    tolerance = model.context.design.solver.tolerance_pct / 100
     part = model.part
 
     def make() -> Stiffness:
         with model.context.progress.stage(f"axisymmetric bounds of the {model.name}"):
             return torsional_stiffness(
-                part.meridian, model.material, part.driven, tolerance, Deadline(STAGE_SECONDS)
+                part.meridian,
+                model.material,
+                part.driven,
+                tolerance_of(model),
+                Deadline(STAGE_SECONDS),
             )
 
     return model.context.cache.get("axisymmetric", model.revolved_key, make, is_lasting)[0]
 
 
+def _solid_stiffness(model: PartModel) -> Stiffness:
+    solid = twisted_part(model).stiffness
+    enclosure = enclosure_if_any(model, _revolved_stiffness)
+    if enclosure is None:
+        return solid
+    if may_answer(model):
+        return held_within(solid, enclosure, tolerance_of(model))
+    check_against(solid, enclosure)
+    return solid
+
+
 def twisted_part(model: PartModel) -> TwistedPart:
-    """The solid model turned by 1 rad, refined until the tolerance is met; errors as `part_stiffness`."""
+    """The solid model turned by 1 rad, refined until the tolerance is met; errors as `part_stiffness`.
+
+    Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
+    """
+    enclosure = enclosure_if_any(model, _revolved_stiffness) if may_answer(model) else None
+    tolerance = tolerance_of(model)
+    one_mesh = model.is_swept and enclosure is not None and enclosure.half_width <= tolerance
 
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
-            return _twisted(model)
+            if one_mesh and enclosure is not None:
+                found = _twisted(model, inf)
+                if overlap(found.stiffness, enclosure):
+                    return found
+            return _twisted(model, tolerance)
 
-    return model.context.cache.get(
-        "torsion", model.torsion_key, make, lambda made: is_lasting(made.stiffness)
-    )[0]
+    key = {**model.torsion_key, "one_mesh": one_mesh}
+    return model.context.cache.get("torsion", key, make, lambda made: is_lasting(made.stiffness))[0]
 
 
-def _twisted(model: PartModel) -> TwistedPart:
+def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
     meshes = PartMeshes(model)
     edges: list[np.ndarray] = []
 
@@ -86,7 +114,7 @@ def _twisted(model: PartModel) -> TwistedPart:
         model.first_spec,
         model.material,
         model.part.driven,
-        model.context.design.solver.tolerance_pct / 100,
+        tolerance,
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
     )

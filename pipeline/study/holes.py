@@ -15,7 +15,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
 from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.part_stiffness import part_stiffness
 
 DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""
@@ -78,7 +78,7 @@ def holes_of(
             f"the {name} of the nominal design with the solid model, for what its holes do to {figure}"
         )
         try:
-            solid = twisted_part(part).stiffness
+            solid = part_stiffness(part)
         except ComputationError as fault:
             say(f"{figure} stays that of the {name} without holes: {fault}")
             continue

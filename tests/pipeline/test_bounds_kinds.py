@@ -1,4 +1,4 @@
-"""Which bounds are theorems, by solving: those of a body of revolution under torsion, and no others."""
+"""Which bounds are theorems, by solving: those of a body of revolution under torsion, or of two."""
 
 from __future__ import annotations
 
@@ -57,15 +57,27 @@ def test_of_a_body_of_revolution_torsion_alone_is_guaranteed(tmp_path: Path) -> 
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("file", ["xb1-40.toml", "hat-25.toml"])
+def test_with_bolt_holes_two_bodies_guarantee_torsion(file: str, tmp_path: Path) -> None:
+    assert kinds(design(file), tmp_path, rim=False, shaft=False) == {"K_b": "guaranteed"}
+
+
 @pytest.mark.parametrize(
     "asked",
     [
-        pytest.param(design("xb1-40.toml"), id="holed cup"),
-        pytest.param(design("hat-25.toml"), id="holed hat"),
-        pytest.param(design("xb1-40.toml", "solid", flexspline__bolt_count=0), id="solid model"),
+        pytest.param(design("xb1-40.toml", "solid"), id="holed cup"),
+        pytest.param(design("xb1-40.toml", "solid", flexspline__bolt_count=0), id="plain cup"),
     ],
 )
-def test_nothing_solid_is_guaranteed(asked: Design, tmp_path: Path) -> None:
+def test_nothing_of_the_solid_model_alone_is_guaranteed(asked: Design, tmp_path: Path) -> None:
+    assert kinds(asked, tmp_path, rim=False, shaft=False) == {"K_b": "estimated"}
+
+
+def test_drawn_teeth_with_bolt_holes_are_an_estimate_too(tmp_path: Path, monkeypatch) -> None:
+    ring = EquivalentRing(0.55, 0.6, 0.58, 0.57, 1e-5, 100)
+    monkeypatch.setattr(parts, "ring_of", lambda *given: ring)
+    asked = toothed("trapezoid", shaft__bolt_count=0)
+    assert asked.flexspline.bolt_count
     assert kinds(asked, tmp_path, rim=False, shaft=False) == {"K_b": "estimated"}
 
 

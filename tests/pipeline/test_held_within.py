@@ -1,0 +1,71 @@
+"""The solid model's K beside the enclosure of the same part: which is believed, and when neither may be."""
+
+from __future__ import annotations
+
+import pytest
+
+from flexspline.fea.types import Stiffness
+from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.enclosure import NestingError, held_within
+
+TOLERANCE = 0.005
+NO_TIME = "the next mesh would end too late"
+
+
+def solid(K: float, half: float, shortfall: str = "") -> Stiffness:
+    return Stiffness(K, K - half, K + half, False, "solid", "1/12", "estimate", (), 1.0, shortfall)
+
+
+def enclosure(low: float, high: float, guaranteed: bool = True) -> Stiffness:
+    K = (low + high) / 2
+    return Stiffness(K, low, high, guaranteed, "axisymmetric", "two bodies", "theorem", ())
+
+
+def test_a_narrow_enclosure_bounds_k() -> None:
+    """Within the tolerance its ends are the bounds, even where the solid model claims narrower ones."""
+    found = held_within(solid(1001.0, 0.5), enclosure(998.0, 1002.0), TOLERANCE)
+    assert (found.K_Nm_per_rad, found.bounds_Nm_per_rad) == (1001.0, (998.0, 1002.0))
+    assert found.guaranteed
+    assert found.model == "solid"
+    assert "theorem" in found.method
+
+
+@pytest.mark.parametrize(("K", "held"), [(1002.2, 1002.0), (997.9, 998.0)])
+def test_k_is_moved_into_the_enclosure(K: float, held: float) -> None:
+    assert held_within(solid(K, 1.0), enclosure(998.0, 1002.0), TOLERANCE).K_Nm_per_rad == held
+
+
+def test_a_coarse_solid_leaves_the_middle() -> None:
+    found = held_within(solid(1001.5, 9.0, NO_TIME), enclosure(998.0, 1002.0), TOLERANCE)
+    assert found.K_Nm_per_rad == 1000.0
+    assert not found.shortfall  # the enclosure meets the tolerance
+
+
+def test_a_wide_enclosure_leaves_each_end_to_the_better() -> None:
+    found = held_within(solid(1008.0, 4.0), enclosure(980.0, 1010.0), TOLERANCE)
+    assert found.bounds_Nm_per_rad == (1004.0, 1010.0)
+    assert found.K_Nm_per_rad == 1008.0
+    assert not found.guaranteed
+
+
+def test_where_both_are_wide_the_narrower_bounds() -> None:
+    found = held_within(solid(1000.0, 60.0, NO_TIME), enclosure(980.0, 1010.0), TOLERANCE)
+    assert found.bounds_Nm_per_rad == (980.0, 1010.0)
+    assert found.guaranteed
+    assert found.shortfall == NO_TIME
+
+
+def test_estimates_do_not_become_theorems() -> None:
+    assert not held_within(
+        solid(1000.0, 9.0), enclosure(998.0, 1002.0, guaranteed=False), TOLERANCE
+    ).guaranteed
+
+
+@pytest.mark.parametrize("K", [900.0, 1100.0])
+def test_a_solid_outside_its_enclosure_stops_the_program(K: float) -> None:
+    """It is no figure that failed, so the other figures are not given beside it."""
+    tried = Attempts()
+    with pytest.raises(NestingError, match="wrong") as caught:
+        tried.get("K_b", lambda: held_within(solid(K, 9.0), enclosure(998.0, 1002.0), TOLERANCE))
+    assert caught.value.softer_Nm_per_rad > caught.value.stiffer_Nm_per_rad
+    assert not tried.missing
