@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, pi, sqrt
+from math import pi
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
@@ -60,16 +60,9 @@ def _keyway(shaft: Shaft) -> float:
     slot = shaft.slot
     if slot is None:
         return 0.0
-    floor, half, left, volume = slot.floor, slot.half_width, slot.length, 0.0
+    left, volume = slot.length, 0.0
     for segment in reversed(shaft.segment):
-        length = min(left, segment.length_mm)
-        radius = segment.outer_diameter_mm / 2
-        if length <= 0:
-            break
+        length = max(0.0, min(left, segment.length_mm))
+        volume += length * slot.section_mm2(segment.outer_diameter_mm / 2)
         left -= length
-        if radius <= floor:
-            continue
-        reach = min(half, sqrt(radius**2 - floor**2))
-        cap = reach * sqrt(radius**2 - reach**2) + radius**2 * asin(reach / radius)
-        volume += length * (cap - 2 * reach * floor)
     return volume

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import asin, cos, pi, sin, sqrt
 from typing import ClassVar, Literal, get_args
 
 from pydantic import Field
@@ -195,6 +195,14 @@ class Slot:
     half_width: float
     start: float
     length: float
+
+    def section_mm2(self, radius: float) -> float:
+        """Area that the slot takes from a disc of this radius [mm]."""
+        if radius <= self.floor:
+            return 0.0
+        reach = min(self.half_width, sqrt(radius**2 - self.floor**2))
+        cap = reach * sqrt(radius**2 - reach**2) + radius**2 * asin(reach / radius)
+        return cap - 2 * reach * self.floor
 
 
 class Shaft(_Bolted):

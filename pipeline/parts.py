@@ -112,7 +112,9 @@ class PartModel:
         able = can_be_swept(self.part)
         if self.mesher == "swept" and not able:
             holes = "bolt holes that no plain column of its meridian holds"
-            why = holes if self.part.keyway is None else "a keyway"
+            why = (
+                holes if self.part.keyway is None else "a keyway over a step or near its outer wall"
+            )
             raise DesignError(
                 "solver.mesher",
                 self.mesher,

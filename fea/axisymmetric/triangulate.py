@@ -23,7 +23,7 @@ from flexspline.fea.axisymmetric.meridian_mesh import (
     edge_middles,
     signed_areas,
 )
-from flexspline.geometry.outline import Meridian
+from flexspline.geometry.outline import SAME, Meridian, Segment
 
 CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""
@@ -41,15 +41,19 @@ TOUCH = 1e-7
 
 
 @lru_cache(maxsize=8)  # both parts, the seat of half the width, and a few before them
-def triangulate(outline: Meridian) -> MeridianMesh:
+def triangulate(outline: Meridian, inner: tuple[Segment, ...] = ()) -> MeridianMesh:
     """Mesh an outline whose corners are not much sharper than 60°. All load cases share it.
+
+    `inner`: a line across the material, straight segments end to end between two vertices of the outline;
+    it is made of edges of the mesh.
 
     Raises
     ------
     MeshingError
         If refinement does not end: the outline crosses itself or has needle corners.
     """
-    points, edges, segment = _first_edges(outline)
+    lines = Meridian((*outline.segments, *inner))
+    points, edges, segment = _first_edges(outline, inner)
     for _ in range(ROUNDS):
         if len(points) > MOST_POINTS:
             break
@@ -58,16 +62,19 @@ def triangulate(outline: Meridian) -> MeridianMesh:
             triangles = _inside(points, edges)
             added, crowded = _improvements(points, edges, triangles)
             if not len(added) and not crowded.any():
-                return _checked(outline, points, triangles, edges, segment)
+                own = segment < len(outline.segments)
+                return _checked(outline, points, triangles, edges[own], segment[own])
             points = np.concatenate([points, added])
-        points, edges, segment = _halved(outline, points, edges, segment, crowded)
+        points, edges, segment = _halved(lines, points, edges, segment, crowded)
     raise MeshingError(
         f"the outline cannot be meshed: still uneven with {len(points)} points, shortest boundary "
         f"edge {_lengths(points, edges).min():.3g} mm; it crosses itself or has needle corners"
     )
 
 
-def _first_edges(outline: Meridian) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _first_edges(
+    outline: Meridian, inner: tuple[Segment, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points, segment = [], []
     for i, s in enumerate(outline.segments):
         n = 1 if s.centre is None else max(2, ceil(abs(s.sweep) / CHORD_ANGLE))
@@ -75,7 +82,23 @@ def _first_edges(outline: Meridian) -> tuple[np.ndarray, np.ndarray, np.ndarray]
         segment += [i] * n
     stacked = np.concatenate(points)
     start = np.arange(len(stacked))
-    return stacked, np.column_stack([start, np.roll(start, -1)]), np.array(segment)
+    edges = np.column_stack([start, np.roll(start, -1)])
+    for i, s in enumerate(inner, len(outline.segments)):
+        stacked, ends = _with_ends(stacked, s)
+        edges = np.vstack([edges, ends])
+        segment.append(i)
+    return stacked, edges, np.array(segment)
+
+
+def _with_ends(points: np.ndarray, s: Segment) -> tuple[np.ndarray, list[int]]:
+    """Points (n, 2) with a segment's ends among them, and the numbers of these."""
+    ends = []
+    for end in (s.start, s.end):
+        away = np.hypot(*(points - np.array(end)).T)
+        if away.min() > SAME:
+            points, away = np.vstack([points, end]), np.append(away, 0.0)
+        ends.append(int(away.argmin()))
+    return points, ends
 
 
 def _lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -91,6 +91,30 @@ def _filled_hole(plan: MeridianMesh, column: Column) -> tuple[np.ndarray, np.nda
     return np.vstack([*points, centre]), np.vstack(triangles)
 
 
+def mirrored(angles: np.ndarray, wedge: float, k: int) -> np.ndarray:
+    """Angles [rad] of a wedge in the k-th of its images side by side, each the mirror image of the last."""
+    return k * wedge + (angles if k % 2 == 0 else wedge - angles)
+
+
+def unrolled_copies(
+    polar: np.ndarray, prisms: np.ndarray, wedge: float, copies: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """A wedge and its mirror images: nodes (r, φ, z) and prisms; what two images share is there once."""
+    nodes, found = [], []
+    for k in range(copies):
+        image = polar.copy()
+        image[:, 1] = mirrored(polar[:, 1], wedge, k)
+        image[polar[:, 0] < SAME, 1] = 0.0  # on the axis all angles are one
+        nodes.append(image)
+        turned = [0, 1, 2, 3, 4, 5] if k % 2 == 0 else [0, 2, 1, 3, 5, 4]
+        found.append(prisms[:, turned] + k * len(polar))
+    stacked = np.vstack(nodes)
+    _, first, number = np.unique(
+        np.round(stacked / SAME), axis=0, return_index=True, return_inverse=True
+    )
+    return stacked[first], number.ravel()[np.vstack(found)]
+
+
 def cut(prisms: np.ndarray) -> np.ndarray:
     """Three tetrahedra for each prism; faces shared by prisms are cut alike, from their least node.
 

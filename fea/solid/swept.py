@@ -8,19 +8,22 @@ same design gives the same mesh.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from math import ceil, radians
 
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.solid.column import INTERFACE, Column, column_of
+from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.prisms import along, cut, extruded, revolved
+from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.slot import Block, block_of
 from flexspline.fea.solid.snap import snap_to_surfaces
 from flexspline.fea.solid.swept_sizing import (
     Finer,
@@ -38,6 +41,8 @@ LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
 ON_SURFACE = 1e-6
 """[mm] Nodes are computed on their surfaces; what is farther off belongs to another."""
+Bend = Callable[[np.ndarray], np.ndarray]
+"""Nodes (n, 3) as (r, φ, z) of the revolved mesh to those of the part's."""
 TOLERANCE = 1e-3
 """Of volume and patch areas; parabolas for arcs of 15° leave 1e-5."""
 
@@ -47,7 +52,7 @@ def swept_mesh(
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
-    A keyway and holes that are not in a plain column need a mesher.
+    Holes that are not in a plain column, and a keyway that `block_of` cannot place, need a mesher.
     So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
     part, a volume or a patch area that is not its own, a meridian that cannot be triangulated.
 
@@ -58,59 +63,108 @@ def swept_mesh(
     if not can_be_swept(part):
         return None
     column = column_of(part)
+    block = _block_of(part, column)
     try:
-        polar, tets = _prisms(part.meridian, column, radians(sector_deg), spec.grading, finer)
-        return _curved(part, column, sector_deg, polar, tets)
+        copies = half_holes(part, sector_deg) if column else 1
+        wedge = radians(sector_deg) / copies
+        polar, tets, bend = _prisms(
+            part.meridian, column, block, wedge, copies, spec.grading, finer
+        )
+        return _curved(part, column, block, sector_deg, polar, tets, bend)
     except (MeshQualityError, MeshingError):
         return None
 
 
 def can_be_swept(part: Part) -> bool:
-    """Whether the part is a body of revolution, or one with holes in a plain column."""
-    return part.keyway is None and (part.bolts is None or column_of(part) is not None)
+    """Whether the part is a body of revolution, or one with holes in a plain column and a plain keyway."""
+    column = column_of(part)
+    if part.bolts is not None and column is None:
+        return False
+    return part.keyway is None or _block_of(part, column) is not None
+
+
+def half_holes(part: Part, sector_deg: float) -> int:
+    """How many halves of bolt holes a sector from the middle of the first has; 0 without holes."""
+    return 0 if part.bolts is None else round(2 * part.bolts.count * sector_deg / 360)
+
+
+def _block_of(part: Part, column: Column | None) -> Block | None:
+    return block_of(part, 0.0 if column is None else column.high)
 
 
 def _prisms(
-    outline: Meridian, column: Column | None, sector: float, grading: Grading, finer: Finer | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (n, 3) as (r, φ, z) and tetrahedra (m, 4), positive."""
+    outline: Meridian,
+    column: Column | None,
+    block: Block | None,
+    wedge: float,
+    copies: int,
+    grading: Grading,
+    finer: Finer | None,
+) -> tuple[np.ndarray, np.ndarray, Bend]:
+    """Corners (n, 3) as (r, φ, z), tetrahedra (m, 4), positive, and how a keyway bends them.
+
+    The sector is a wedge [rad] and its mirror images, `copies` in all.
+    """
     own = outline if column is None else column.rest(outline)
-    rest = graded_mesh(triangulate(own), critical_points(outline), grading, finer)
+    critical = critical_points(outline)
+    if block is None:
+        first = triangulate(own)
+    else:
+        first = triangulate(block.outline(own), block.edges)
+        grading = block.grading(grading)
+    rest = graded_mesh(first, critical, grading, finer if block is None else block.finer(grading))
     step = LARGEST_STEP if finer is None else finer.step_rad
     if column is None:
-        angles = np.linspace(0, sector, ceil(sector / step) + 1)
+        if block is None:
+            angles = np.linspace(0, wedge, ceil(wedge / step) + 1)
+        else:
+            angles = block.angles(wedge, grading.far)
         refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
     else:
         if finer is None:
-            plan = plan_mesh(column, sector, grading.far)
+            arc = LARGEST_ARC if block is None else block.step_rad(grading.far)
+            plan = plan_mesh(column, wedge, grading.far, arc)
         elif finer.even:
-            plan = plan_mesh(column, sector, grading.far, 2 * step)  # an arc begins as two chords
+            plan = plan_mesh(column, wedge, grading.far, 2 * step)  # an arc begins as two chords
         else:
-            plan = plan_mesh(column, sector, min(grading.far, step * column.interface))
+            plan = plan_mesh(column, wedge, min(grading.far, step * column.interface))
         seam = along(plan, INTERFACE)
         angle = np.arctan2(plan.points[seam, 1], plan.points[seam, 0])
         seam, angles = seam[np.argsort(angle)], np.sort(angle)
-        angles[[0, -1]] = 0.0, sector
+        angles[[0, -1]] = 0.0, wedge
         refuse_beyond_memory(len(rest.triangles) * (len(angles) - 1))
         polar, prisms = revolved(rest, angles)
         above, more = extruded(plan, column, rest, seam, len(polar))
         polar, prisms = np.vstack([polar, above]), np.vstack([prisms, more])
+    if copies > 1:
+        polar, prisms = unrolled_copies(polar, prisms, wedge, copies)
+    bend: Bend = _unbent
+    if block is not None:
+        side = block.side(np.concatenate([mirrored(angles, wedge, k) for k in range(copies)]))
+        prisms = prisms[~block.holds(polar[prisms].mean(axis=1), side)]
+        bend = partial(block.bent, side=side, sector=wedge * copies)
     found = cut(prisms)
     used, compact = np.unique(found, return_inverse=True)
-    return polar[used], compact.reshape(found.shape)
+    return polar[used], compact.reshape(found.shape), bend
 
 
 def _curved(
-    part: Part, column: Column | None, sector_deg: float, polar: np.ndarray, tets: np.ndarray
+    part: Part,
+    column: Column | None,
+    block: Block | None,
+    sector_deg: float,
+    polar: np.ndarray,
+    tets: np.ndarray,
+    bend: Bend,
 ) -> TetMesh:
     """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
-    corners = _cartesian(polar)
+    corners = _cartesian(bend(polar))
     faces = boundary_faces(tets)
     surfaces = part_surfaces(part, sector_deg)
     facet_surface = _surface_of(corners, faces, surfaces)
     edges, cells, facets = with_middles(corners, tets, faces)
-    nodes = np.vstack([corners, _cartesian(_middles(polar[edges]))])
+    nodes = np.vstack([corners, _cartesian(bend(_middles(polar[edges])))])
     longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
     nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
     nodes[: len(corners)] = corners
@@ -118,8 +172,12 @@ def _curved(
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[facet_surface]
     mesh = TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
-    _check(mesh, part.meridian, column)
+    _check(mesh, part, column, block)
     return mesh
+
+
+def _unbent(polar: np.ndarray) -> np.ndarray:
+    return polar
 
 
 def _middles(ends: np.ndarray) -> np.ndarray:
@@ -147,20 +205,25 @@ def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface])
     return (away < away.min(axis=0) + ON_SURFACE).argmax(axis=0)
 
 
-def _check(mesh: TetMesh, outline: Meridian, column: Column | None) -> None:
-    """Compare volume and patch areas with Pappus' theorems less the holes, which all start in `mount`."""
+def _check(mesh: TetMesh, part: Part, column: Column | None, block: Block | None) -> None:
+    """Compare volume and patch areas with Pappus' theorems less holes, which start in `mount`, and slot."""
     share = mesh.sector_deg / 360
-    half_hole = 0.0 if column is None else np.pi / 2 * column.hole_radius**2
+    outline = part.meridian
+    holes = 0.0
+    if column is not None:
+        holes = half_holes(part, mesh.sector_deg) * np.pi / 2 * column.hole_radius**2
     depth = 0.0 if column is None else column.depth - column.low
     pairs = {
         "volume": (
             float(element_volumes(mesh.nodes, mesh.cells).sum()),
-            outline.volume * share - half_hole * depth,
+            outline.volume * share - holes * depth - (block.half_volume if block else 0.0),
         )
     }
     for patch in {s.patch for s in outline.segments if s.patch}:
         area = float(facet_areas(mesh.nodes, mesh.on(patch)).sum())
-        mine = outline.patch_area(patch) * share - (half_hole if patch == "mount" else 0.0)
+        mine = outline.patch_area(patch) * share - (holes if patch == "mount" else 0.0)
+        if block is not None:
+            mine -= block.half_mouth(outline, patch)
         pairs[patch] = (area, mine)
     for what, (found, wanted) in pairs.items():
         if not abs(found / wanted - 1) < TOLERANCE:
@@ -179,15 +242,25 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
     """
     outline, column = part.meridian, column_of(part)
+    block = _block_of(part, column)
     sector = radians(sector_deg)
     found = []
     for r, z in {*outline.sharp_corners, *outline.patch_edges}:
         phi = np.linspace(0, sector, max(2, ceil(r * sector / spacing) + 1))
         found.append(_cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
     if column is not None:
-        rim = ceil(np.pi * column.hole_radius / spacing) + 1
-        turn = np.linspace(0, np.pi, max(2, rim))
+        rim = max(2, ceil(np.pi * column.hole_radius / spacing) + 1)
+        turn = np.linspace(0, np.pi, rim)
         x = column.bolt_circle + column.hole_radius * np.cos(turn)
         y = column.hole_radius * np.sin(turn)
-        found += [np.column_stack([x, y, np.full_like(x, z)]) for z in (column.low, column.depth)]
-    return np.vstack(found)
+        away, turned = np.hypot(x, y), np.arctan2(y, x)
+        copies = half_holes(part, sector_deg)
+        wedge = sector / copies
+        for k in range(copies):
+            around = mirrored(turned, wedge, k)
+            for z in (column.low, column.depth):
+                found.append(_cartesian(np.column_stack([away, around, np.full_like(away, z)])))
+    points = np.vstack(found)
+    if block is None:
+        return points
+    return np.vstack([points[~block.cuts(points)], block.rims(spacing)])

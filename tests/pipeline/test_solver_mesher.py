@@ -56,8 +56,11 @@ def test_auto_sweeps_what_can_be_swept(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("wanted", ["swept", "auto", "tetwild"])
-def test_a_keyway_cannot_be_swept(wanted: str, tmp_path: Path) -> None:
-    keyed = load_design(EXAMPLES / "keyed-shaft.toml").changed({"solver.mesher": wanted})
+def test_a_keyway_over_a_step_cannot_be_swept(wanted: str, tmp_path: Path) -> None:
+    """A slot over a step of the shaft."""
+    keyed = load_design(EXAMPLES / "keyed-shaft.toml").changed(
+        {"solver.mesher": wanted, "shaft.keyway.length_mm": 22.0}
+    )
     context, _ = context_of(keyed, tmp_path)
     if wanted != "swept":
         assert not context.part("shaft").is_swept
