@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from skfem import LinearForm, condense
+from skfem import FacetBasis, LinearForm, MappingAffine, condense
 
 from flexspline.fea.axisymmetric.couplings import (
     AXIAL,
@@ -197,7 +197,13 @@ class HarmonicModel:
     def _pressure(self, patch: str) -> np.ndarray:
         """∫ shape function · r ds on a patch, (count,) [mm²]."""
         if patch not in self._pressures:
-            facets = self.space.basis.boundary(patch, intorder=PRESSURE_DEGREE)
+            # a patch is straight, so corners alone give its points; scikit-fem's search for them in the
+            # curved map stops short of its fixed 1e-12 on thin walls
+            basis = self.space.basis
+            facets = FacetBasis(
+                basis.mesh, basis.elem, mapping=MappingAffine(basis.mesh), facets=patch,
+                intorder=PRESSURE_DEGREE, dofs=basis.dofs,
+            )  # fmt: skip
             self._pressures[patch] = PRESSURE.assemble(facets)
         return self._pressures[patch]
 

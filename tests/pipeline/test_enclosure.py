@@ -22,6 +22,8 @@ FINE = 2e-4
 """At which 0.12 % between the two bodies of xb1-40 are more than their bounds."""
 CHEAP = 0.02
 """Of the random designs: their bounds hold on the coarsest mesh too."""
+THIN = 165
+"""Number of the random design with a wall of 0.12 mm on a tube of 39 mm, lobes on its finest meshes."""
 SOLVES: dict[str, Callable[[Part], Stiffness]] = {
     "K_b": lambda part: torsion(part, CHEAP),
     "K_b_lobes": lambda part: lobes(part, True, CHEAP),
@@ -76,3 +78,11 @@ def test_what_fell_short_is_said() -> None:
     assert between(replace(cut, shortfall="no time"), whole).shortfall == "no time"
     assert between(cut, replace(whole, shortfall="no room")).shortfall == "no room"
     assert not between(cut, whole).shortfall
+
+
+def test_a_long_thin_tube_is_loaded_too() -> None:
+    """A wall of 1/300 of the diameter, on which scikit-fem's search for points on an edge gives up."""
+    design = holed_designs(THIN + 1)[THIN]
+    assert design.flexspline.inner_diameter_mm > 300 * design.flexspline.wall_thickness_mm
+    found = enclosed(design.part("flexspline"), SOLVES["K_b_lobes_contact"])
+    assert found.half_width < 2 * CHEAP
