@@ -27,6 +27,9 @@ FIRST_STEPS = 81
 """Places tried: odd, so that 0 is one; 0.9 % of the largest torque apart, a quarter of the band (3.5 %)."""
 FIRST_NATS = 12.0
 """Over no offset, odds of 160 000 to 1: a guess that is wrong costs a whole race."""
+SINGULAR = 1e-12
+"""Of the normal equations' largest eigenvalue: functions that are one but for 1e-6 share their coefficient.
+The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
 ROBUST = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
 
@@ -61,8 +64,9 @@ def first_offset(
         weight = np.ones(len(rows))
         left = angle_arcsec[rows]
         for _ in range(2):
+            weighted = basis * weight[:, None]
             found = np.linalg.lstsq(
-                basis * weight[:, None], angle_arcsec[rows] * weight, rcond=None
+                weighted.T @ weighted, weighted.T @ (angle_arcsec[rows] * weight), rcond=SINGULAR
             )[0]
             left = angle_arcsec[rows] - basis @ found
             scale = SIGMA_PER_MAD * np.median(np.abs(left)) + 1e-9
