@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -34,13 +35,13 @@ def studio(studio_browser: Browser, tmp_path_factory: pytest.TempPathFactory) ->
     assert [path.name for path in folder.iterdir()] == ["design.toml"]  # jobs leave no folder
 
 
-@pytest.fixture
-def opened(studio: Server, studio_browser: Browser) -> Iterator[Callable[..., Page]]:
+@contextmanager
+def tabs(browser: Browser, url: str) -> Iterator[Callable[..., Page]]:
     """Opens tabs; afterwards they are closed, and none may have met an error."""
     pages: list[Page] = []
 
     def make(**settings: Any) -> Page:
-        pages.append(Page(studio_browser, studio.url, **settings))
+        pages.append(Page(browser, url, **settings))
         return pages[-1]
 
     yield make
@@ -50,23 +51,32 @@ def opened(studio: Server, studio_browser: Browser) -> Iterator[Callable[..., Pa
 
 
 @pytest.fixture
+def opened(studio: Server, studio_browser: Browser) -> Iterator[Callable[..., Page]]:
+    with tabs(studio_browser, studio.url) as make:
+        yield make
+
+
+@pytest.fixture
 def page(opened: Callable[..., Page]) -> Page:
     return opened()
 
 
 @pytest.fixture(scope="module")
 def held(studio_browser: Browser) -> Iterator[HeldStudio]:
-    """A studio in this process whose answers a test can hold back."""
+    """A studio in this process whose answers a test can hold back. None is computed twice in a process."""
     cup = without_holes(design_from(tomllib.loads(template("cup"))))
     with held_studio(cup) as studio:
         yield studio
 
 
 @pytest.fixture
-def tab(held: HeldStudio, studio_browser: Browser) -> Iterator[Page]:
-    """A tab of it; afterwards nothing is held, and it may have met no error."""
-    page = Page(studio_browser, held.url)
-    yield page
-    held.hold = lambda question, tables: False
-    page.close()
-    assert page.errors == []
+def held_tabs(held: HeldStudio, studio_browser: Browser) -> Iterator[Callable[..., Page]]:
+    """Opens tabs of it; afterwards nothing is held."""
+    with tabs(studio_browser, held.url) as make:
+        yield make
+        held.hold = lambda question, tables: False
+
+
+@pytest.fixture
+def tab(held_tabs: Callable[..., Page]) -> Page:
+    return held_tabs()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -119,22 +120,16 @@ def test_one_column_begins_with_the_answers_and_keeps_them_in_sight(tab: Page) -
 
 @pytest.mark.parametrize("width", [390, 768])
 def test_a_finger_can_move_a_slider_and_scroll_past_the_part(
-    held: HeldStudio, studio_browser: Any, width: int
+    held_tabs: Callable[..., Page], width: int
 ) -> None:
-    page = Page(
-        studio_browser, held.url, has_touch=True, is_mobile=True, viewport={"width": width, "height": 844}
-    )  # fmt: skip
-    try:
-        page.quick()
-        slider = page.at('.row[data-key="flexspline.wall_thickness_mm"] input[type=range]')
-        slider.scroll_into_view_if_needed()
-        box = slider.bounding_box()
-        assert box["height"] >= 24  # WCAG 2.2, target size (minimum)
-        page.tab.touchscreen.tap(box["x"] + 0.9 * box["width"], box["y"] + box["height"] / 2)
-        page.at("#stage:not([data-number='1'])").wait_for()
-        assert float(page.field("flexspline.wall_thickness_mm").input_value()) > 0.5
-        for place in ("#canvas canvas", ".row input[type=range]"):
-            assert page.at(place).first.evaluate("e => getComputedStyle(e).touchAction") == "pan-y"
-    finally:
-        page.close()
-    assert page.errors == []
+    page = held_tabs(has_touch=True, is_mobile=True, viewport={"width": width, "height": 844})
+    page.quick()
+    slider = page.at('.row[data-key="flexspline.wall_thickness_mm"] input[type=range]')
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    assert box["height"] >= 24  # WCAG 2.2, target size (minimum)
+    page.tab.touchscreen.tap(box["x"] + 0.9 * box["width"], box["y"] + box["height"] / 2)
+    page.at("#stage:not([data-number='1'])").wait_for()
+    assert float(page.field("flexspline.wall_thickness_mm").input_value()) > 0.5
+    for place in ("#canvas canvas", ".row input[type=range]"):
+        assert page.at(place).first.evaluate("e => getComputedStyle(e).touchAction") == "pan-y"

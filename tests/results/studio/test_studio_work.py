@@ -33,18 +33,18 @@ def choose(page: Page, path: Path) -> None:
     chooser.value.set_files(path)
 
 
-def test_picture_and_step_are_handed_over(page: Page) -> None:
-    page.quick()
-    page.at("#name").fill("../../etc/passwd")
-    page.complete()
-    name, data = downloaded(page, "#png")
+def test_picture_and_step_are_handed_over(tab: Page) -> None:
+    tab.quick()
+    tab.at("#name").fill("../../etc/passwd")
+    tab.complete()
+    name, data = downloaded(tab, "#png")
     assert name == "etc-passwd.png"
     assert Image.open(io.BytesIO(data)).size[0] > 400
-    page.at("#work-step").click()
-    page.at("#progress-step a").first.wait_for()
-    assert page.at("#progress-step a").count() == 2
+    tab.at("#work-step").click()
+    tab.at("#progress-step a").first.wait_for()
+    assert tab.at("#progress-step a").count() == 2
     for part in ("flexspline", "shaft"):
-        name, data = downloaded(page, f"#progress-step a:has-text('{part}.step')")
+        name, data = downloaded(tab, f"#progress-step a:has-text('{part}.step')")
         assert name == f"{part}.step"
         assert data.startswith(b"ISO-10303-21;")
 
@@ -96,26 +96,26 @@ def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(page: P
     assert "of earlier" in page.at("#answers thead").first.inner_text()
 
 
-def test_measured_data_are_diagnosed(page: Page, tmp_path: Path) -> None:
-    page.quick()
-    page.at("#tab-measured").click()
+def test_measured_data_are_diagnosed(tab: Page, tmp_path: Path) -> None:
+    tab.quick()
+    tab.at("#tab-measured").click()
     bad = tmp_path / "bad <b>.csv"
     bad.write_text("torque_Nm,angle_arcsec\n0.1,1\n0.2,two\n", encoding="utf-8")
-    choose(page, bad)
-    page.at("#progress-diagnose.fault").wait_for()
-    said = page.at("#progress-diagnose").inner_text()
+    choose(tab, bad)
+    tab.at("#progress-diagnose.fault").wait_for()
+    said = tab.at("#progress-diagnose").inner_text()
     assert said.startswith("bad <b>.csv:3: angle_arcsec"), said
-    choose(page, END_POINTS)
-    page.at("#verdict").wait_for()
-    assert page.at("#findings p").first.inner_text()
-    assert page.at("#findings img").count() >= 1
+    choose(tab, END_POINTS)
+    tab.at("#verdict").wait_for()
+    assert tab.at("#findings p").first.inner_text()
+    assert tab.at("#findings img").count() >= 1
     assert (
-        page.at("#findings img").first.evaluate("i => i.decode().then(() => i.naturalWidth)") > 400
+        tab.at("#findings img").first.evaluate("i => i.decode().then(() => i.naturalWidth)") > 400
     )
-    name, data = downloaded(page, "#findings a:has-text('report.pdf')")
+    name, data = downloaded(tab, "#findings a:has-text('report.pdf')")
     assert (name, data[:5]) == ("report.pdf", b"%PDF-")
-    page.set("flexspline.wall_thickness_mm", "0.41")
-    page.at("#findings.stale").wait_for()
+    tab.set("flexspline.wall_thickness_mm", "0.41")
+    tab.at("#findings.stale").wait_for()
 
 
 DROP = """([zone, name, text]) => {
@@ -125,26 +125,26 @@ DROP = """([zone, name, text]) => {
 }"""
 
 
-def test_a_file_dropped_while_another_is_weighed_takes_its_place(page: Page) -> None:
-    page.quick()
-    page.at("#tab-measured").click()
+def test_a_file_dropped_while_another_is_weighed_takes_its_place(tab: Page) -> None:
+    tab.quick()
+    tab.at("#tab-measured").click()
     sweep = END_POINTS.with_name("xb1-40-sweep.csv")
-    page.tab.evaluate(DROP, ["#drop", sweep.name, sweep.read_text(encoding="utf-8")])
-    page.at("#work-diagnose.running").wait_for()
-    page.tab.evaluate(DROP, ["#drop", "short <i>.csv", "torque_Nm,angle_arcsec\n0.1,1\n0.2,x\n"])
-    page.at("#progress-diagnose.fault:has-text('short <i>.csv:3')").wait_for()
-    page.tab.wait_for_timeout(1000)  # the first one's end would come within
-    assert page.at("#verdict").count() == 0
-    assert page.at("#guide").is_visible()
+    tab.tab.evaluate(DROP, ["#drop", sweep.name, sweep.read_text(encoding="utf-8")])
+    tab.at("#work-diagnose.running").wait_for()
+    tab.tab.evaluate(DROP, ["#drop", "short <i>.csv", "torque_Nm,angle_arcsec\n0.1,1\n0.2,x\n"])
+    tab.at("#progress-diagnose.fault:has-text('short <i>.csv:3')").wait_for()
+    tab.tab.wait_for_timeout(1000)  # the first one's end would come within
+    assert tab.at("#verdict").count() == 0
+    assert tab.at("#guide").is_visible()
 
 
-def test_a_file_too_large_is_refused(page: Page, tmp_path: Path) -> None:
+def test_a_file_too_large_is_refused(tab: Page, tmp_path: Path) -> None:
     large = tmp_path / "large.csv"
     with large.open("wb") as out:
         out.truncate(20_000_001)
-    page.at("#tab-measured").click()
-    choose(page, large)
-    page.at("#measured-fault:has-text('larger than 20 MB')").wait_for()
+    tab.at("#tab-measured").click()
+    choose(tab, large)
+    tab.at("#measured-fault:has-text('larger than 20 MB')").wait_for()
 
 
 def test_a_server_killed_and_started_again_is_found(
