@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from finished_run import finished_run
+from known_slopes import once_in_a_suite
 from opengl import why_no_pictures
 
 from flexspline.geometry.load import load_design
@@ -38,8 +39,10 @@ def test_docstring_examples(
     name: str, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     monkeypatch.chdir(ROOT)
-    if name == "flexspline.pipeline.face":  # its examples ask for the cup's K and stress
+    if name == "flexspline.pipeline.face":  # its examples ask for the cup's K, stress and slopes
         request.getfixturevalue("finished_cup")
+        suite = request.getfixturevalue("suite_folder")
+        once_in_a_suite(f"{name}.sensitivities", suite, monkeypatch)
     outcome = doctest.testmod(importlib.import_module(name))
     assert outcome.attempted
     assert not outcome.failed

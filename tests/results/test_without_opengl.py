@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from finished_run import FinishedRun
 from opengl import machine_without
 from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
@@ -119,7 +120,10 @@ def test_what_needs_the_cad_kernel_is_one_line_that_names_the_package(tmp_path: 
     assert not (tmp_path / "out").exists()
 
 
-def test_a_study_keeps_its_table_and_says_what_is_missing(tmp_path: Path) -> None:
+def test_a_study_keeps_its_table_and_says_what_is_missing(
+    finished_cup: FinishedRun, tmp_path: Path
+) -> None:
+    """The lightest is the example itself: the suite's cache holds its field, and nobody's picture of it."""
     study = tmp_path / "walls.toml"
     study.write_text(
         f'design = "{CUP}"\n[vary]\n"flexspline.wall_thickness_mm" = {{ values = [0.4, 0.45] }}\n'
@@ -127,8 +131,9 @@ def test_a_study_keeps_its_table_and_says_what_is_missing(tmp_path: Path) -> Non
         encoding="utf-8",
     )
     folder = tmp_path / "out"
-    cache, libraries = tmp_path / "cache", tmp_path / "libraries"
-    done = flexspline(cache, "study", study, "--out", folder, without=libraries)
+    done = flexspline(
+        finished_cup.cache, "study", study, "--out", folder, without=tmp_path / "libraries"
+    )
     assert done.returncode == 0, done.stderr
     assert (folder / "study.csv").stat().st_size > 0
     assert not (folder / "best_stress.png").exists()
