@@ -48,6 +48,8 @@ EDGE_mm = Range(1e-3, 1000)
 """As lengths; no part of 10 m is meshed with fewer than ten elements."""
 STIFFNESS_Nm_per_rad = Range(1e-12, 1e15)
 """A cup of 1 mm in soft rubber has some 1e-12, a solid shaft of 10 m in steel 1e14."""
+COUNTS_PER_TURN = Range(1, 1e12)
+"""Of an encoder: one mark; absolute ones reach 2³² with a count of 3e-4 arcsec."""
 SMALLEST_ANGLE_arcsec = 1e-6
 """A record whose largest angle is smaller holds nothing: the best encoders tell 1e-3 apart."""
 SMALLEST_NUMBER = 1e-30

@@ -181,9 +181,18 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
 
 
 def diagnose(
-    design: Design, path: Path | str, K_b: float | None = None, K_e: float | None = None
+    design: Design,
+    path: Path | str,
+    K_b: float | None = None,
+    K_e: float | None = None,
+    *,
+    counts_per_turn: float | None = None,
 ) -> Diagnosis:
     """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
+
+    Parameters
+    ----------
+    counts_per_turn : of the encoder, where the file's angle is in counts.
 
     Returns
     -------
@@ -209,17 +218,23 @@ def diagnose(
     >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
     True
     """
-    read_measurement(Path(path))  # a bad file is refused before the long work
+    read_measurement(Path(path), counts_per_turn)  # a bad file is refused before the long work
     context = analysis_context(design)
     used = stiffness_pair(context, K_b, K_e)
     solved = context if K_b is None and K_e is None else None
     return diagnose_file(
-        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved
-    )
+        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved, counts_per_turn
+    )  # fmt: skip
 
 
-def predict(model: Path | str, path: Path | str) -> Predicted:
+def predict(
+    model: Path | str, path: Path | str, *, counts_per_turn: float | None = None
+) -> Predicted:
     """The angle for each row of a measured file, by an `extended_model.toml` that `diagnose` wrote.
+
+    Parameters
+    ----------
+    counts_per_turn : of the encoder, where the file's wave-generator angle is in counts.
 
     Raises
     ------
@@ -236,4 +251,4 @@ def predict(model: Path | str, path: Path | str) -> Predicted:
     ...     print(fault)
     no-such-model.toml: no such file
     """
-    return predict_file(read_model_file(Path(model)), Path(path))
+    return predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)

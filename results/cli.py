@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from flexspline.results.job import (
+    CountsPerTurn,
     DesignFile,
     Job,
     Json,
@@ -200,6 +201,7 @@ def diagnose(
     measured: MeasuredFile,
     kb: Kb = None,
     ke: Ke = None,
+    counts_per_turn: CountsPerTurn = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -209,7 +211,10 @@ def diagnose(
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        show(diagnose_and_write(job.context, measured, given, job.folder, json, (job.file,)), json)
+        said = diagnose_and_write(
+            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn
+        )
+        show(said, json)
 
 
 @app.command()
@@ -217,6 +222,7 @@ def predict(
     design: DesignFile,
     torque: TorqueFile,
     model: ModelPath,
+    counts_per_turn: CountsPerTurn = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -226,7 +232,8 @@ def predict(
         from flexspline.results.diagnosis.prediction import predict_and_write
 
         gear, folder = load_design(design), folder_of(design, out)
-        show(predict_and_write(gear, model, torque, folder, json, tell), json)
+        said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)
+        show(said, json)
 
 
 @app.command()

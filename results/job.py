@@ -54,6 +54,14 @@ Kb = Annotated[
 Ke = Annotated[
     float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
 ]
+CountsPerTurn = Annotated[
+    float | None,
+    typer.Option(
+        "--counts-per-turn",
+        metavar="N",
+        help="Counts of a turn of the encoder, where an angle is in counts",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 LONGEST_LINE = 2000
 """Letters of a message: a path may take most of them."""

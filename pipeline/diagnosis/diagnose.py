@@ -95,19 +95,21 @@ def diagnose_file(
     K_e: float,
     K_error: float = 0.0,
     context: AnalysisContext | None = None,
+    counts_per_turn: float | None = None,
 ) -> Diagnosis:
     """Read a measurement and diagnose it.
 
     Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
     they came from FE: specimens are then solved like the design; without it, given stiffnesses are
-    scaled from specimen to specimen by the hole-free model.
+    scaled from specimen to specimen by the hole-free model. `counts_per_turn` of the encoder, where a
+    column is in counts.
 
     Raises
     ------
     MeasurementError : the file cannot be accepted.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    measurement = read_measurement(csv)
+    measurement = read_measurement(csv, counts_per_turn)
     prediction = prediction_of(design, K_b, K_e, K_error)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)

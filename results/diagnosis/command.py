@@ -22,19 +22,22 @@ def diagnose_and_write(
     folder: Path,
     json: bool,
     attached: tuple[Attachment, ...] = (),
+    counts_per_turn: float | None = None,
 ) -> str:
     """Diagnose, write all files, and return what is printed; `given` are K_b and K_e, None: FEA.
+
+    `counts_per_turn` of the encoder, where a column is in counts.
 
     Raises
     ------
     DesignError, ComputationError, MeasurementError
     """
-    read_measurement(measured)  # refuse a bad file before the long work
+    read_measurement(measured, counts_per_turn)  # refuse a bad file before the long work
     used = stiffness_pair(context, *given)
     with context.progress.stage("diagnosis"):
         found = diagnose_file(
             context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            context if given == (None, None) else None,
+            context if given == (None, None) else None, counts_per_turn,
         )  # fmt: skip
     record = diagnosis_record(found)
     with context.progress.stage("figures and report"):

@@ -60,7 +60,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         )
     for note in notes(diagnosis):
         lines += _wrapped(f"note: {note}", "  ", "    ")
-    lines.append(f"  SHA-256 of the measurement: {diagnosis.measurement.sha256}")
+    lines.append(f"  SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}")
     lines.append(f"files in {folder}")
     return "\n".join(lines)
 

@@ -8,15 +8,22 @@ from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.results.diagnosis.reading import columns_record, form_record
 from flexspline.results.diagnosis.words import plus_minus
 from flexspline.results.numbers import grouped
 
 
 def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
-    """The file with its hash, rows by their use, and the calibration; what was not computed is absent."""
+    """The file with its hash, how it was read, rows by their use, and the calibration.
+
+    What was not computed is absent.
+    """
     measurement = diagnosis.measurement
+    read_as = measurement.read_as
     record: dict[str, Any] = {
-        "measurement": {"file": measurement.path.name, "sha256": measurement.sha256}
+        "measurement": {"file": measurement.path.name, "sha256": read_as.sha256},
+        "file_format": form_record(read_as),
+        "read_as": columns_record(read_as),
     }
     if diagnosis.sweep is not None:
         record["rows"] = _rows(diagnosis.sweep.explained.prepared)

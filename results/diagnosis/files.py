@@ -62,7 +62,7 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
         program=f"flexspline {__version__}",
         design=diagnosis.design.name,
         measurement=measurement.path.name,
-        measurement_sha256=measurement.sha256,
+        measurement_sha256=measurement.read_as.sha256,
         verdict=diagnosis.outcome.verdict,
         K_b_Nm_per_rad=used.K_b_Nm_per_rad,
         K_e_Nm_per_rad=used.K_e_Nm_per_rad,

@@ -9,12 +9,17 @@ from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
+from flexspline.results.diagnosis.reading import reading_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped
 
 
 def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Notes of the kind that was measured."""
+    """How the file was read, and notes of the kind that was measured."""
+    return (*reading_notes(diagnosis.measurement.read_as), *_of_kind(diagnosis))
+
+
+def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
         return (*_sweep_notes(diagnosis.sweep.explained),)
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
@@ -31,8 +36,8 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     if prepared.sweep.history.time_s is None:
         found.append("no time was recorded: friction cannot be told from rate dependence")
     found += _unit_notes(explained)
-    if prepared.sweep.ignored:
-        found.append(f"columns not used: {', '.join(prepared.sweep.ignored)}")
+    if prepared.sweep.read_as.ignored:
+        found.append(f"columns not used: {', '.join(prepared.sweep.read_as.ignored)}")
     return found
 
 

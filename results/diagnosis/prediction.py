@@ -11,9 +11,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import one_line
-from flexspline.geometry.input_file import InputFileError, read_input
-from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.table import LARGEST_BYTES
+from flexspline.pipeline.diagnosis.measurement.grid import read_grid
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.results.atomic import write_bytes
@@ -30,6 +28,7 @@ def predict_and_write(
     folder: Path,
     json: bool,
     tell: Callable[[str], None],
+    counts_per_turn: float | None = None,
 ) -> str:
     """Predict, write prediction.csv, and return what is printed.
 
@@ -38,7 +37,7 @@ def predict_and_write(
     ModelFileError, MeasurementError
     """
     file = read_model_file(model)
-    predicted = predict_file(file, torque)
+    predicted = predict_file(file, torque, counts_per_turn)
     if file.provenance.design != design.name:
         tell(
             f"warning: the model is of {one_line(file.provenance.design)}, "
@@ -47,7 +46,9 @@ def predict_and_write(
     for line in predicted.warnings:
         tell(f"warning: {one_line(line)}")
     angle = predicted.angle_arcsec
-    write_bytes(folder / PREDICTION, with_column(torque, angle).encode())
+    write_bytes(
+        folder / PREDICTION, with_column(torque, angle, predicted.read_as.decimal_mark).encode()
+    )
     if json:
         return as_json({"angle_arcsec": angle.tolist()})
     return (
@@ -55,21 +56,22 @@ def predict_and_write(
     )
 
 
-def with_column(path: Path, angle_arcsec: np.ndarray) -> str:
+def with_column(path: Path, angle_arcsec: np.ndarray, decimal_mark: str = ".") -> str:
     """The file's rows as they stand, comments left out, with the predicted angle as last column.
 
-    A column of that name, from an earlier prediction, is replaced.
+    Separator, decimal mark and row of units stay the file's own; a workbook's sheet is written with commas
+    and points. A column of that name, from an earlier prediction, is replaced.
     """
-    try:
-        text = read_input(path, LARGEST_BYTES, "a measured file").decode("utf-8-sig")
-    except InputFileError as error:  # it was there a moment ago
-        raise MeasurementError(path, None, str(error)) from None
-    kept = [s for s in text.splitlines() if s.strip() and not s.lstrip().startswith("#")]
-    rows = list(csv.reader(kept))
-    at = [i for i, name in enumerate(rows[0]) if name.strip() != COLUMN]
+    table = read_grid(path)  # it was there a moment ago
+    separator = table.separator or ","
+    comma = separator != "," and decimal_mark == ","
+    at = [i for i, name in enumerate(table.head) if name != COLUMN]
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([*(rows[0][i] for i in at), COLUMN])
-    for row, angle in zip(rows[1:], angle_arcsec, strict=True):
-        writer.writerow([*(row[i] for i in at), f"{angle:.6f}"])
+    writer = csv.writer(out, delimiter=separator, lineterminator="\n")
+    writer.writerow([*(table.head[i] for i in at), COLUMN])
+    if table.unit_row:
+        writer.writerow([*(table.unit_row[i] for i in at), "arcsec"])
+    for row, angle in zip(table.rows, angle_arcsec, strict=True):
+        text = f"{angle:.6f}"
+        writer.writerow([*(row[i] for i in at), text.replace(".", ",") if comma else text])
     return out.getvalue()

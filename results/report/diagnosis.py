@@ -82,7 +82,7 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Callout(tone, VERDICTS[outcome.verdict], summary(diagnosis))
     yield Heading("What was measured")
     facts = tuple((name, fact) for name, fact in measured(diagnosis))
-    yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.sha256))))
+    yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.read_as.sha256))))
     yield Paragraph(worded(compared(diagnosis, used)))
     if diagnosis.calibration is not None:
         sentence = calibrated_sentence(diagnosis.calibration, diagnosis.prediction)

@@ -8,7 +8,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from flexspline.pipeline.diagnosis.measurement import table
+from flexspline.pipeline.diagnosis.measurement import grid
 from flexspline.results.cli import app
 
 ROOT = Path(__file__).parents[2]
@@ -48,14 +48,14 @@ BAD = {
     "a strange unit": (rows("torque_lbf,angle_arcsec", *GOOD), "column torque_lbf: accepted are"),
     "no unit": (rows("torque,angle_arcsec", *GOOD), "column torque: accepted are"),
     "fields missing": (rows("torque_Nm,angle_arcsec", *GOOD, "0.5"), ":42: 1 fields where the header has 2"),
-    "wrong encoding": ("torque_Nm,angle_arcsec,Prüfer\n".encode("latin-1"), "is not UTF-8"),
-    "sixteen-bit text": ("torque_Nm,angle_arcsec\n0.5,3\n".encode("utf-16"), "is not UTF-8"),
+    "wrong encoding": (b"torque_Nm,angle_arcsec,\x81\n", "is neither UTF-8 nor Latin-1"),
+    "half of sixteen-bit text": ("torque_Nm,angle_arcsec\n".encode("utf-16")[:-1], "is not; save the file"),
     "a NUL byte": (rows("torque_Nm,angle_arcsec", "0.5,\0"), "NUL"),
     "an empty file": (b"", "no header line"),
     "only comments": (b"# nothing\n", "no header line"),
     "only a header": (b"torque_Nm,angle_arcsec\n", "no data rows"),
-    "semicolons": (b"torque_Nm;angle_arcsec\n0.5;3\n", "separated by commas"),
-    "tabs": (b"torque_Nm\tangle_arcsec\n0.5\t3\n", "separated by commas"),
+    "spaces": (b"torque_Nm angle_arcsec\n0.5 3\n", "separated by commas, semicolons or tabs"),
+    "counts": (rows("torque_Nm,angle_counts", *GOOD), "--counts-per-turn"),
     "an open quote": (rows("torque_Nm,angle_arcsec", *GOOD, '"0.5,3'), "bad.csv"),
     "an empty unit": (sweep_of("unit", [""]), "unit is empty"),
     "negative end points": (
@@ -111,7 +111,7 @@ def test_a_missing_file_and_a_folder(tmp_path: Path) -> None:
 def test_a_file_far_too_large(
     limit: str, needle: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(table, limit, 20)
+    monkeypatch.setattr(grid, limit, 20)
     path = tmp_path / "bad.csv"
     path.write_bytes(rows("torque_Nm,angle_arcsec", *GOOD))
     refused(diagnose(path), needle, tmp_path / "out")

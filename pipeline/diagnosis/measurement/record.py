@@ -10,8 +10,11 @@ import numpy as np
 from flexspline.geometry.ranges import SMALLEST_ANGLE_arcsec, STIFFNESS_Nm_per_rad, TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
+from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 
+HEADS_SHOWN = 12
+"""Columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
 """One more than zero, stiffness and gap."""
 
@@ -36,8 +39,7 @@ class Sweep:
     """The file's own cycle numbers of each unit."""
     line: np.ndarray
     cycles_recorded: bool
-    ignored: tuple[str, ...] = ()
-    sha256: str = ""
+    read_as: ReadAs = AS_OURS
     averaging: Averaging | None = None
     """None where the rows are those of the file."""
 
@@ -54,7 +56,7 @@ class EndPoints:
     torque_Nm: np.ndarray
     angle_plus_arcsec: np.ndarray
     angle_minus_arcsec: np.ndarray
-    sha256: str = ""
+    read_as: ReadAs = AS_OURS
 
 
 @dataclass(frozen=True)
@@ -69,20 +71,22 @@ class Specimens:
     overrides: dict[str, np.ndarray]
     line: np.ndarray
     part_recorded: bool = True
-    sha256: str = ""
+    read_as: ReadAs = AS_OURS
 
 
 Measurement = Sweep | EndPoints | Specimens
 
 
-def read_measurement(path: Path) -> Measurement:
-    """Read a CSV file of any of the three kinds of docs/contract.md.
+def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measurement:
+    """Read a CSV file or workbook of any of the three kinds of docs/contract.md.
+
+    `counts_per_turn` of the encoder, where a column is in counts.
 
     Raises
     ------
     MeasurementError : unreadable, no known kind, or values that cannot be.
     """
-    table = read_table(path)
+    table = read_table(path, counts_per_turn)
     if table.has("specimen", "stiffness_Nm_per_rad"):
         return _specimens(table)
     if table.has("angle_plus_arcsec", "angle_minus_arcsec"):
@@ -98,7 +102,11 @@ def read_measurement(path: Path) -> Measurement:
         ((k, [n for n in names if not table.has(n)]) for k, names in wanted.items()),
         key=lambda pair: len(pair[1]) / len(wanted[pair[0]]),
     )
-    raise table.refuse(None, f"column {', '.join(missing)} is missing for {kind}")
+    reason = f"column {', '.join(missing)} is missing for {kind}"
+    heads = [h for h in table.read_as.heads if h][:HEADS_SHOWN]
+    raise table.refuse(
+        None, f"{reason}; the header in line {table.read_as.head_line} has: {', '.join(heads)}"
+    )
 
 
 def _sweep(table: MeasuredTable) -> Sweep:
@@ -113,7 +121,7 @@ def _sweep(table: MeasuredTable) -> Sweep:
     found = history_of(table)
     return Sweep(
         table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
-        table.line, "cycle" in table.numbers, table.ignored, table.sha256,
+        table.line, "cycle" in table.numbers, table.read_as,
     )  # fmt: skip
 
 
@@ -143,7 +151,7 @@ def _end_points(table: MeasuredTable) -> EndPoints:
         _refuse_empty(table, "angle_plus_arcsec", SMALLEST_ANGLE_arcsec)
     return EndPoints(
         table.path, table.labels["unit"], torque,
-        table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"], table.sha256,
+        table.numbers["angle_plus_arcsec"], table.numbers["angle_minus_arcsec"], table.read_as,
     )  # fmt: skip
 
 
@@ -167,5 +175,5 @@ def _specimens(table: MeasuredTable) -> Specimens:
         table.path, table.labels["specimen"], part,
         table.numbers["stiffness_Nm_per_rad"], table.numbers.get("stiffness_std_Nm_per_rad"),
         {k: v for k, v in table.numbers.items() if "." in k}, table.line,
-        "part" in table.labels, table.sha256,
+        "part" in table.labels, table.read_as,
     )  # fmt: skip

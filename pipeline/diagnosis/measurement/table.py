@@ -1,30 +1,33 @@
-"""A CSV file as named columns of checked numbers in our units."""
+"""A measured file as named columns of checked numbers in our units."""
 
 from __future__ import annotations
 
-import csv
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
-from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.geometry.ranges import SMALLEST_NUMBER
+from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
+from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.units import KELVIN_AT_0_C, QUANTITIES
+from flexspline.pipeline.diagnosis.measurement.grid import Grid, read_grid
+from flexspline.pipeline.diagnosis.measurement.number_text import (
+    Mark,
+    evidence_of,
+    numbers_of,
+)
+from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
+from flexspline.pipeline.diagnosis.measurement.time_stamps import is_day, is_slashed, seconds_of
 
-LARGEST_BYTES = 200_000_000
-"""Two million rows of 100 letters; a file beyond this is some other file, or never ends."""
-LARGEST_ROWS = 2_000_000
-"""Ten readings a second fill them in two days and a half; a fit takes minutes and GB on them."""
 LARGEST_NUMBER = 1e12
 """Beyond this no rig reads; a slipped column or exponent does."""
-
-LABELS = ("unit", "specimen", "part")
-PLAIN = ("cycle",)
+OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
+"""Columns that may be empty in every row: nothing was recorded then."""
+SHOWN = 40
+"""Letters of a cell in a message."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +38,7 @@ class MeasuredTable:
     numbers: Mapping[str, np.ndarray]
     labels: Mapping[str, tuple[str, ...]]
     line: np.ndarray
-    ignored: tuple[str, ...]
-    sha256: str
-    """Of the file's bytes."""
+    read_as: ReadAs
 
     def __len__(self) -> int:
         return len(self.line)
@@ -51,144 +52,147 @@ class MeasuredTable:
         return MeasurementError(self.path, None if row is None else int(self.line[row]), reason)
 
 
-def read_table(path: Path) -> MeasuredTable:
-    """Read a measurement.
+def read_table(path: Path, counts_per_turn: float | None = None) -> MeasuredTable:
+    """Read a measurement, CSV or .xlsx, as rigs write it (docs/contract.md, section 4).
 
-    Lines beginning with # are comments. Columns whose name is no quantity of docs/contract.md are kept
-    aside as `ignored`, except dotted design keys, which are read as numbers.
+    Columns whose head names no quantity are kept aside, and so is an optional one that is empty in every
+    row; dotted design keys are read as numbers. `counts_per_turn` of the encoder whose column is in counts.
 
     Raises
     ------
     MeasurementError : anything that cannot be read without guessing.
     """
-    raw = _bytes(path)
-    lines, numbers_of = _lines(path, raw)
-    if not lines:
-        raise MeasurementError(
-            path, None, "holds no header line; expected columns such as torque_Nm"
-        )
-    reader = csv.reader(lines, strict=True)
-    try:
-        rows = list(reader)
-    except csv.Error as error:
-        raise MeasurementError(
-            path, numbers_of[min(reader.line_num, len(lines)) - 1], str(error)
-        ) from None
-    header = [h.strip() for h in rows[0]]
-    columns = _columns(path, numbers_of[0], header)
-    body = rows[1:]
-    for i, row in enumerate(body):
-        if len(row) != len(header):
-            raise MeasurementError(
-                path, numbers_of[i + 1], f"{len(row)} fields where the header has {len(header)}"
-            )
-    if not body:
-        raise MeasurementError(path, numbers_of[0], "a header and no data rows")
+    return table_of(read_grid(path), counts_per_turn)
+
+
+def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
+    """The columns of a grid; as `read_table`."""
+    columns = columns_of(grid, counts_per_turn)
+    if grid.misfit is not None:
+        raise grid.misfit
+    if not grid.rows:
+        raise MeasurementError(grid.path, grid.head_line, "a header and no data rows")
+    across = list(zip(*grid.rows, strict=True))
+    cells = {c.at: [t.strip() for t in across[c.at]] for c in columns}
+    empty = [c for c in columns if c.name in OPTIONAL and not any(map(_holds, cells[c.at]))]
+    columns = tuple(c for c in columns if c not in empty)
+    mark = _decimal_mark(grid, [c for c in columns if _is_number(c)], cells)
     numbers: dict[str, np.ndarray] = {}
     labels: dict[str, tuple[str, ...]] = {}
-    line = np.array(numbers_of[1:])
-    for j, column in enumerate(columns):
-        if column is None:
-            continue
-        texts = [row[j].strip() for row in body]
+    began = ""
+    for column in columns:
+        texts = cells[column.at]
         if column.name in LABELS:
-            empty = next((i for i, t in enumerate(texts) if not t), None)
-            if empty is not None:
-                raise MeasurementError(path, int(line[empty]), f"{header[j]} is empty")
-            labels[column.name] = tuple(texts)
+            labels[column.name] = _labels(grid, column, texts)
+        elif column.unit == STAMP:
+            if column.day_at is not None:
+                texts = [
+                    f"{d.strip()} {t}" for d, t in zip(across[column.day_at], texts, strict=True)
+                ]
+            began = texts[0]
+            numbers[column.name] = _seconds(grid, column, texts)
         else:
-            values = _numbers(path, header[j], texts, line)
-            large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
-            if len(large):
-                found = f"{header[j]} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
-                raise MeasurementError(path, int(line[large[0]]), found)
-            largest = np.abs(values).max()
-            if 0 < largest < SMALLEST_NUMBER:
-                reason = f"the largest {header[j]} is {largest:g}: no rig reads that; is an exponent wrong?"
-                raise MeasurementError(path, None, reason)
-            values = values * column.factor + column.shift
-            numbers[column.name] = np.where(np.abs(values) < SMALLEST_NUMBER, 0.0, values)
-    ignored = tuple(h for h, c in zip(header, columns, strict=True) if c is None)
-    return MeasuredTable(path, numbers, labels, line, ignored, hashlib.sha256(raw).hexdigest())
+            numbers[column.name] = _values(grid, column, texts, mark)
+    used = {c.at for c in columns} | {c.day_at for c in columns}
+    return MeasuredTable(
+        grid.path, numbers, labels, np.array(grid.line),
+        ReadAs(
+            columns, tuple(h for i, h in enumerate(grid.head) if i not in used and h),
+            tuple(c.head for c in empty), grid.encoding, grid.separator_name, mark, grid.head_line,
+            bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(),
+        ),
+    )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _ReadColumn:
-    name: str
-    factor: float = 1.0
-    shift: float = 0.0
+def _holds(text: str) -> bool:
+    return text not in ("", "-") and text.lower() != "nan"
 
 
-def _bytes(path: Path) -> bytes:
-    try:
-        return read_input(path, LARGEST_BYTES, "a measured file")
-    except InputFileError as error:
-        raise MeasurementError(path, None, str(error)) from None
+def _is_number(column: ReadColumn) -> bool:
+    return column.name not in LABELS and column.unit != STAMP
 
 
-def _lines(path: Path, raw: bytes) -> tuple[list[str], list[int]]:
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw[: error.start].count(b"\n") + 1
-        raise MeasurementError(
-            path, line, f"byte {raw[error.start]:#04x} is not UTF-8; save the file as UTF-8"
-        ) from None
-    if "\0" in text:
-        raise MeasurementError(path, text[: text.index("\0")].count("\n") + 1, "holds a NUL byte")
-    kept, numbers = [], []
-    for number, row in enumerate(text.splitlines(), 1):
-        if row.strip() and not row.lstrip().startswith("#"):
-            kept.append(row)
-            numbers.append(number)
-    if len(kept) > LARGEST_ROWS:
-        raise MeasurementError(path, None, f"{len(kept)} rows; at most {LARGEST_ROWS} are read")
-    return kept, numbers
+def _decimal_mark(
+    grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]
+) -> Mark:
+    """The decimal mark of all the file's numbers.
+
+    Raises
+    ------
+    MeasurementError : some have a point and some a comma, or all may be read either way.
+    """
+    seen = [(c, evidence_of(cells[c.at])) for c in columns]
+    points = [(c, e.point) for c, e in seen if e.point is not None]
+    commas = [(c, e.comma) for c, e in seen if e.comma is not None]
+    either = [(c, e.either) for c, e in seen if e.either is not None]
+
+    def said(column: ReadColumn, row: int) -> str:
+        return f'{column.head} = "{cells[column.at][row][:SHOWN]}"'
+
+    if points and commas:
+        point, comma = min(points, key=lambda p: p[1]), min(commas, key=lambda p: p[1])
+        first, later = sorted(((point, "point"), (comma, "comma")), key=lambda p: p[0][1])
+        reason = (
+            f"{said(*later[0])} has a decimal {later[1]}, {said(*first[0])} in line "
+            f"{grid.line[first[0][1]]} a decimal {first[1]}: write all numbers one way"
+        )
+        raise MeasurementError(grid.path, grid.line[later[0][1]], reason)
+    if points or commas:
+        return "." if points else ","
+    if either and (grid.separator != "," or "," in cells[either[0][0].at][either[0][1]]):
+        column, row = either[0]
+        text = cells[column.at][row]
+        if not (grid.encoding == "xlsx" and "." in text):
+            whole, part = text.replace(",", "").replace(".", ""), text.replace(",", ".")
+            reason = f"{said(column, row)} may be {whole} or {part}: write {whole} or {part}0"
+            raise MeasurementError(grid.path, grid.line[row], reason)
+    return "."
 
 
-def _columns(path: Path, line: int, header: list[str]) -> list[_ReadColumn | None]:
-    if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
-        raise MeasurementError(path, line, "columns must be separated by commas")
-    columns = [_column(path, line, h) for h in header]
-    seen: dict[str, str] = {}
-    for h, c in zip(header, columns, strict=True):
-        key = c.name if c else h
-        if key in seen:
-            same = "twice" if seen[key] == h else f"as {seen[key]} and as {h}"
-            raise MeasurementError(path, line, f"column {key} appears {same}")
-        seen[key] = h
-    return columns
+def _labels(grid: Grid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
+    empty = next((i for i, t in enumerate(texts) if not t), None)
+    if empty is not None:
+        raise MeasurementError(grid.path, grid.line[empty], f"{column.head} is empty")
+    return tuple(texts)
 
 
-def _column(path: Path, line: int, name: str) -> _ReadColumn | None:
-    if name in LABELS or name in PLAIN or "." in name:
-        return _ReadColumn(name)
-    for quantity in sorted(QUANTITIES, key=len, reverse=True):
-        unit, factors = QUANTITIES[quantity]
-        if name != quantity and not name.startswith(quantity + "_"):
-            continue
-        given = name[len(quantity) + 1 :]
-        if given not in factors:
-            accepted = ", ".join(f"{quantity}_{u}" for u in factors)
-            raise MeasurementError(path, line, f"column {name}: accepted are {accepted}")
-        shift = -KELVIN_AT_0_C if given == "K" else 0.0
-        return _ReadColumn(f"{quantity}_{unit}", factors[given], shift)
-    return None
+def _seconds(grid: Grid, column: ReadColumn, texts: list[str]) -> np.ndarray:
+    if is_slashed(texts[0]):
+        said = f'{column.head} = "{texts[0][:SHOWN]}"'
+        reason = f"{said} may begin with the day or the month; write 2024-12-31 12:30:00"
+        raise MeasurementError(grid.path, grid.line[0], reason)
+    if is_day(texts[0]):
+        said = f'{column.head} = "{texts[0][:SHOWN]}"'
+        reason = f"{said} is a day without a time of day; write both in one column, or time_s"
+        raise MeasurementError(grid.path, grid.line[0], reason)
+    found, bad = seconds_of(texts)
+    if bad is not None:
+        reason = (
+            f'{column.head} = "{texts[bad][:SHOWN]}" is no date and time as "{texts[0][:SHOWN]}" is'
+        )
+        raise MeasurementError(grid.path, grid.line[bad], reason)
+    return np.array(found)
 
 
-def _numbers(path: Path, name: str, texts: list[str], line: np.ndarray) -> np.ndarray:
-    try:
-        found = np.array([float(t) for t in texts])
-    except ValueError:
-        found = None
-    if found is not None and np.isfinite(found).all() and not any("_" in t for t in texts):
-        return found
-    for text, number in zip(texts, line, strict=True):
-        try:
-            good = isfinite(float(text)) and "_" not in text
-        except ValueError:
-            good = False
-        if not good:
-            what = "is empty" if not text else f'= "{text[:40]}" is not a finite number'
-            raise MeasurementError(path, int(number), f"{name} {what}")
-    raise AssertionError("unreachable: one of the texts is no number")
+def _values(grid: Grid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:
+    """Numbers in our unit; what is nothing, not finite or beyond any rig is refused."""
+    values, bad = numbers_of(texts, mark)
+    if bad is not None:
+        text = texts[bad]
+        what = "is empty" if not text else f'= "{text[:SHOWN]}" is not a finite number'
+        many = sum(not _holds(t) for t in texts)
+        if not _holds(text) and many > 1:
+            what += f" (so are {many} of {len(texts)} rows; fill them, or take the column out)"
+        raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
+    large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
+    if len(large):
+        found = f"{column.head} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
+        raise MeasurementError(grid.path, grid.line[large[0]], found)
+    largest = np.abs(values).max()
+    if 0 < largest < SMALLEST_NUMBER:
+        reason = (
+            f"the largest {column.head} is {largest:g}: no rig reads that; is an exponent wrong?"
+        )
+        raise MeasurementError(grid.path, None, reason)
+    values = values * column.factor + column.shift
+    return np.where(np.abs(values) < SMALLEST_NUMBER, 0.0, values)

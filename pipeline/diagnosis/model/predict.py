@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHistory, history_of
+from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
@@ -20,24 +21,25 @@ CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
 
 @dataclass(frozen=True)
 class Predicted:
-    """`angle_arcsec` (n,), and what the reader should know about it, one line each."""
+    """`angle_arcsec` (n,), what the reader should know about it, one line each, and how the file was read."""
 
     angle_arcsec: np.ndarray
     warnings: tuple[str, ...]
+    read_as: ReadAs = AS_OURS
 
 
-def predict_file(file: ModelFile, csv: Path) -> Predicted:
+def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = None) -> Predicted:
     """The angle for each row of a file with `torque_Nm` and whatever channels the model needs.
 
     Cycles are counted from the record's first one, by the file's own numbers. Drift goes on from the
     record's first row where the file's clock stands later; an earlier one is another clock, and drift
-    then starts with the file.
+    then starts with the file. `counts_per_turn` of the encoder, where a column is in counts.
 
     Raises
     ------
     MeasurementError : the file cannot be read, or lacks a channel that a cause of the model needs.
     """
-    table = read_table(csv)
+    table = read_table(csv, counts_per_turn)
     if not table.has("torque_Nm"):
         raise table.refuse(None, "column torque_Nm is missing")
     found = history_of(table)
@@ -54,7 +56,7 @@ def predict_file(file: ModelFile, csv: Path) -> Predicted:
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
     told = f"unit {', '.join(strange)}: " if any(strange) else ""
     warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []
-    return Predicted(angle, tuple(warnings))
+    return Predicted(angle, tuple(warnings), table.read_as)
 
 
 def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:

@@ -1,0 +1,87 @@
+"""Bytes of a text file as text, in the encodings that measuring programs write."""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass
+from pathlib import Path
+
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+
+MARKS = (
+    (codecs.BOM_UTF8, "utf-8", "UTF-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le", "UTF-32"),  # begins as UTF-16's does: it comes first
+    (codecs.BOM_UTF32_BE, "utf-32-be", "UTF-32"),
+    (codecs.BOM_UTF16_LE, "utf-16-le", "UTF-16"),
+    (codecs.BOM_UTF16_BE, "utf-16-be", "UTF-16"),
+)
+"""Byte order mark, codec, name."""
+BINARY = (
+    (b"\xd0\xcf\x11\xe0", "an old Excel file (.xls); save it as .xlsx or as CSV"),
+    (b"TDSm", "a TDMS file; export it as CSV"),
+    (b"MDF ", "an MDF file; export it as CSV"),
+    (b"UnFinMF", "an MDF file; export it as CSV"),
+    (b"MATLAB", "a MATLAB file; export it as CSV"),
+    (b"\x89HDF", "an HDF5 file; export it as CSV"),
+    (b"\x1f\x8b", "compressed; unpack it first"),
+)
+"""How other files begin, and what to do with them."""
+LOOKED_AT = 4096
+"""Bytes that show whether every second one is 0."""
+SIXTEEN_BIT = 0.9
+"""Share of zero bytes at odd or even places: figures and separators of UTF-16 have one each."""
+
+
+@dataclass(frozen=True)
+class FileText:
+    """Text of a file, and the name of its encoding."""
+
+    text: str
+    encoding: str
+
+
+def text_of(path: Path, raw: bytes) -> FileText:
+    """UTF-8 with or without mark, UTF-16 and UTF-32, else Windows' cp1252 (Latin-1 with more letters).
+
+    Raises
+    ------
+    MeasurementError : another kind of file, or bytes that are text in none of these.
+    """
+    for begin, what in BINARY:
+        if raw.startswith(begin):
+            raise MeasurementError(path, None, f"is {what}")
+    found = _decoded(path, raw)
+    if "\0" in found.text:
+        line = found.text[: found.text.index("\0")].count("\n") + 1
+        raise MeasurementError(path, line, "holds a NUL byte; save the file as CSV in UTF-8")
+    return found
+
+
+def _decoded(path: Path, raw: bytes) -> FileText:
+    for mark, codec, name in MARKS:
+        if raw.startswith(mark):
+            return _strict(path, raw[len(mark) :], codec, name)
+    begin = raw[:LOOKED_AT]
+    for place, codec in ((1, "utf-16-le"), (0, "utf-16-be")):
+        half = begin[place::2]
+        if len(raw) % 2 == 0 and half and half.count(0) >= SIXTEEN_BIT * len(half):
+            return _strict(path, raw, codec, "UTF-16")
+    try:
+        return FileText(raw.decode("utf-8"), "UTF-8")
+    except UnicodeDecodeError as error:
+        byte, line = raw[error.start], raw[: error.start].count(b"\n") + 1
+    try:
+        return FileText(raw.decode("cp1252"), "cp1252")
+    except UnicodeDecodeError:
+        raise MeasurementError(
+            path, line, f"byte {byte:#04x} is neither UTF-8 nor Latin-1; save the file as UTF-8"
+        ) from None
+
+
+def _strict(path: Path, raw: bytes, codec: str, name: str) -> FileText:
+    try:
+        return FileText(raw.decode(codec), name)
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].decode(codec, "replace").count("\n") + 1
+        reason = f"begins as {name} and is not; save the file as UTF-8"
+        raise MeasurementError(path, line, reason) from None

@@ -1,0 +1,49 @@
+"""How a measured file was understood: what a reader checks before believing a diagnosis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
+
+
+@dataclass(frozen=True)
+class ReadAs:
+    """How a file was understood.
+
+    Attributes
+    ----------
+    columns : those that are read, in the file's order. ignored : heads of the others. empty : heads of
+        columns without any value. encoding : "UTF-8", "UTF-16", "cp1252", "xlsx". separator : in words.
+    decimal_mark : "." or ",". head_line : of the file. unit_row : whether units stand below the head.
+    began : the first row's date and time, "" where time is no date. sha256 : of the file's bytes.
+    """
+
+    columns: tuple[ReadColumn, ...] = ()
+    ignored: tuple[str, ...] = ()
+    empty: tuple[str, ...] = ()
+    encoding: str = "UTF-8"
+    separator: str = "comma"
+    decimal_mark: str = "."
+    head_line: int = 1
+    unit_row: bool = False
+    began: str = ""
+    sha256: str = ""
+
+    @property
+    def heads(self) -> tuple[str, ...]:
+        """All columns, by the file's names; those that are read first."""
+        return (*(c.head for c in self.columns), *self.ignored)
+
+    @property
+    def as_ours(self) -> bool:
+        """Whether the file is written as docs/contract.md, section 3, says: nothing had to be understood."""
+        plain = all(
+            c.head in (c.name, f"{c.name.partition('_')[0]}_{c.unit}") for c in self.columns
+        )
+        form = (self.separator, self.decimal_mark, self.unit_row) == ("comma", ".", False)
+        return plain and form and not self.empty
+
+
+AS_OURS = ReadAs()
+"""Of a record that no file holds."""

@@ -1,0 +1,77 @@
+"""How a measured file was understood, in words and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
+from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
+from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES
+
+MARKS = {".": "point", ",": "comma"}
+
+
+def form_record(read_as: ReadAs) -> dict[str, Any]:
+    """Encoding, separator, decimal mark and place of the head."""
+    return {
+        "encoding": read_as.encoding,
+        "separator": read_as.separator,
+        "decimal_mark": MARKS[read_as.decimal_mark],
+        "header_line": read_as.head_line,
+    }
+
+
+def columns_record(read_as: ReadAs) -> dict[str, Any]:
+    """For each column that is read, by its name in the file: ours, its unit, and the factor to ours."""
+    return {c.head or c.name: _column(c, read_as) for c in read_as.columns}
+
+
+def _column(column: ReadColumn, read_as: ReadAs) -> dict[str, Any]:
+    record: dict[str, Any] = {"as": column.name}
+    if column.unit:
+        record["unit"] = column.unit
+    if column.unit == STAMP:
+        record["counted_from"] = read_as.began
+    elif column.unit:
+        record["factor"] = column.factor
+        if column.shift:
+            record["shift"] = column.shift
+    return record
+
+
+def reading_notes(read_as: ReadAs) -> list[str]:
+    """What a reader should check, one line each; none where the file is written in our words and units."""
+    if read_as.as_ours or not read_as.columns:
+        return []
+    columns = "; ".join(f'"{c.head}" as {_words(c, read_as)}' for c in read_as.columns)
+    found = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
+    if read_as.empty:
+        found.append(f"columns empty in every row: {', '.join(read_as.empty)}")
+    return found
+
+
+def form_words(read_as: ReadAs) -> str:
+    """Encoding, separator, decimal mark and head in one line."""
+    if read_as.encoding == "xlsx":
+        return f"the workbook's first sheet, header in row {read_as.head_line}"
+    units = ", units below it" if read_as.unit_row else ""
+    return (
+        f"{read_as.encoding}, columns separated by {read_as.separator}, decimal "
+        f"{MARKS[read_as.decimal_mark]}, header in line {read_as.head_line}{units}"
+    )
+
+
+def _words(column: ReadColumn, read_as: ReadAs) -> str:
+    if column.unit == STAMP:
+        return f"{column.name}, counted from {read_as.began}"
+    quantity = next(
+        (q for q in sorted(QUANTITIES, key=len, reverse=True) if column.name.startswith(q)), ""
+    )
+    if not quantity or not column.unit or (column.factor == 1 and not column.shift):
+        return column.name
+    if column.unit == COUNTS:
+        return f"{column.name}, {column.factor:.6g} each"
+    unit, ours = column.unit.replace("_per_", "/"), QUANTITIES[quantity].unit.replace("_per_", "/")
+    if column.shift:
+        return f"{column.name}, in {unit} ({column.shift:g} added)"
+    return f"{column.name}, in {unit} (1 {unit} = {column.factor:.6g} {ours})"
