@@ -63,13 +63,7 @@ def lengths(part: Part) -> dict[str, float]:
 
 def without_holes(design: Design) -> Design:
     """The body of revolution that the flexspline and the shaft would be."""
-    tables = _tables(design)
-    for part in ("flexspline", "shaft"):
-        tables[part]["bolt_count"] = 0
-        for name in HOLES:
-            tables[part].pop(name, None)
-    tables["shaft"].pop("keyway", None)
-    return design_from(tables)
+    return design.model_copy(update={p.name: p.without_holes().shape for p in design.parts})
 
 
 def _tables(design: Design) -> dict[str, Any]:

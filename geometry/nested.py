@@ -11,16 +11,9 @@ what each body has of the whole body's mounted face.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
-
-NO_HOLES: dict[str, Any] = {
-    "bolt_count": 0,
-    "bolt_circle_diameter_mm": None,
-    "bolt_hole_diameter_mm": None,
-}
 
 
 @dataclass(frozen=True)
@@ -49,7 +42,5 @@ def nested_bodies(part: Part) -> NestedBodies:
         edge = {shape.land.inner: 2 * (bolts.radius + bolts.hole_radius)}
     else:
         edge = {shape.land.outer: 2 * (bolts.radius - bolts.hole_radius)}
-    whole = shape.model_copy(update=NO_HOLES)
-    return NestedBodies(
-        replace(part, shape=whole.model_copy(update=edge)), replace(part, shape=whole)
-    )
+    whole = part.without_holes()
+    return NestedBodies(replace(whole, shape=whole.shape.model_copy(update=edge)), whole)

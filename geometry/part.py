@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
@@ -12,6 +12,11 @@ from flexspline.geometry.outline import Meridian
 from flexspline.geometry.shapes import BoltCircle, Flexspline, Shaft, Slot
 
 PartName = Literal["flexspline", "shaft"]
+NO_HOLES: dict[str, Any] = {
+    "bolt_count": 0,
+    "bolt_circle_diameter_mm": None,
+    "bolt_hole_diameter_mm": None,
+}
 SHARE_OF_RADIUS = 1 / 20
 """Of the shaft's least outer radius, in the stress rule. A shaft's wall is often most of its radius; one
 such wall from every edge would leave out its fillets, which count in full. What a rigid grip adds at its
@@ -65,6 +70,13 @@ class Part:
     def is_revolved(self) -> bool:
         """Whether the part is a body of revolution: no bolt holes, no keyway."""
         return self.bolts is None and self.keyway is None
+
+    def without_holes(self) -> Part:
+        """The body of revolution that it would be: no bolt holes, no keyway."""
+        if self.is_revolved:
+            return self
+        filled = NO_HOLES | ({"keyway": None} if isinstance(self.shape, Shaft) else {})
+        return replace(self, shape=self.shape.model_copy(update=filled))
 
     @property
     def exclusion_mm(self) -> float:

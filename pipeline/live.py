@@ -1,12 +1,11 @@
 """A design while its dimensions move: the command line's axisymmetric answers, piece by piece.
 
-Bolt holes and keyway are left out (`left_out` says so); what is left is solved exactly as `flexspline
-stiffness` solves a body of revolution, to the design's own tolerance.
+K_b of a flexspline with bolt holes is enclosed; everything else leaves holes and keyway out (`left_out` says
+so). Every body of revolution is solved exactly as `flexspline stiffness` does, to the design's own tolerance.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -21,10 +20,10 @@ from flexspline.pipeline.revolved import (
     ellipse_field,
     first_ellipse_field,
     lobes,
-    revolved,
+    stiffness,
     torque_field,
+    with_equivalent_ring,
 )
-from flexspline.pipeline.revolved import torsion as torsion_of
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
 RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]
@@ -35,16 +34,15 @@ def left_out(design: Design) -> tuple[str, ...]:
     found = []
     for part in design.parts:
         if part.bolts:
-            found.append(f"{part.bolts.count} bolt holes of the {part.name}")
+            known = " (K_b's bounds hold with them)" if part.name == "flexspline" else ""
+            found.append(f"{part.bolts.count} bolt holes of the {part.name}{known}")
     if design.part("shaft").keyway is not None:
         found.append("the keyway")
     return tuple(found)
 
 
 def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
-    """K_b (load case "uniform") and K_e of the bodies that stand for a design's parts.
-
-    Their bounds are theorems about the parts themselves only where nothing was left out or replaced.
+    """K_b (load case "uniform") and K_e.
 
     Raises
     ------
@@ -52,17 +50,12 @@ def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
     ComputationError : the mesh failed or the tolerance was not met.
     """
     tolerance = _tolerance(design)
-    b, e = (
-        replace(K, guaranteed=K.guaranteed and plain.shape == own.shape)
-        for own, plain in zip(design.parts, revolved(design).parts, strict=True)
-        for K in [torsion_of(plain, tolerance)]
-    )
-    return b, e
+    return stiffness(design, "flexspline", tolerance), stiffness(design, "shaft", tolerance)
 
 
 def rim(design: Design, case: RimCase) -> Stiffness:
-    """K_b of a lobe case of a `revolved` design; errors as `torsion`."""
-    part, tolerance = design.part("flexspline"), _tolerance(design)
+    """K_b of a lobe case; errors as `torsion`."""
+    part, tolerance = with_equivalent_ring(design).part("flexspline"), _tolerance(design)
     if case == "K_b_lobes_contact":
         return contact(part, tolerance)
     return lobes(part, case == "K_b_lobes", tolerance)

@@ -1,14 +1,15 @@
 """The fast model: the bodies of revolution that stand for a design's parts, solved on the meridian.
 
-Bolt holes and keyway are left out, and drawn teeth are their plain ring. Every answer is proportional to
-Young's modulus or to a load: parts are solved for 1 GPa, 1 mm and 1 N·m and remembered, so another
-material, torque or clearance costs nothing, and a change of one part leaves the other. `tolerance` is
-relative, of K or of the peak stress.
+K_b of a flexspline with bolt holes lies between those of two bodies of revolution (`pipeline.enclosure`).
+Everything else leaves holes and keyway out, and drawn teeth are their plain ring. Every answer is
+proportional to Young's modulus or to a load: parts are solved for 1 GPa, 1 mm and 1 N·m and remembered, so
+another material, torque or clearance costs nothing, and a change of one part leaves the other. `tolerance`
+is relative, of K or of the peak stress.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 
@@ -23,8 +24,10 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.material import Material
-from flexspline.geometry.part import Part
+from flexspline.geometry.part import Part, PartName
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.drawn_teeth import of_toothed
+from flexspline.pipeline.enclosure import enclosed
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
@@ -55,53 +58,78 @@ def with_equivalent_ring(design: Design) -> Design:
     return AnalysisContext(design, cache, Progress()).part("flexspline").context.design
 
 
-def torsion(part: Part, tolerance: float) -> Stiffness:
-    """K_b of the load case "uniform", or K_e, of a part without holes.
-
-    What misses the tolerance has its reason in `shortfall`, here and below.
+def stiffness(design: Design, name: PartName, tolerance: float) -> Stiffness:
+    """K_b of the load case "uniform", or K_e, of a design's part.
 
     Raises
     ------
+    DesignError : the plain ring of drawn teeth does not fit.
+    ComputationError : as `torsion`.
+    """
+    part = with_equivalent_ring(design).part(name)
+    found = torsion(part, tolerance)
+    return found if part.shape == design.part(name).shape else of_toothed(found)
+
+
+def torsion(part: Part, tolerance: float) -> Stiffness:
+    """K_b of the load case "uniform", or K_e.
+
+    `tolerance` is that of each body of revolution. What misses it has its reason in `shortfall`, here and
+    below.
+
+    Raises
+    ------
+    NestingError
     ComputationError : no mesh, or no solution.
     """
-    return _torsion(_of_1_GPa(part), tolerance).times(part.material.youngs_modulus_GPa)
+    return _of_holed(part, lambda body: _torsion(body, tolerance))
 
 
 def lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
-    found = _lobes(_of_1_GPa(part), supported, tolerance)
-    return found.times(part.material.youngs_modulus_GPa)
+    return _of_holed(part, lambda body: _lobes(body, supported, tolerance))
 
 
 def contact(part: Part, tolerance: float) -> Stiffness:
     """K_b under the lobe load, the seat resting on the wave generator; errors as `torsion`."""
-    return _contact(_of_1_GPa(part), tolerance).times(part.material.youngs_modulus_GPa)
+    return _of_holed(part, lambda body: _contact(body, tolerance))
+
+
+def _of_holed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
+    """Of a flexspline between its two bodies; of a shaft without its holes, then no theorem."""
+    unit = _of_1_GPa(part)
+    if part.name == "flexspline" and part.bolts is not None:
+        found = enclosed(unit, solve)
+    else:
+        found = solve(unit.without_holes())
+        found = replace(found, guaranteed=found.guaranteed and part.is_revolved)
+    return found.times(part.material.youngs_modulus_GPa)
 
 
 def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
     """The peak stress on the wave generator's ellipse; errors as `torsion`."""
-    found = _ellipse_peak(_of_1_GPa(part), tolerance)
+    found = _ellipse_peak(_body(part), tolerance)
     return found.times(w0_mm * part.material.youngs_modulus_GPa)
 
 
 def torque_peak(part: Part, torque_Nm: float, tolerance: float) -> StressPeak:
     """The peak stress under a torque; errors as `torsion`."""
-    return _torque_peak(_of_1_GPa(part), tolerance).times(torque_Nm)
+    return _torque_peak(_body(part), tolerance).times(torque_Nm)
 
 
 def ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
     """Displacement and stress on the wave generator's ellipse; errors as `torsion`."""
-    return _on_ellipse(part, w0_mm, _ellipse_field(_of_1_GPa(part), tolerance))
+    return _on_ellipse(part, w0_mm, _ellipse_field(_body(part), tolerance))
 
 
 def first_ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
     """`ellipse_field` before any refinement; to be asked for before it, lest the work is done twice."""
-    return _on_ellipse(part, w0_mm, _begun(_of_1_GPa(part), tolerance).newest)
+    return _on_ellipse(part, w0_mm, _begun(_body(part), tolerance).newest)
 
 
 def torque_field(part: Part, torque_Nm: float, tolerance: float) -> RevolvedField:
     """Displacement and stress under a torque; errors as `torsion`."""
-    unit = _torque_field(_of_1_GPa(part), tolerance)
+    unit = _torque_field(_body(part), tolerance)
     return _loaded(unit, torque_Nm, torque_Nm / part.material.youngs_modulus_GPa)
 
 
@@ -123,6 +151,11 @@ def _of_1_GPa(part: Part) -> Part:
     """What is solved and remembered: the same shape and Poisson's ratio."""
     nu = part.material.poissons_ratio
     return replace(part, material=Material(name="1 GPa", youngs_modulus_GPa=1.0, poissons_ratio=nu))
+
+
+def _body(part: Part) -> Part:
+    """What stands for a part whose holes are left out."""
+    return _of_1_GPa(part.without_holes())
 
 
 def _elastic(part: Part) -> Elastic:

@@ -1,7 +1,7 @@
 """One design of a study: its figures by the fast model, or why there are none.
 
-The fast model (`pipeline.revolved`) leaves bolt holes and keyway out, but for a factor on K_b and K_e where
-a study gives one (`pipeline.study.holes`).
+The fast model (`pipeline.revolved`): K_b of a flexspline with bolt holes is enclosed, K_e of a shaft with
+holes corrected where a study gives a factor (`pipeline.study.holes`); stresses leave holes out.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import Any
 
 from flexspline.fea.shortfall import settled_peak
@@ -19,19 +18,18 @@ from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
-from flexspline.geometry.part import PartName
 from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_stiffness
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.revolved import (
     contact,
     ellipse_peak,
     lobes,
-    revolved,
+    stiffness,
     torque_peak,
-    torsion,
+    with_equivalent_ring,
 )
 from flexspline.pipeline.study.figures import SIZES, Solve
-from flexspline.pipeline.study.holes import Holes, with_holes
+from flexspline.pipeline.study.holes import Factor, pierced, with_holes
 
 TORSION_TOLERANCE = 2e-3
 LOBE_TOLERANCE = 1e-2
@@ -48,7 +46,7 @@ class Task:
     tables: Mapping[str, Any]
     values: Mapping[str, float]
     solves: tuple[Solve, ...]
-    holes: Holes = field(default_factory=dict)
+    holes: Factor | None = None
 
 
 @dataclass(frozen=True)
@@ -71,10 +69,8 @@ def evaluate(task: Task) -> Outcome:
     return replace(found, seconds=time.perf_counter() - began)
 
 
-def figures_of(
-    design: Design, solves: tuple[Solve, ...], holes: Holes = MappingProxyType({})
-) -> Outcome:
-    """All figures that the solves give, and the sizes; K_b and K_e corrected for `holes`.
+def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None = None) -> Outcome:
+    """All figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
 
     A solve that fails leaves the others' figures; the reason names it.
 
@@ -82,7 +78,7 @@ def figures_of(
     ------
     DesignError, ComputationError : the plain ring of drawn teeth does not fit, or was not found.
     """
-    flexspline, shaft = revolved(design).parts
+    flexspline, shaft = with_equivalent_ring(design).parts
     in_sum, w0, torque = (
         design.solver.K_b_in_sum, design.gear.centre_distance_mm, design.load.torque_Nm,
     )  # fmt: skip
@@ -99,8 +95,8 @@ def figures_of(
         asked["torque_peak"] = lambda: torque_peak(flexspline, torque, STRESS_TOLERANCE)
         asked["shaft_torque_peak"] = lambda: torque_peak(shaft, torque, STRESS_TOLERANCE)
     if "torsion" in solves:
-        asked["K_b"] = lambda: torsion(flexspline, TORSION_TOLERANCE)
-        asked["K_e"] = lambda: torsion(shaft, TORSION_TOLERANCE)
+        asked["K_b"] = lambda: stiffness(design, "flexspline", TORSION_TOLERANCE)
+        asked["K_e"] = lambda: fast_K_e(design)
     found: dict[str, float] = {}
     missing: dict[str, str] = {}
     for name, solve in asked.items():
@@ -109,7 +105,8 @@ def figures_of(
         except OUR_ERRORS as fault:
             missing[name] = str(fault)
     if "torsion" in solves:
-        found = with_holes(found, design, holes)
+        if holes is not None and "K_e" not in missing and pierced(design):
+            found = with_holes(found, holes)
         if not {in_sum, "K_e"} & set(missing):
             try:
                 found |= _sum(design, found)
@@ -123,10 +120,9 @@ def figures_of(
     return Outcome(found, "; ".join(f"{name}: {why}" for name, why in missing.items()))
 
 
-def revolved_torsion(design: Design, name: PartName) -> tuple[float, float, float]:
-    """K and its bounds [N·m/rad] of a part without its holes."""
-    found = torsion(revolved(design).part(name), TORSION_TOLERANCE)
-    return found.K_Nm_per_rad, found.lower_Nm_per_rad, found.upper_Nm_per_rad
+def fast_K_e(design: Design) -> Stiffness:
+    """Of the shaft without its holes; errors as `pipeline.revolved.stiffness`."""
+    return stiffness(design, "shaft", TORSION_TOLERANCE)
 
 
 def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:

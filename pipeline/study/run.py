@@ -7,14 +7,13 @@ from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, replace
 from functools import cache, partial
 from pathlib import Path
-from types import MappingProxyType
 
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
-from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, revolved_torsion
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
-from flexspline.pipeline.study.holes import Factor, Holes, holes_of
+from flexspline.pipeline.study.holes import Factor, holes_of
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
@@ -28,8 +27,8 @@ from flexspline.pipeline.study.verify import verify
 HOLES_NOTE = "holes"
 
 
-def source_of(study: Study, holes: Holes = MappingProxyType({})) -> Source:
-    """Where a study's designs come from, and what corrects their K for holes."""
+def source_of(study: Study, holes: Factor | None = None) -> Source:
+    """Where a study's designs come from, and what corrects their K_e for holes."""
     if study.file.run.method == "tolerance":
         return scattered(study, holes)
     solves = solves_of(study, USUAL)
@@ -39,19 +38,19 @@ def source_of(study: Study, holes: Holes = MappingProxyType({})) -> Source:
     return Planned(study, solves, plan, holes=holes)
 
 
-def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -> Holes:
-    """What bolt holes and keyway do to the K of the design that the study begins with.
+def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -> Factor | None:
+    """What the shaft's holes and keyway do to K_e of the design that the study begins with.
 
-    Kept with the study's trials: every row has the same factors, whoever makes it and when.
+    Kept with the study's trials: every row has the same factor, whoever makes it and when.
     """
     stored = store.notes().get(HOLES_NOTE)
     if stored is None:
-        found = holes_of(study.design, revolved_torsion, say)
+        found = holes_of(study.design, fast_K_e, say)
         stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
         if stored is None:
-            stored = {name: asdict(factor) for name, factor in found.items()}
+            stored = asdict(found) if found else {}
             store.note(HOLES_NOTE, stored)
-    return {name: Factor(**factor) for name, factor in stored.items()}
+    return Factor(**stored) if stored else None
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:
@@ -82,7 +81,7 @@ def whole_study(
     watch: Callable[[Progress], None],
     say: Callable[[str], None],
 ) -> StudyResult:
-    """`run_study` with the workers that the study asks for, its K corrected for holes."""
+    """`run_study` with the workers that the study asks for, its K_e corrected for holes."""
     run = study.file.run
     pool = partial(worker_pool, run.workers, run.scheduler)
     return run_study(study, store, pool, watch, say=say, holes=nominal_holes(study, store, say))
@@ -95,7 +94,7 @@ def run_study(
     watch: Callable[[Progress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
     say: Callable[[str], None] = lambda line: None,
-    holes: Holes = MappingProxyType({}),
+    holes: Factor | None = None,
 ) -> StudyResult:
     """Evaluate what is not yet evaluated, verify the best; `pool` opens only where there is work.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import Solve, needed
-from flexspline.pipeline.study.holes import Holes
+from flexspline.pipeline.study.holes import Factor
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Plan, from_unit, linked
 from flexspline.pipeline.study.store import CLAIM, Job, TrialStore
@@ -35,7 +35,7 @@ class _Asked:
 
     study: Study
     solves: tuple[Solve, ...]
-    holes: Holes = field(default_factory=dict, kw_only=True)
+    holes: Factor | None = field(default=None, kw_only=True)
 
     @cached_property
     def _tables(self) -> dict[str, Any]:
@@ -47,7 +47,7 @@ class _Asked:
         return distributions(self.study)
 
     def task(self, values: Mapping[str, float]) -> Task:
-        return Task(self._tables, linked(self.study, values), self.solves, dict(self.holes))
+        return Task(self._tables, linked(self.study, values), self.solves, self.holes)
 
     def objectives(self, outcome: Outcome) -> list[float] | None:
         if not self.study.is_answered(outcome.figures):
@@ -156,7 +156,7 @@ def study_name(study: Study) -> str:
     told: dict[str, Any] = {
         "design": study.design.model_dump(mode="json"),
         "study": file,
-        "holes": "by the nominal design's factor",
+        "holes": "K_b enclosed, K_e by the nominal design's factor",
         "method": run.method,
         "seed": run.seed,
     }

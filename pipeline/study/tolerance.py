@@ -18,7 +18,7 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import value_at, with_values
 from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.evaluate import Task
-from flexspline.pipeline.study.holes import Holes
+from flexspline.pipeline.study.holes import Factor
 from flexspline.pipeline.study.load import Study, StudyError, location_of
 from flexspline.pipeline.study.plan import Listed, linked
 from flexspline.pipeline.study.source import Planned, solves_of
@@ -177,10 +177,10 @@ class Scattered(Planned):
         if MODULUS in values and material.shaft is not None:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
-        return Task(self._tables, changed, self.solves, dict(self.holes))
+        return Task(self._tables, changed, self.solves, self.holes)
 
 
-def scattered(study: Study, holes: Holes) -> Scattered:
+def scattered(study: Study, holes: Factor | None) -> Scattered:
     """The source of a tolerance study.
 
     Raises

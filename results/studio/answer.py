@@ -69,7 +69,8 @@ def agreement(design: Design) -> str:
     left = left_out(design)
     if left:
         words = ("keyway" if "keyway" in part else "holes" for part in left)
-        return f"Equals `flexspline stiffness` but for {' and '.join(dict.fromkeys(words))}"
+        but_for = " and ".join(dict.fromkeys(words))
+        return f"Equals `flexspline stiffness` but for {but_for}, K_b within its bounds"
     if design.solver.model == "solid":
         return "Equals `flexspline stiffness`, there the solid model, within the bounds"
     return "Equals `flexspline stiffness` to seven digits"

@@ -56,7 +56,7 @@ def _torsion(design: Design) -> Found:
 
 
 def _rim(case: RimCase) -> Callable[[Design], Found]:
-    return lambda design: bounded_record(case, rim(revolved(design), case))
+    return lambda design: bounded_record(case, rim(design, case))
 
 
 def _field(view: View) -> Callable[[Design], Found]:

@@ -19,7 +19,7 @@ PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 def notes(result: StudyResult) -> list[str]:
     """Sentences of the section "Scope and limits"."""
     said = [
-        f"Fast model: the axisymmetric one of the same meridian, without bolt holes and keyway; there K "
+        f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
         f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
         f"{100 * LOBE_TOLERANCE:g} %.",
         *_holes(result),
@@ -70,28 +70,33 @@ def _mass(design: Design) -> str:
 
 
 def _holes(result: StudyResult) -> Iterable[str]:
-    """How K_b and K_e were corrected for holes and keyway, and what that does to their bounds."""
-    pierced_ones = pierced(result.study.design)
-    factors = {
-        k: next((r.outcome.figures[f] for r in result.built if f in r.outcome.figures), None)
-        for k, f in ((k, f"{k}_holes_factor") for k in pierced_ones)
-    }
-    used = {k: f for k, f in factors.items() if f is not None}
-    if used:
-        said = " and ".join(f"{k} by {_percent(100 * (f - 1))}" for k, f in used.items())
+    """What is known of K_b and K_e of parts with holes or a keyway."""
+    design = result.study.design
+    if design.part("flexspline").bolts is not None:
         yield (
-            f"Holes and keyway change {said} in the design that the study began with (one solid solve). "
-            "Every design's K is corrected by that; its bounds are widened by what both solves leave open "
-            f"and by {100 * DRIFT:g} % of the correction, and are estimates. Lobes and stresses are not "
-            "corrected."
+            "K_b of every design with bolt holes lies between two parts of its own: one with the ring of the "
+            "holes cut out, one without holes, whatever their number. Stresses are those without holes."
         )
-    if missing := [k for k in pierced_ones if k not in used]:
-        yield (
-            f"{' and '.join(missing)}: of the part without its holes or keyway, since the solid solve "
-            "that would tell their effect failed."
-        )
+    if pierced(design):
+        yield _shaft_holes(result)
     if keys := unfollowed(result.study):
         yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
+
+
+def _shaft_holes(result: StudyResult) -> str:
+    """How K_e was corrected, and what that does to its bounds."""
+    key = "K_e_holes_factor"
+    factor = next((r.outcome.figures[key] for r in result.built if key in r.outcome.figures), None)
+    if factor is None:
+        return (
+            "K_e: of the shaft without its holes or keyway, since the solid solve that would tell their "
+            "effect failed."
+        )
+    return (
+        f"Holes and keyway change K_e by {_percent(100 * (factor - 1))} in the design that the study began "
+        "with (one solid solve). Every design's K_e is corrected by that; its bounds are widened by what "
+        f"both solves leave open and by {100 * DRIFT:g} % of the correction, and are estimates."
+    )
 
 
 def _percent(value: float) -> str:

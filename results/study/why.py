@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from flexspline.pipeline.study.holes import of_holes
+from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
@@ -91,7 +91,10 @@ def limits(result: StudyResult) -> list[str]:
 def disagreement(check: Check) -> str:
     """Why the fast and the solid model may differ by more than they should."""
     if check.fast_bounds and check.solid_bounds:
-        return "they disagree beyond their bounds; the fast model knows holes only as the nominal design's"
+        return (
+            "they disagree beyond their bounds; the fast model knows the shaft's holes only as the nominal "
+            "design's"
+        )
     return (
         f"they differ by more than {100 * STRESS_SHARE:g} %; without bounds of either: the fast model's "
         "mesh is the finer one, holes near the peak are in the solid one alone"
@@ -99,9 +102,9 @@ def disagreement(check: Check) -> str:
 
 
 def unfollowed(study: Study) -> str:
-    """Keys of holes and keyway that the study changes; "" where there are none."""
+    """Keys of the shaft's holes and keyway that the study changes; "" where there are none."""
     file = study.file
-    return ", ".join(of_holes([*file.vary, *file.link, *file.tolerance]))
+    return ", ".join(unfollowed_keys([*file.vary, *file.link, *file.tolerance]))
 
 
 def incomplete(result: StudyResult) -> str:
