@@ -15,13 +15,9 @@ from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE, ellipse_field, half_seat_peak
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.load_cases import (
-    STRESS_TOLERANCE,
-    half_seat_peak,
-    rim_answers,
-    wave_generator_field,
-)
+from flexspline.pipeline.load_cases import rim_answers
 from flexspline.pipeline.part_meshes import MeshedPart
 from flexspline.pipeline.part_stiffness import TwistedPart, part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -118,7 +114,7 @@ def run(context: AnalysisContext) -> RunResult:
     asked = {
         "flexspline_torque": lambda: torque_field(flexspline),
         "shaft_torque": lambda: torque_field(shaft),
-        "wave_generator": lambda: wave_generator_field(flexspline),
+        "wave_generator": lambda: ellipse_field(flexspline),
     }
     made = {name: tried.get(name, solve) for name, solve in asked.items()}
     fields = {name: solved for name, solved in made.items() if solved is not None}

@@ -19,11 +19,11 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
+from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.load_cases import (
     RIM_CASES,
     RimCase,
     rim_stiffness,
-    wave_generator_field,
 )
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.stiffness_pair import stiffness_pair
@@ -106,7 +106,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     """
     context = analysis_context(design)
     if case == "wave_generator":
-        return wave_generator_field(context.part("flexspline"))
+        return ellipse_field(context.part("flexspline"))
     if case not in ("flexspline_torque", "shaft_torque"):
         raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
     return torque_field(context.part("shaft" if case == "shaft_torque" else "flexspline"))

@@ -14,7 +14,7 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
-from flexspline.pipeline.load_cases import STRESS_TOLERANCE
+from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
 from flexspline.pipeline.revolved import (
     contact,
     ellipse_field,

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Literal, TypeVar, get_args
+from typing import Literal, get_args
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
-from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.types import SolidField, Stiffness, StressPeak
+from flexspline.fea.deadline import Deadline
+from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.outline import Meridian
 from flexspline.pipeline.attempts import Attempts
+from flexspline.pipeline.by_harmonics import by_harmonics
+from flexspline.pipeline.ellipse_peak import ellipse_peak
 from flexspline.pipeline.enclosed_part import (
     enclosure_if_any,
     enclosure_of,
@@ -23,20 +23,12 @@ from flexspline.pipeline.enclosed_part import (
     tolerance_of,
 )
 from flexspline.pipeline.enclosure import held_within
-from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.solid_lobes import solid_lobes
-from flexspline.pipeline.wave_generator import solid_ellipse
 
 RimCase = Literal["lobes", "lobes_contact", "lobes_unsupported"]
 RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
 """In the order of the reports; each is solved as `CASES` (below) says."""
-T = TypeVar("T", Stiffness, StressPeak)
-NARROW_SEAT = 0.5
-"""Share of the ring's width that the seat has where it is asked how its width matters."""
-SEAT_TOLERANCE = 0.02
-"""Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
-STRESS_TOLERANCE = 0.005
-"""Change of a peak stress over two refinements at which the axisymmetric mesh is fine enough."""
 
 
 @dataclass(frozen=True)
@@ -65,15 +57,13 @@ class RimAnswers:
 
 def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
-    revolved = flexspline.axisymmetric
-    every = revolved or may_answer(flexspline)
-    peak = _revolved_peak if revolved else _solid_peak
+    every = flexspline.axisymmetric or may_answer(flexspline)
     found = {
         f"K_b_{case}": tried.get(f"K_b_{case}", partial(rim_stiffness, flexspline, case))
         for case in RIM_CASES
         if every or CASES[case].solid is not None
     }
-    return RimAnswers(found, tried.get("wave_generator_peak", lambda: peak(flexspline)))
+    return RimAnswers(found, tried.get("wave_generator_peak", partial(ellipse_peak, flexspline)))
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
@@ -118,57 +108,10 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     return held_within(solid, enclosure, tolerance)
 
 
-def _solid_peak(flexspline: PartModel) -> StressPeak:
-    return solid_ellipse(flexspline).peak
-
-
-def half_seat_peak(flexspline: PartModel) -> StressPeak:
-    """The ellipse's peak on a seat half as wide, holes left out.
-
-    How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
-    """
-    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
-
-    def make(outline: Meridian, deadline: Deadline) -> StressPeak:
-        narrow = with_narrow_seat(outline, NARROW_SEAT)
-        own = flexspline.material
-        return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
-
-    return _by_harmonics(
-        flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
-    )
-
-
-def wave_generator_field(flexspline: PartModel) -> SolidField:
-    """The ellipse's field for pictures and files; its peak from the model that answers."""
-    field = solid_ellipse(flexspline)
-    if not flexspline.axisymmetric:
-        return field
-    return replace(field, peak=_revolved_peak(flexspline))
-
-
-def _by_harmonics(
-    flexspline: PartModel,
-    figure: str,
-    title: str,
-    make: Callable[[Meridian, Deadline], T],
-    **more: float,
-) -> T:
-    """A figure of the meridian, from the cache or made; `more` is what it depends on beside the part."""
-    context = flexspline.context
-
-    def timed() -> T:
-        with context.progress.stage(f"{title} by Fourier harmonics"):
-            return make(flexspline.part.meridian, Deadline(STAGE_SECONDS))
-
-    inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
-    return context.cache.get("harmonics", inputs, timed, is_lasting)[0]
-
-
 def _of_case(
     flexspline: PartModel, case: RimCase, make: Callable[[Meridian, Deadline], Stiffness]
 ) -> Stiffness:
-    return _by_harmonics(flexspline, f"K_b_{case}", CASES[case].title, make)
+    return by_harmonics(flexspline, f"K_b_{case}", CASES[case].title, make)
 
 
 def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
@@ -188,20 +131,6 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
         flexspline,
         "lobes_contact",
         lambda outline, deadline: contact_stiffness(outline, own, held, deadline),
-    )
-
-
-def _revolved_peak(flexspline: PartModel) -> StressPeak:
-    design = flexspline.context.design
-    w0, apart = design.gear.centre_distance_mm, flexspline.part.exclusion_mm
-    return _by_harmonics(
-        flexspline,
-        "wave_generator_peak",
-        "wave generator",
-        lambda outline, deadline: (
-            ellipse_stress(outline, flexspline.material, w0, apart, STRESS_TOLERANCE, deadline).peak
-        ),
-        w0_mm=w0,
     )
 
 

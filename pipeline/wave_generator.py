@@ -62,6 +62,17 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
     return flexspline.context.cache.get("ellipse", inputs, make)[0]
 
 
+def coarse_ellipse(flexspline: PartModel) -> SolidField:
+    """The same on the mesh that gave K: for pictures, where another model gives the peak."""
+    w0 = flexspline.context.design.gear.centre_distance_mm
+
+    def make() -> SolidField:
+        return _solved(flexspline, twisted_part(flexspline).rim, w0)
+
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0, "mesh": "of torsion"}
+    return flexspline.context.cache.get("ellipse", inputs, make)[0]
+
+
 def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     """Where (r, z) the stress is largest without the holes; None where no mesh can use or find it."""
     part, w0 = flexspline.part, flexspline.context.design.gear.centre_distance_mm

@@ -14,7 +14,7 @@ from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.analysis import torque_field
-from flexspline.pipeline.load_cases import wave_generator_field
+from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -51,7 +51,7 @@ def write_exports(
         torque = folder / f"{model.name}_torque.vtu"
         done.append(_write_field(model, torque, torque_field, "antisymmetric"))
     wave_generator = folder / "wave_generator.vtu"
-    return [*done, _write_field(models[0], wave_generator, wave_generator_field, "symmetric")]
+    return [*done, _write_field(models[0], wave_generator, ellipse_field, "symmetric")]
 
 
 def write_step_files(design: Design, folder: Path, progress: Progress) -> list[Path]:

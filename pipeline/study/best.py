@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flexspline.fea.types import SolidField
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.load_cases import wave_generator_field
+from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.study.evaluate import OUR_ERRORS
 from flexspline.pipeline.study.result import StudyResult
 
@@ -30,7 +30,7 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     solver = design.solver.model_copy(update={"model": "auto"})
     context = analysis_context(design.model_copy(update={"solver": solver}))
     try:
-        field = wave_generator_field(context.part("flexspline"))
+        field = ellipse_field(context.part("flexspline"))
     except OUR_ERRORS as fault:
         say(f"no picture of design {row.slot} on the wave generator: {fault}")
         return None

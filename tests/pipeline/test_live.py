@@ -13,7 +13,7 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.pipeline import live
-from flexspline.pipeline.load_cases import STRESS_TOLERANCE
+from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
 from flexspline.pipeline.revolved import revolved
 
 CUP = revolved(design_from(tomllib.loads(template("cup"))))

@@ -16,7 +16,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import with_narrow_seat
-from flexspline.pipeline.load_cases import NARROW_SEAT, SEAT_TOLERANCE
+from flexspline.pipeline.ellipse_peak import NARROW_SEAT, SEAT_TOLERANCE
 
 PAGE = Path(__file__).parents[2] / "docs" / "theory.md"
 RING = "flexspline.ring_width_mm"

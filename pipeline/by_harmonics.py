@@ -1,0 +1,35 @@
+"""Figures that Fourier harmonics give on a flexspline's meridian: from the cache, or solved in their time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.types import Stiffness, StressPeak
+from flexspline.geometry.outline import Meridian
+from flexspline.pipeline.parts import PartModel, is_lasting
+
+T = TypeVar("T", Stiffness, StressPeak, tuple[StressPeak, float])
+
+
+def by_harmonics(
+    flexspline: PartModel,
+    figure: str,
+    title: str,
+    make: Callable[[Meridian, Deadline], T],
+    **more: float,
+) -> T:
+    """A figure of the meridian; `more` is what it depends on beside the part."""
+    context = flexspline.context
+
+    def timed() -> T:
+        with context.progress.stage(f"{title} by Fourier harmonics"):
+            return make(flexspline.part.meridian, Deadline(STAGE_SECONDS))
+
+    inputs: dict[str, Any] = {**flexspline.revolved_key, "figure": figure, **more}
+    return context.cache.get("harmonics", inputs, timed, _is_lasting)[0]
+
+
+def _is_lasting(found: Stiffness | StressPeak | tuple[StressPeak, float]) -> bool:
+    return is_lasting(found[0] if isinstance(found, tuple) else found)

@@ -1,0 +1,126 @@
+"""The peak stress on the wave generator's ellipse, by the meridian or by the solid model.
+
+A flexspline with bolt holes lies between two bodies of revolution (`geometry.nested`). No theorem orders
+their stresses, but what the ellipse does to the rim dies out towards the holes: where both bodies have the
+same peak at the same place, and the stress about the holes is below it, the holes do not matter to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import dist, pi, sin
+
+import numpy as np
+
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.deadline import Deadline
+from flexspline.fea.types import SolidField, StressPeak
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.meridian import with_narrow_seat
+from flexspline.geometry.nested import nested_bodies
+from flexspline.geometry.outline import Meridian
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import BoltCircle
+from flexspline.pipeline.by_harmonics import by_harmonics
+from flexspline.pipeline.enclosed_part import may_answer
+from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.wave_generator import coarse_ellipse, solid_ellipse
+
+STRESS_TOLERANCE = 0.005
+"""Change of a peak stress over two refinements at which the axisymmetric mesh is fine enough."""
+NARROW_SEAT = 0.5
+"""Share of the ring's width that the seat has where it is asked how its width matters."""
+SEAT_TOLERANCE = 0.02
+"""Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
+AGREEMENT = 2 * STRESS_TOLERANCE
+"""Relative difference of the two bodies' peaks up to which they are one: what both meshes leave open."""
+KIRSCH = 4.0
+"""Largest stress at a small round hole over the plate's, under pure shear; 3 under tension (G. Kirsch, VDI-Z
+42 (1898) 797-807). In a row it rises at most as the ligament falls: pitch over ligament (Peterson's Stress
+Concentration Factors, row of holes, on the gross section)."""
+
+
+def ellipse_peak(flexspline: PartModel) -> StressPeak:
+    """By the model that the part's stiffness uses.
+
+    Raises
+    ------
+    DesignError
+    ComputationError, MemoryError : the solve failed.
+    """
+    if flexspline.axisymmetric:
+        return _of_body(flexspline, flexspline.part, "wave generator")[0]
+    return _of_two_bodies(flexspline) or solid_ellipse(flexspline).peak
+
+
+def ellipse_field(flexspline: PartModel) -> SolidField:
+    """The field for pictures and files; its peak from the model that answers. Errors as `ellipse_peak`."""
+    if flexspline.axisymmetric:
+        return replace(coarse_ellipse(flexspline), peak=ellipse_peak(flexspline))
+    peak = _of_two_bodies(flexspline)
+    return replace(coarse_ellipse(flexspline), peak=peak) if peak else solid_ellipse(flexspline)
+
+
+def half_seat_peak(flexspline: PartModel) -> StressPeak:
+    """The ellipse's peak on a seat half as wide, holes left out.
+
+    How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
+    """
+    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
+
+    def make(outline: Meridian, deadline: Deadline) -> StressPeak:
+        narrow = with_narrow_seat(outline, NARROW_SEAT)
+        own = flexspline.material
+        return ellipse_stress(narrow, own, w0, apart, SEAT_TOLERANCE, deadline).peak
+
+    return by_harmonics(
+        flexspline, "half_seat_peak", "wave generator, seat half as wide,", make, w0_mm=w0
+    )
+
+
+def _of_two_bodies(flexspline: PartModel) -> StressPeak | None:
+    """The whole body's peak; None where it may not answer for the part with its holes."""
+    bolts = flexspline.part.bolts
+    if bolts is None or not may_answer(flexspline):
+        return None
+    bodies = nested_bodies(flexspline.part)
+    try:
+        whole, at_holes = _of_body(flexspline, bodies.whole, "wave generator", bolts)
+        cut, _ = _of_body(flexspline, bodies.cut, "wave generator, ring of the holes cut out,")
+    except ComputationError:
+        return None
+    same = abs(cut.mises_MPa / whole.mises_MPa - 1) <= AGREEMENT
+    here = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
+    return whole if same and here and raised(at_holes, bolts) < whole.mises_MPa else None
+
+
+def raised(stress_MPa: float, bolts: BoltCircle) -> float:
+    """What round holes in a row make of a stress that the plate without them has."""
+    pitch = 2 * bolts.radius * sin(pi / bolts.count) if bolts.count > 1 else np.inf
+    ligament = pitch - 2 * bolts.hole_radius
+    return KIRSCH * stress_MPa * (pitch / ligament if np.isfinite(pitch) else 1.0)
+
+
+def _of_body(
+    flexspline: PartModel, body: Part, title: str, bolts: BoltCircle | None = None
+) -> tuple[StressPeak, float]:
+    """Peak of a body of revolution, and the largest stress [MPa] where `bolts` would be, 0 without them."""
+    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
+
+    def make(outline: Meridian, deadline: Deadline) -> tuple[StressPeak, float]:
+        own = flexspline.material
+        field = ellipse_stress(outline, own, w0, apart, STRESS_TOLERANCE, deadline)
+        return field.peak, _in_annulus(field, flexspline.part, bolts) if bolts else 0.0
+
+    holes = {"circle_mm": bolts.radius, "hole_mm": bolts.hole_radius} if bolts else {}
+    of_body = replace(flexspline, part=body)
+    return by_harmonics(of_body, "wave_generator_peak", title, make, w0_mm=w0, **holes)
+
+
+def _in_annulus(field: RevolvedField, part: Part, bolts: BoltCircle) -> float:
+    """The largest von Mises stress [MPa] at nodes in the annulus of the holes."""
+    r, z = field.places.T
+    inside = (abs(r - bolts.radius) <= bolts.hole_radius) & (z <= part.hole_depth)
+    angles = (0.0, pi / (2 * field.n))
+    return max(float(field.mises(phi)[inside].max(initial=0.0)) for phi in angles)
