@@ -88,9 +88,11 @@ def _superlu(matrix: csr_matrix) -> Back:
 @cache
 def pardiso() -> Any:
     """pypardiso's solver class, or None where MKL does not exist (Arm)."""
-    # pypardiso would search the whole environment for MKL, twice, 0.3 s: it lies where wheels put it
-    for library in sorted(Path(sys.prefix, "lib").glob("libmkl_rt*")):
-        os.environ.setdefault("PYPARDISO_MKL_RT", str(library))
+    # pypardiso would search the whole environment for MKL, twice, 0.3 s, and not the one that a virtual
+    # environment may share packages with: it lies where wheels put it
+    for prefix in (sys.prefix, sys.base_prefix):
+        for library in sorted(Path(prefix, "lib").glob("libmkl_rt*")):
+            os.environ.setdefault("PYPARDISO_MKL_RT", str(library))
     try:
         from pypardiso import PyPardisoSolver
 
