@@ -11,7 +11,7 @@ from flexspline.fea.axisymmetric import lobes
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases
+from flexspline.pipeline import by_harmonics
 from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
@@ -40,7 +40,7 @@ def slow_lobes(monkeypatch) -> None:
 
     monkeypatch.setattr(lobes, "solve_lobes", slow)
     monkeypatch.setattr(
-        load_cases, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]])
+        by_harmonics, "Deadline", lambda limit_s: Deadline(limit_s, *2 * [lambda: shown[0]])
     )
 
 
@@ -67,7 +67,7 @@ def test_the_next_run_tries_again(tmp_path, slow_lobes, monkeypatch) -> None:
 
 
 def test_no_time_at_all_leaves_the_figures_out(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(load_cases, "STAGE_SECONDS", 0.0)
+    monkeypatch.setattr(by_harmonics, "STAGE_SECONDS", 0.0)
     found = answers(tmp_path)
     assert "K_b" in found.solved
     assert {

@@ -74,13 +74,13 @@ def asked(command: str, design: Path) -> Answer:
 @pytest.mark.parametrize(
     ("broken", "lost", "name"),
     [
-        ("contact_stiffness", LOBES[1],
+        ("load_cases.contact_stiffness", LOBES[1],
          "Flexspline stiffness, torque at the two lobes, rim may lift off"),
-        ("ellipse_stress", PEAK, "Peak von Mises stress, wave-generator ellipse"),
+        ("ellipse_peak.ellipse_stress", PEAK, "Peak von Mises stress, wave-generator ellipse"),
     ],
 )  # fmt: skip
 def test_a_load_case_that_fails_costs_its_own_figure(broken, lost, name, revolved, monkeypatch):
-    monkeypatch.setattr(f"flexspline.pipeline.load_cases.{broken}", fail)
+    monkeypatch.setattr(f"flexspline.pipeline.{broken}", fail)
     answer = asked("stiffness", revolved)
     assert answer.status == 0
     assert {k for k in (*BOTH, *LOBES, PEAK) if k not in answer.record} == {lost}
@@ -131,7 +131,7 @@ def test_a_missed_tolerance_is_said_with_its_bounds(revolved, monkeypatch):
 
 def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     """Neither fields nor contact: the report says so, and has the rest."""
-    for broken in ("torque_field", "wave_generator_field"):
+    for broken in ("torque_field", "ellipse_field"):
         monkeypatch.setattr(analysis, broken, fail)
     monkeypatch.setattr("flexspline.pipeline.load_cases.contact_stiffness", fail)
     cache = Cache(tmp_path / "cache", analysis.CACHED_TYPES)
