@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.local_workers import WORKER_DIED
-from flexspline.pipeline.study.store import BEAT_S, CLAIM, ROW, Job, Row, TrialStore
-
-if TYPE_CHECKING:
-    from optuna.trial import FrozenTrial
+from flexspline.pipeline.study.store import BEAT_S, Finished, Job, TrialStore
 
 POLL_S = 1.0
 """How long to wait for a result before looking after the rest."""
 WATCH_S = 0.5
-"""Rows are read anew for it: a hundredth of a second for a thousand."""
+"""Between two words of progress, …"""
+WATCH_SHARE = 0.05
+"""… which look at all rows: no more than this share of the time goes to them, however many there are."""
 
 
 class Source(Protocol):
@@ -29,15 +29,14 @@ class Source(Protocol):
     def size(self) -> int:
         """How many designs the study wants."""
 
-    @property
-    def ahead(self) -> int:
-        """How many designs wait for a free worker, so that none is idle between two designs."""
+    def ahead(self, width: int) -> int:
+        """How many designs wait for `width` workers, so that none is idle between two designs."""
 
-    def claim(self, store: TrialStore, slot: int) -> Job | None:
-        """A design for a slot that nobody had before; None where another process was faster."""
+    def claim(self, store: TrialStore, count: int) -> list[Job]:
+        """At most `count` designs that nobody has, at least one where there is one."""
 
-    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
-        """The same design once more."""
+    def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
+        """Keep what came out of designs."""
 
     def task(self, values: Mapping[str, float]) -> Task:
         """What a worker is to do."""
@@ -71,7 +70,8 @@ def evaluate_all(
     `watch` hears of finished designs at most every WATCH_S, of what other processes do while it
     waits for them, and of the end. An error that is not ours ends the study: what is finished is stored.
     """
-    began = beaten = watched = time.monotonic()
+    began = beaten = time.monotonic()
+    next_word = began + WATCH_S
     pending: dict[Future, Job] = {}
     _adopt(source, store)
     before = len(store.rows())
@@ -83,22 +83,19 @@ def evaluate_all(
 
     store.beat()
     while True:
-        while len(pending) < pool.width() + source.ahead:
-            job = _next(source, store)
-            if job is None:
-                break
-            pending[pool.submit(evaluate, source.task(job.values))] = job
+        _give_out(pending, pool, evaluate, source, store)
         if not pending:
             rows = tell()
             if len(rows) >= source.size:
                 return rows
             time.sleep(POLL_S)  # another process has the rest; should it die, they come to us
             _adopt(source, store)
-        else:
-            stored = _store_finished(pending, pool, source, store)
-            if stored and time.monotonic() - watched > WATCH_S:
-                watched = time.monotonic()
+        elif _store_finished(pending, pool, source, store):
+            started = time.monotonic()
+            if started > next_word:
                 tell()
+                ended = time.monotonic()
+                next_word = ended + max(WATCH_S, (ended - started) / WATCH_SHARE)
         if time.monotonic() - beaten > BEAT_S:
             beaten = time.monotonic()
             store.beat()
@@ -107,7 +104,24 @@ def evaluate_all(
 def is_complete(source: Source, store: TrialStore) -> bool:
     """Whether every design has its row already."""
     _adopt(source, store)
-    return len(store.rows()) >= source.size
+    return store.refresh().finished >= source.size
+
+
+def _give_out(
+    pending: dict[Future, Job],
+    pool: WorkerPool,
+    evaluate: Callable[[Task], Outcome],
+    source: Source,
+    store: TrialStore,
+) -> None:
+    """Have as many designs at work and waiting as the workers want, as far as there are any."""
+    width = pool.width()
+    while (lack := width + source.ahead(width) - len(pending)) > 0:
+        jobs = source.claim(store, lack)
+        for job in jobs:
+            pending[pool.submit(evaluate, source.task(job.values))] = job
+        if not jobs:
+            return
 
 
 def _store_finished(
@@ -118,10 +132,13 @@ def _store_finished(
     No future is referred to afterwards: while one is, Dask makes its result again should the worker die.
     """
     done, _ = wait(pending, timeout=POLL_S, return_when=FIRST_COMPLETED)
+    finished = []
     for future in done:
         outcome = _outcome(future, pool)
-        store.finish(pending.pop(future), outcome, source.objectives(outcome))
-    return bool(done)
+        finished.append(Finished(pending.pop(future), outcome, source.objectives(outcome)))
+    if finished:
+        source.store(store, finished)
+    return bool(finished)
 
 
 def _outcome(future: Future, pool: WorkerPool) -> Outcome:
@@ -131,36 +148,9 @@ def _outcome(future: Future, pool: WorkerPool) -> Outcome:
         return Outcome(reason=WORKER_DIED)
 
 
-def _next(source: Source, store: TrialStore) -> Job | None:
-    """The first design that nobody has: a dead process's, else a new one."""
-    while True:
-        taken = store.by_slot()
-        slot = next((s for s in range(source.size) if _is_free(store, taken.get(s, []))), None)
-        if slot is None:
-            return None
-        before = taken.get(slot)
-        if not before:
-            job = source.claim(store, slot)
-        else:
-            attempt = max(t.user_attrs[CLAIM]["attempt"] for t in before) + 1
-            job = source.again(store, slot, attempt, before[0])
-        if job is not None:
-            return job
-
-
-def _is_free(store: TrialStore, trials: list[FrozenTrial]) -> bool:
-    """No row, and nobody alive at it."""
-    if any(ROW in t.user_attrs for t in trials):
-        return False
-    return all(t.state.is_finished() or store.gone(t) for t in trials)
-
-
 def _adopt(source: Source, store: TrialStore) -> None:
     """Close what dead processes left open: with its row where that was stored, else as failed."""
-    for trials in store.by_slot().values():
-        for trial in trials:
-            if trial.state.is_finished() or not store.gone(trial):
-                continue
-            row = trial.user_attrs.get(ROW)
-            values = source.objectives(Outcome(**row)) if row else None
-            store.tell(trial.number, values)
+    known = store.refresh()
+    dead = store.dead()
+    for left in [t for t in known.open() if t.claim.owner in dead]:
+        store.tell(left.number, source.objectives(left.outcome) if left.outcome else None)

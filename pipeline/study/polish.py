@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexspline.pipeline.study.store import ROW
+from flexspline.pipeline.study.claims import ROW
 
 if TYPE_CHECKING:
     from optuna.trial import FrozenTrial

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.geometry.errors import ComputationError
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.surface import Surface, surface_through
 from flexspline.pipeline.study.tolerance import Input
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,11 +16,11 @@ from flexspline.pipeline.study.figures import Solve, needed
 from flexspline.pipeline.study.holes import Factor
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Plan, from_unit, linked
-from flexspline.pipeline.study.store import CLAIM, Job, TrialStore
+from flexspline.pipeline.study.store import Finished, Job, TrialStore
+from flexspline.pipeline.study.trial_tables import Values
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
-    from optuna.trial import FrozenTrial
 
 
 ASKED_AGAIN = 20
@@ -41,7 +41,7 @@ class _Asked:
     def _tables(self) -> dict[str, Any]:
         return self.study.design.model_dump(mode="json", exclude_none=True)
 
-    @property
+    @cached_property
     def over(self) -> Mapping[str, BaseDistribution]:
         """Optuna's distributions of the varied keys."""
         return distributions(self.study)
@@ -54,9 +54,6 @@ class _Asked:
             return None
         return [outcome.figures[k] for k in self.study.file.objective] or [0.0]
 
-    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
-        return store.create(slot, attempt, before.params, before.distributions)
-
 
 @dataclass(frozen=True)
 class Planned(_Asked):
@@ -68,12 +65,14 @@ class Planned(_Asked):
     def size(self) -> int:
         return self.plan.size
 
-    @property
-    def ahead(self) -> int:
-        return 1
+    def ahead(self, width: int) -> int:
+        return width
 
-    def claim(self, store: TrialStore, slot: int) -> Job | None:
-        return store.create(slot, 0, self.plan.point(slot), self.over)
+    def claim(self, store: TrialStore, count: int) -> list[Job]:
+        return store.claim(self.size, count, self.plan.point, self.over)
+
+    def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
+        store.finish(finished)
 
 
 @dataclass(frozen=True)
@@ -84,33 +83,36 @@ class Sampled(_Asked):
     def size(self) -> int:
         return self.study.file.run.evaluations
 
-    @property
-    def ahead(self) -> int:
+    def ahead(self, width: int) -> int:
         return 0  # a design chosen later knows more
 
-    def claim(self, store: TrialStore, slot: int) -> Job | None:
-        return self._suggested(store, slot, 0)
-
-    def again(self, store: TrialStore, slot: int, attempt: int, before: FrozenTrial) -> Job | None:
-        if set(before.params) == set(self.over):
-            return super().again(store, slot, attempt, before)
-        return self._suggested(store, slot, attempt)  # its process died before it had values
-
-    def _suggested(self, store: TrialStore, slot: int, attempt: int) -> Job | None:
-        """The slot is taken first, in one transaction, and then given values: two processes cannot
-        both have it."""
-        had = [t.params for t in store.all() if CLAIM in t.user_attrs]
-        for further in range(ASKED_AGAIN):
-            taken = store.create(slot, attempt + further, {}, {})
-            if taken is None:
-                return None
-            job = store.suggested(taken, self.over)
+    def claim(self, store: TrialStore, count: int) -> list[Job]:
+        """One design, or none. A slot is taken first, and then given values: two processes cannot both
+        have it."""
+        for _ in range(ASKED_AGAIN):
+            taken = store.claim(self.size, 1, partial(self._before, store), self.over)
+            if not taken or taken[0].values:
+                return taken
+            had = store.values(but=taken[0].slot)
+            job = store.suggested(taken[0], self.over)
             if job.values not in had:
-                return job
-            store.tell(job.number, None)
-        return store.create(slot, attempt + ASKED_AGAIN, self._unseen(slot, had), self.over)
+                return [job]
+            store.give_up(job)
+        had = store.values()
+        return store.claim(self.size, 1, partial(self._unseen, had=had), self.over)
 
-    def _unseen(self, slot: int, had: list[dict[str, Any]]) -> dict[str, float]:
+    def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
+        for one in finished:
+            store.teach(one)
+
+    def _before(self, store: TrialStore, slot: int) -> Values:
+        """The values that a dead process had for a slot; none where it died before it had them all, or
+        gave them up because another design has them."""
+        had, keys = store.values(but=slot), set(self.over)
+        tried = (t.values for t in store.tries(slot))
+        return next((v for v in tried if set(v) == keys and v not in had), {})
+
+    def _unseen(self, slot: int, had: Sequence[Values]) -> dict[str, float]:
         """A random design that the study has not had; any, where its lists leave none."""
         random = np.random.default_rng([self.study.file.run.seed, slot])
         for _ in range(DRAWN_AGAIN):

@@ -1,31 +1,32 @@
 """Trials in Optuna's storage: claimed by being created, finished with their row, never lost.
 
-A design of a study is a slot, 0, 1, 2, …. Whoever wants to evaluate a slot creates a RUNNING trial that
-says which slot, which attempt and who; trial numbers are given one after the other by the database, so
-among trials that claim the same attempt of the same slot the lowest number has it and the others
-withdraw. (Optuna's own queue of waiting trials is not safe between processes on SQLite: two can pop one
-trial.) A trial whose owner is gone is closed and its slot's next attempt is free.
+A design of a study is a slot, 0, 1, 2, …. Whoever wants to evaluate slots takes the study's lock in the
+database, reads which are free, and creates RUNNING trials that say which slot, which attempt and who. So
+two processes never have one design. (Optuna's own queue of waiting trials is not safe between processes
+on SQLite: two can pop one trial.) A trial whose owner is gone is closed and its slot is free again.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import ComputationError, one_line
 from flexspline.pipeline.process_id import parsed
+from flexspline.pipeline.study.claims import CLAIM, ROW, Claim, Claims, Row, Try
 from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.trial_tables import TrialTables, Values
 
 if TYPE_CHECKING:
     from optuna import Study as Trials
     from optuna.distributions import BaseDistribution
-    from optuna.storages import BaseStorage
-    from optuna.trial import FrozenTrial
+    from optuna.storages import RDBStorage
+    from sqlalchemy import Connection
 
-CLAIM, ROW = "claim", "row"
 BEAT_S = 10.0
 """How often a process says that it lives."""
 SILENT_S = 60.0
@@ -62,24 +63,6 @@ def said(fault: BaseException) -> str:
 
 
 @dataclass(frozen=True)
-class Claim:
-    """Which design, which attempt at it, by which process."""
-
-    slot: int
-    attempt: int
-    owner: str
-
-
-@dataclass(frozen=True)
-class Row:
-    """One finished design: values of the varied keys and what came out."""
-
-    slot: int
-    values: Mapping[str, float]
-    outcome: Outcome
-
-
-@dataclass(frozen=True)
 class Job:
     """A claimed design: the trial that holds it."""
 
@@ -90,78 +73,128 @@ class Job:
 
 
 @dataclass(frozen=True)
+class Finished:
+    """What came out of a claimed design; `objectives` is what Optuna is told, None where it failed."""
+
+    job: Job
+    outcome: Outcome
+    objectives: list[float] | None
+
+
+@dataclass(frozen=True)
 class TrialStore:
     """The trials of one study, as this process uses them."""
 
     trials: Trials
-    storage: BaseStorage
+    storage: RDBStorage
     owner: str
+    _known: Claims = field(default_factory=Claims, init=False)
+
+    @property
+    def _tables(self) -> TrialTables:
+        return TrialTables(self.storage, self.trials._study_id)
+
+    def _read(self, connection: Connection) -> None:
+        known = self._known
+        known.take_in(self._tables.changed(connection, known.last_id, known.to_read_again()))
 
     @storage_faults()
-    def all(self) -> list[FrozenTrial]:
-        """Every trial, as the database has it now."""
-        return self.trials.get_trials(deepcopy=False)
+    def refresh(self) -> Claims:
+        """What is known of the trials, with what other processes did since."""
+        with self._tables.reading() as connection:
+            self._read(connection)
+        return self._known
 
     def rows(self) -> list[Row]:
         """Finished designs by slot; should a slot have two, the first."""
-        found: dict[int, Row] = {}
-        for trial in self.all():
-            if ROW in trial.user_attrs and trial.state.is_finished():
-                slot = trial.user_attrs[CLAIM]["slot"]
-                found.setdefault(slot, Row(slot, trial.params, Outcome(**trial.user_attrs[ROW])))
-        return [found[slot] for slot in sorted(found)]
-
-    def by_slot(self) -> dict[int, list[FrozenTrial]]:
-        """Trials that claim each slot, in their order."""
-        found: dict[int, list[FrozenTrial]] = {}
-        for trial in self.all():
-            if CLAIM in trial.user_attrs:
-                found.setdefault(trial.user_attrs[CLAIM]["slot"], []).append(trial)
-        return found
+        return self.refresh().rows()
 
     @storage_faults()
-    def create(
+    def claim(
         self,
-        slot: int,
-        attempt: int,
-        values: Mapping[str, float],
+        size: int,
+        count: int,
+        values: Callable[[int], Values],
         over: Mapping[str, BaseDistribution],
-    ) -> Job | None:
-        """A RUNNING trial, made in one transaction; None where another process has the attempt."""
-        from optuna.trial import TrialState, create_trial
+    ) -> list[Job]:
+        """Up to `count` designs below `size` that nobody has: a dead process's first, then new ones.
 
-        claim = asdict(Claim(slot, attempt, self.owner))
-        self.trials.add_trial(
-            create_trial(
-                state=TrialState.RUNNING,
-                params=dict(values),
-                distributions=dict(over),
-                user_attrs={CLAIM: claim},
-            )
-        )
-        rivals = [
-            t for t in self.by_slot()[slot] if t.user_attrs[CLAIM]["attempt"] == attempt
-        ]  # fmt: skip
-        mine = next(t for t in reversed(rivals) if t.user_attrs[CLAIM]["owner"] == self.owner)
-        if rivals[0].number == mine.number:
-            return Job(mine._trial_id, mine.number, slot, values)
-        self.tell(mine.number, None)
-        return None
+        One transaction, under the study's lock: what was read as free in it is so when it ends.
+
+        Parameters
+        ----------
+        values, over : of the keys that a slot's trial is made with, and their distributions.
+        """
+        known = self.refresh()
+        dead = self.dead()
+        if next(known.free(size, dead), None) is None:
+            return []
+        with self._tables.locked() as connection:
+            self._read(connection)
+            slots = list(islice(known.free(size, dead), count))
+            if not slots:
+                return []
+            claims = [Claim(s, _attempt(known.tries.get(s)), self.owner) for s in slots]
+            given = [as_stored(values(s), over) for s in slots]
+            new = [({CLAIM: asdict(c)}, v) for c, v in zip(claims, given, strict=True)]
+            first = known.last_number + 1
+            ids = self._tables.create(connection, first, new, over)
+        known.held.update(ids)
+        known.last_id, known.last_number = ids[-1], first + len(ids) - 1
+        jobs = [
+            Job(at, first + i, c.slot, v)
+            for i, (at, c, v) in enumerate(zip(ids, claims, given, strict=True))
+        ]
+        for job, one in zip(jobs, claims, strict=True):
+            known.add_try(Try(job.trial_id, job.number, one, job.values, False))
+        return jobs
+
+    def tries(self, slot: int) -> list[Try]:
+        """Of a slot without a row, as last read."""
+        return list(self._known.tries.get(slot, {}).values())
+
+    def values(self, but: int = -1) -> list[Values]:
+        """Of every design that was ever claimed, as last read; of all slots or all but one."""
+        known = self._known
+        tried = [t.values for s, tries in known.tries.items() if s != but for t in tries.values()]
+        return tried + [r.values for r in known.rows() if r.slot != but]
 
     @storage_faults()
     def suggested(self, job: Job, over: Mapping[str, BaseDistribution]) -> Job:
         """A claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
         from optuna.trial import Trial
 
+        self.trials.get_trials(deepcopy=False)  # Optuna's cache hears of the trial
         trial = Trial(self.trials, job.trial_id)
-        values = {key: float(trial._suggest(key, span)) for key, span in over.items()}
+        values = {key: trial._suggest(key, span) for key, span in over.items()}
+        known = self._known.tries[job.slot][job.trial_id]
+        self._known.add_try(replace(known, values=values))
         return replace(job, values=values)
 
     @storage_faults()
-    def finish(self, job: Job, outcome: Outcome, values: list[float] | None) -> None:
-        """Store the row, then close the trial; a stop between the two loses nothing."""
-        self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(outcome))
-        self.tell(job.number, values)
+    def finish(self, finished: Sequence[Finished]) -> None:
+        """Store rows and close their trials, all in one transaction."""
+        told = {
+            f.job.trial_id: ({ROW: asdict(f.outcome)}, f.objectives) for f in finished
+        }  # fmt: skip
+        with self._tables.locked() as connection:
+            closed = self._tables.close(connection, told)
+        for f in finished:
+            self._known.held.discard(f.job.trial_id)
+            if f.job.trial_id in closed:
+                self._known.add_row(f.job.number, Row(f.job.slot, f.job.values, f.outcome))
+
+    @storage_faults()
+    def teach(self, finished: Finished) -> None:
+        """Store a row, then close the trial as Optuna does, so that its sampler hears of it; a stop
+        between the two loses nothing."""
+        from optuna.exceptions import UpdateFinishedTrialError
+
+        job = finished.job
+        self._known.held.discard(job.trial_id)
+        with suppress(UpdateFinishedTrialError):  # taken for dead meanwhile: another has the design
+            self.storage.set_trial_user_attr(job.trial_id, ROW, asdict(finished.outcome))
+            self.tell(job.number, finished.objectives)
 
     @storage_faults()
     def tell(self, number: int, values: list[float] | None) -> None:
@@ -172,6 +205,11 @@ class TrialStore:
         state = TrialState.FAIL if values is None else TrialState.COMPLETE
         with suppress(UpdateFinishedTrialError):  # another process did so just now
             self.trials.tell(number, values, state=state, skip_if_finished=True)
+
+    def give_up(self, job: Job) -> None:
+        """Close a claimed trial without a row: its design is free again."""
+        self._known.held.discard(job.trial_id)
+        self.tell(job.number, None)
 
     @storage_faults()
     def notes(self) -> dict[str, Any]:
@@ -187,11 +225,24 @@ class TrialStore:
         """Say that this process lives, for those that cannot see it."""
         self.note(f"beat {self.owner}", time.time())
 
-    def gone(self, trial: FrozenTrial) -> bool:
-        """Whether the process that claimed a trial is no more."""
-        owner = trial.user_attrs[CLAIM]["owner"]
+    def dead(self) -> set[str]:
+        """Processes that hold designs and are no more, as far as is known."""
+        owners = {t.claim.owner for t in self._known.open()} - {self.owner}
+        return {o for o in owners if self._gone(o)}
+
+    def _gone(self, owner: str) -> bool:
         process = parsed(owner)
         if process is not None and process.fate != "unknown":
             return process.fate == "gone"
         beat = self.notes().get(f"beat {owner}", 0.0)
         return bool(time.time() - beat > SILENT_S)
+
+
+def _attempt(tries: Mapping[int, Try] | None) -> int:
+    """Which one comes next."""
+    return 1 + max((t.claim.attempt for t in (tries or {}).values()), default=-1)
+
+
+def as_stored(values: Values, over: Mapping[str, BaseDistribution]) -> dict[str, float]:
+    """As the database hands them out again: a whole number as such."""
+    return {k: over[k].to_external_repr(over[k].to_internal_repr(v)) for k, v in values.items()}

@@ -9,12 +9,13 @@ from dataclasses import asdict
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.pipeline.study.local_workers import WORKER_DIED
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.store import Row, TrialStore
+from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"

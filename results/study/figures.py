@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.store import Row
 from flexspline.results.study.best_figure import write_best
 from flexspline.results.study.labels import axis_label, entry, lines_of
 from flexspline.results.study.tolerance_figure import write_scatter

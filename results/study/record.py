@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline import __version__
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Verified
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from legibility import drawn_figures, faults
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.figures import TOTAL
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import scatter_of
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.tolerance import Input, saltelli
 from flexspline.results.study.best_figure import best_figure
 from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto

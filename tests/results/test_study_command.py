@@ -102,10 +102,10 @@ def test_a_grid_on_one_and_on_three_processes(
 def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
     from pyarrow import parquet
 
+    from flexspline.pipeline.study.claims import Row
     from flexspline.pipeline.study.evaluate import Outcome
     from flexspline.pipeline.study.load import load_study
     from flexspline.pipeline.study.result import StudyResult
-    from flexspline.pipeline.study.store import Row
     from flexspline.results.study.tables import table_of, write_csv, write_parquet
 
     values = {"flexspline.wall_thickness_mm": 0.4, "flexspline.diaphragm_thickness_mm": 0.5}

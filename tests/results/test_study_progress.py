@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.drive import Progress
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
-from flexspline.pipeline.study.store import Row
 from flexspline.results.study.progress import Watch, line
 
 WALL = "flexspline.wall_thickness_mm"

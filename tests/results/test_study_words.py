@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verified import Check, Verified
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued

@@ -8,9 +8,9 @@ from study_bench import GRID, quick, study_of
 
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.run import source_of, trial_store_of
-from flexspline.pipeline.study.store import TrialStore
+from flexspline.pipeline.study.store import Finished, TrialStore
 
-OPTIMIZE = GRID.replace('"grid"', '"optimize"').replace(", steps = 3", "")
+OPTIMIZE = GRID.replace('"grid"', '"optimize"\nevaluations = 6').replace(", steps = 3", "")
 
 
 @pytest.fixture(params=[GRID, OPTIMIZE], ids=["grid", "optimize"])
@@ -25,22 +25,32 @@ def test_the_second_to_claim_a_design_gets_nothing(
 ) -> None:
     first, second, text = pair
     source = source_of(study_of(text))
-    job = source.claim(first, 0)
-    assert job is not None
-    assert source.claim(second, 0) is None
-    assert len([t for t in first.by_slot()[0] if not t.state.is_finished()]) == 1
+    second.beat()
+    (job,) = source.claim(first, 1)
+    others = [j.slot for _ in range(source.size) for j in source.claim(second, 1)]
+    assert sorted([job.slot, *others]) == list(range(source.size))
+    assert source.claim(first, 1) == source.claim(second, 1) == []
+    assert [t.claim.owner for t in second.tries(job.slot)] == [first.owner]
 
 
 def test_a_claim_that_died_before_it_had_values_is_given_some(tmp_path: Path) -> None:
     study = study_of(OPTIMIZE)
     store, source = trial_store_of(study, tmp_path), source_of(study)
-    bare = store.create(0, 0, {}, {})
-    assert bare is not None
-    store.tell(bare.number, None)
-    job = source.again(store, 0, 1, store.by_slot()[0][0])
-    assert job is not None
+    (bare,) = store.claim(1, 1, lambda slot: {}, {})
+    store.give_up(bare)
+    (job,) = source.claim(store, 1)
+    assert job.slot == bare.slot
     assert set(job.values) == set(study.file.vary)
     outcome = quick(Task({}, job.values, ()))
-    store.finish(job, outcome, source.objectives(outcome))
+    source.store(store, [Finished(job, outcome, source.objectives(outcome))])
     (row,) = store.rows()
     assert row.values == job.values
+
+
+def test_a_design_whose_process_died_is_tried_with_the_same_values(tmp_path: Path) -> None:
+    study = study_of(OPTIMIZE)
+    store, source = trial_store_of(study, tmp_path), source_of(study)
+    (job,) = source.claim(replace(store, owner="gone/1/1"), 1)
+    (again,) = source.claim(store, 1)
+    assert (again.slot, again.values) == (job.slot, job.values)
+    assert again.trial_id != job.trial_id

@@ -7,10 +7,10 @@ from study_bench import EXAMPLES, study_of, threads
 
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, fast_K_e, figures_of
 from flexspline.pipeline.study.holes import Factor, holes_of, unfollowed
 from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verify import checked, solid_outcome
 
 Figures = tuple[dict[str, float], dict[str, float], dict[str, float]]

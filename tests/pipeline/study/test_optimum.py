@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from study_bench import LENGTH, WALL, study_of, threads
 
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import TORSION_TOLERANCE, Outcome, Task, evaluate
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import run_study, trial_store_of
-from flexspline.pipeline.study.store import Row
 
 TWO = f"""
 design = "xb1-40.toml"

@@ -7,9 +7,9 @@ import pytest
 from study_bench import EXAMPLES, WALL, study_of, threads
 
 from flexspline.geometry.keys import without_holes
+from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.run import run_study, trial_store_of
-from flexspline.pipeline.study.store import Row
 from flexspline.pipeline.study.verify import checked
 
 TEXT = f"""
