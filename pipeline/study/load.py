@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ class Study:
     file: StudyFile
     design: Design
 
-    @property
+    @cached_property
     def whole(self) -> frozenset[str]:
         """Keys that hold whole numbers."""
         return frozenset(k for k in self.file.vary if is_whole(self.design, k))

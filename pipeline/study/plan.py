@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -87,16 +88,18 @@ class Sobol:
     def size(self) -> int:
         return self.study.file.run.evaluations
 
-    def point(self, index: int) -> Values:
+    @cached_property
+    def _unit(self) -> np.ndarray:
+        """Points (n, k) in [0, 1), n the power of two that holds all: what scipy draws in one piece."""
         from scipy.stats import qmc
 
-        spans = self.study.file.vary
-        engine = qmc.Sobol(len(spans), scramble=True, seed=self.study.file.run.seed)
-        if index:
-            engine.fast_forward(index)
-        unit = engine.random(1)[0]
+        engine = qmc.Sobol(len(self.study.file.vary), scramble=True, seed=self.study.file.run.seed)
+        return engine.random_base2((self.size - 1).bit_length())
+
+    def point(self, index: int) -> Values:
         return {
-            key: from_unit(self.study, key, float(u)) for key, u in zip(spans, unit, strict=True)
+            key: from_unit(self.study, key, float(u))
+            for key, u in zip(self.study.file.vary, self._unit[index], strict=True)
         }
 
 

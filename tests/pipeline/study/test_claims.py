@@ -1,14 +1,18 @@
 """One design, one process: what two processes that want the same design get."""
 
+import sys
 from dataclasses import replace
 from pathlib import Path
+from types import FrameType
 
 import pytest
 from study_bench import GRID, quick, study_of
 
-from flexspline.pipeline.study.evaluate import Task
+from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.figures import USUAL_FIGURES
 from flexspline.pipeline.study.run import source_of, trial_store_of
 from flexspline.pipeline.study.store import Finished, TrialStore
+from flexspline.pipeline.study.trial_tables import StoredTrial
 
 OPTIMIZE = GRID.replace('"grid"', '"optimize"\nevaluations = 6').replace(", steps = 3", "")
 
@@ -54,3 +58,40 @@ def test_a_design_whose_process_died_is_tried_with_the_same_values(tmp_path: Pat
     (again,) = source.claim(store, 1)
     assert (again.slot, again.values) == (job.slot, job.values)
     assert again.trial_id != job.trial_id
+
+
+def work_of_one_design(folder: Path, stored: int) -> tuple[int, int]:
+    """Python's calls, and trials read, for one design's claim and row in a study that has some already,
+    made by another process."""
+    study = study_of(GRID.replace("steps = 3", "steps = 1000"))
+    other, store = trial_store_of(study, folder), trial_store_of(study, folder)
+    source = source_of(study)
+    outcome = Outcome(dict.fromkeys(USUAL_FIGURES, 1.0))
+    jobs = source.claim(replace(other, owner="another/1/1"), stored)
+    source.store(other, [Finished(j, outcome, [1.0]) for j in jobs])
+    for _ in range(2):  # the first reads what is there, and compiles the statements
+        (job,) = source.claim(store, 1)
+        source.store(store, [Finished(job, outcome, [1.0])])
+    calls, read = 0, 0
+
+    def count(frame: FrameType, event: str, value: object) -> None:
+        nonlocal calls, read
+        calls += event in ("call", "c_call")
+        read += event == "call" and frame.f_code is StoredTrial.__init__.__code__
+
+    sys.setprofile(count)
+    try:
+        (job,) = source.claim(store, 1)
+        source.store(store, [Finished(job, outcome, [1.0])])
+    finally:
+        sys.setprofile(None)
+    assert len(store.rows()) == stored + 3
+    return calls, read
+
+
+def test_a_design_costs_as_much_in_a_large_study(tmp_path: Path) -> None:
+    few, few_read = work_of_one_design(tmp_path / "few", 20)
+    many, many_read = work_of_one_design(tmp_path / "many", 1000)
+    # what a claim reads is made by other processes meanwhile: here nothing
+    assert few_read == many_read == 0
+    assert many == pytest.approx(few, rel=0.05)  # garbage collection calls back now and then

@@ -1,0 +1,163 @@
+"""How a study grows: `python benchmarks/growth.py` measures rows a second and what a stored row costs.
+
+The study's own loop and storage, and Dask's own scheduler in a process of its own; workers sleep for as
+long as RECORDED real designs took. Processor times stand beside the clock's, which depends on what else
+the machine does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+
+import psutil
+from sleepers import WAIT_S, cluster, slept
+from study import EXAMPLES, STUDY
+
+from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
+from flexspline.pipeline.study.drive import evaluate_all
+from flexspline.pipeline.study.evaluate import evaluate
+from flexspline.pipeline.study.load import Study, study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.run import source_of, trial_store_of
+from flexspline.results.study.progress import Watch
+from flexspline.results.study.tables import table_of, write_csv
+
+RECORDED = 20
+"""Real designs evaluated for their times and figures."""
+CASES = ((1, 1.0), (10, 1.0), (30, 1.0), (100, 1.0), (100, 0.1))
+"""Workers, and the share of a real design's time that they sleep: the last looks for the ceiling."""
+SECONDS = 25.0
+"""Of each case, where nothing is lost; at most MOST designs."""
+MOST = 4000
+SIZES = (1_000, 10_000, 100_000)
+TAIL = 1_000
+"""Designs at the end of each size over which the cost of one is taken."""
+WIDTH = 100
+"""Workers in whose name the storage alone is filled."""
+
+
+def growing(designs: int) -> Study:
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "growth")
+    run = study.file.run.model_copy(update={"evaluations": designs, "seed": 1})
+    return replace(study, file=study.file.model_copy(update={"run": run}))
+
+
+def record(path: Path) -> float:
+    """Real designs' outcomes into a file; their mean time [s]."""
+    study = growing(RECORDED)
+    source, found = source_of(study), []
+    with tempfile.TemporaryDirectory() as folder:
+        jobs = source.claim(trial_store_of(study, Path(folder)), RECORDED)
+    found = [evaluate(source.task(j.values)) for j in jobs]
+    path.write_text(json.dumps([asdict(o) for o in found]), encoding="utf-8")
+    return sum(o.seconds for o in found) / RECORDED
+
+
+def on_a_cluster(workers: int, share: float, seconds: float, path: Path) -> None:
+    """Rows a second with so many workers, and whose processor time a row takes."""
+    designs = int(min(MOST, SECONDS * workers / (share * seconds)))
+    study = growing(designs)
+    with tempfile.TemporaryDirectory() as name, cluster(workers, Path(name)) as dask:
+        with worker_pool(1, dask.address) as pool:
+            deadline = time.monotonic() + WAIT_S
+            while pool.width() < workers and time.monotonic() < deadline:
+                time.sleep(0.1)
+            assert pool.width() == workers
+            store = trial_store_of(study, Path(name))
+            before = _cpu(), _cpu(dask.scheduler)
+            began = time.perf_counter()
+            rows = evaluate_all(
+                source_of(study), store, pool, partial(slept, path, share), lambda p: None
+            )
+            passed = time.perf_counter() - began
+            driver, scheduler = _cpu() - before[0], _cpu(dask.scheduler) - before[1]
+    busy = share * sum(r.outcome.seconds for r in rows) / passed
+    print(
+        f"{workers:4} workers, {share * seconds:.2f} s a design: {designs / passed:6.1f} rows/s, "
+        f"{busy:5.1f} at work; processor, ms a row: study {1e3 * driver / designs:.2f}, "
+        f"scheduler {1e3 * scheduler / designs:.2f}",
+        flush=True,
+    )
+
+
+def storage_alone(path: Path, sizes: tuple[int, ...]) -> None:
+    """The same loop and storage with work that takes no time, at each size; then the tables."""
+    with tempfile.TemporaryDirectory() as name:
+        for size in sizes:
+            for designs in (size - TAIL, size):
+                study, before, began = growing(designs), _cpu(), time.perf_counter()
+                store = trial_store_of(study, Path(name))
+                source = source_of(study)
+                opened = _cpu() - before, len(store.rows())
+                before, began = _cpu(), time.perf_counter()
+                with _at_once() as pool:
+                    watch = Watch(study)
+                    rows = evaluate_all(source, store, pool, partial(slept, path, 0.0), watch)
+                new = designs - opened[1]
+                cpu, passed = _cpu() - before, time.perf_counter() - began
+            bytes_ = (Path(name) / "study.db").stat().st_size
+            print(
+                f"{size:6} rows: the last {new} at {new / passed:.0f} rows/s, "
+                f"{1e3 * cpu / new:.2f} ms of the processor each; study.db {bytes_ / 1e6:.1f} MB; "
+                f"this process {_memory_MB():.0f} MB",
+                flush=True,
+            )
+            result = StudyResult(study, tuple(rows))
+            print(
+                f"        study.csv {_timed(lambda: write_csv(Path(name) / 'x.csv', table_of(result)))}"
+            )
+            print(
+                f"        read again {_timed(lambda: trial_store_of(study, Path(name)).rows())}",
+                flush=True,
+            )
+
+
+@contextmanager
+def _at_once() -> Iterator[WorkerPool]:
+    with ThreadPoolExecutor(1) as executor:
+        yield WorkerPool(executor, lambda: WIDTH)
+
+
+def _timed(work: Callable[[], object]) -> str:
+    began = time.process_time()
+    work()
+    return f"{time.process_time() - began:.1f} s"
+
+
+def _cpu(process: psutil.Process | None = None) -> float:
+    """Processor time of a process so far [s]."""
+    times = (process or psutil.Process()).cpu_times()
+    return float(times.user + times.system)
+
+
+def _memory_MB() -> float:
+    return float(psutil.Process().memory_info().rss / 1e6)
+
+
+def main() -> None:
+    print(f"load average before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "recorded.json"
+        seconds = record(path)
+        print(f"{RECORDED} real designs: {seconds:.2f} s each")
+        if "storage" not in sys.argv:
+            for workers, share in CASES:
+                on_a_cluster(workers, share, seconds, path)
+        if "cluster" not in sys.argv:
+            storage_alone(path, SIZES)
+    print(f"load average after: {os.getloadavg()[0]:.1f}")
+
+
+if __name__ == "__main__":
+    main()
