@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -41,7 +41,7 @@ SECONDS = 25.0
 """Of each case, where nothing is lost; at most MOST designs."""
 MOST = 4000
 SIZES = (1_000, 10_000, 100_000)
-TAIL = 1_000
+TAIL = 500
 """Designs at the end of each size over which the cost of one is taken."""
 WIDTH = 100
 """Workers in whose name the storage alone is filled."""
@@ -68,20 +68,22 @@ def on_a_cluster(workers: int, share: float, seconds: float, path: Path) -> None
     """Rows a second with so many workers, and whose processor time a row takes."""
     designs = int(min(MOST, SECONDS * workers / (share * seconds)))
     study = growing(designs)
-    with tempfile.TemporaryDirectory() as name, cluster(workers, Path(name)) as dask:
-        with worker_pool(1, dask.address) as pool:
-            deadline = time.monotonic() + WAIT_S
-            while pool.width() < workers and time.monotonic() < deadline:
-                time.sleep(0.1)
-            assert pool.width() == workers
-            store = trial_store_of(study, Path(name))
-            before = _cpu(), _cpu(dask.scheduler)
-            began = time.perf_counter()
-            rows = evaluate_all(
-                source_of(study), store, pool, partial(slept, path, share), lambda p: None
-            )
-            passed = time.perf_counter() - began
-            driver, scheduler = _cpu() - before[0], _cpu(dask.scheduler) - before[1]
+    work = partial(slept, path, share)
+    with (
+        tempfile.TemporaryDirectory() as name,
+        cluster(workers, Path(name)) as dask,
+        worker_pool(1, dask.address) as pool,
+    ):
+        deadline = time.monotonic() + WAIT_S
+        while pool.width() < workers and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert pool.width() == workers
+        store = trial_store_of(study, Path(name))
+        before = _cpu(), _cpu(dask.scheduler)
+        began = time.perf_counter()
+        rows = evaluate_all(source_of(study), store, pool, work, lambda p: None)
+        passed = time.perf_counter() - began
+        driver, scheduler = _cpu() - before[0], _cpu(dask.scheduler) - before[1]
     busy = share * sum(r.outcome.seconds for r in rows) / passed
     print(
         f"{workers:4} workers, {share * seconds:.2f} s a design: {designs / passed:6.1f} rows/s, "
@@ -92,35 +94,36 @@ def on_a_cluster(workers: int, share: float, seconds: float, path: Path) -> None
 
 
 def storage_alone(path: Path, sizes: tuple[int, ...]) -> None:
-    """The same loop and storage with work that takes no time, at each size; then the tables."""
+    """The same loop and storage with work that takes no time, at each size; then what is read of it."""
     with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
         for size in sizes:
-            for designs in (size - TAIL, size):
-                study, before, began = growing(designs), _cpu(), time.perf_counter()
-                store = trial_store_of(study, Path(name))
-                source = source_of(study)
-                opened = _cpu() - before, len(store.rows())
-                before, began = _cpu(), time.perf_counter()
-                with _at_once() as pool:
-                    watch = Watch(study)
-                    rows = evaluate_all(source, store, pool, partial(slept, path, 0.0), watch)
-                new = designs - opened[1]
-                cpu, passed = _cpu() - before, time.perf_counter() - began
-            bytes_ = (Path(name) / "study.db").stat().st_size
+            _filled(folder, path, size - TAIL)
+            rows_per_s, cpu_ms = _filled(folder, path, size)
+            study_MB = (folder / "study.db").stat().st_size / 1e6
+            memory_MB = psutil.Process().memory_info().rss / 1e6
+            began = time.process_time()
+            rows = tuple(trial_store_of(growing(size), folder).rows())
+            read = time.process_time()
+            write_csv(folder / "study.csv", table_of(StudyResult(growing(size), rows)))
+            written = time.process_time()
             print(
-                f"{size:6} rows: the last {new} at {new / passed:.0f} rows/s, "
-                f"{1e3 * cpu / new:.2f} ms of the processor each; study.db {bytes_ / 1e6:.1f} MB; "
-                f"this process {_memory_MB():.0f} MB",
+                f"{size:6} rows: the last {TAIL} at {rows_per_s:.0f} rows/s, {cpu_ms:.2f} ms of the "
+                f"processor each; study.db {study_MB:.1f} MB, the study's process {memory_MB:.0f} MB; "
+                f"read again in {read - began:.1f} s, study.csv in {written - read:.1f} s",
                 flush=True,
             )
-            result = StudyResult(study, tuple(rows))
-            print(
-                f"        study.csv {_timed(lambda: write_csv(Path(name) / 'x.csv', table_of(result)))}"
-            )
-            print(
-                f"        read again {_timed(lambda: trial_store_of(study, Path(name)).rows())}",
-                flush=True,
-            )
+
+
+def _filled(folder: Path, path: Path, designs: int) -> tuple[float, float]:
+    """A study's rows up to so many; of the new ones rows a second, and processor time of each [ms]."""
+    study = growing(designs)
+    store = trial_store_of(study, folder)
+    new = designs - len(store.rows())
+    cpu, began = _cpu(), time.perf_counter()
+    with _at_once() as pool:
+        evaluate_all(source_of(study), store, pool, partial(slept, path, 0.0), Watch(study))
+    return new / (time.perf_counter() - began), 1e3 * (_cpu() - cpu) / new
 
 
 @contextmanager
@@ -129,20 +132,10 @@ def _at_once() -> Iterator[WorkerPool]:
         yield WorkerPool(executor, lambda: WIDTH)
 
 
-def _timed(work: Callable[[], object]) -> str:
-    began = time.process_time()
-    work()
-    return f"{time.process_time() - began:.1f} s"
-
-
 def _cpu(process: psutil.Process | None = None) -> float:
     """Processor time of a process so far [s]."""
     times = (process or psutil.Process()).cpu_times()
     return float(times.user + times.system)
-
-
-def _memory_MB() -> float:
-    return float(psutil.Process().memory_info().rss / 1e6)
 
 
 def main() -> None:

@@ -1,7 +1,7 @@
-"""Workers of a Dask scheduler that sleep for as long as real designs took: `python sleepers.py ADDRESS COUNT`.
+"""Workers of a Dask scheduler that only sleep: `python sleepers.py ADDRESS COUNT`.
 
-A worker that sleeps needs no core, so all of them live in one process, each with its own connection and
-one thread, as the scheduler sees a cluster.
+They sleep for as long as real designs took. That needs no core, so all of them live in one process, each
+with its own connection and one thread, as the scheduler sees a cluster.
 """
 
 from __future__ import annotations
