@@ -202,9 +202,12 @@ def test_sharp_edges_are_the_cads(made: tuple[Design, str, TetMesh]) -> None:
 
 @pytest.mark.parametrize("name", ["cup on the axis", "solid shaft, holes in its flange"])
 def test_a_sector_on_the_axis_stands_for_the_whole(name: str) -> None:
-    """Reflected twice it has one set of nodes on the axis, and the same K to the solver's digits."""
+    """Reflected twice it has one set of nodes on the axis, and the same K to the solver's digits.
+
+    On a coarse mesh: both have the same elements, so nothing of it is the mesh's.
+    """
     file, part, changes = PARTS[name]
-    wedge = swept(design_of(file, part, changes), part)
+    wedge = swept(design_of(file, part, changes), part, 1.6)
     quarter = unfolded(wedge, 90.0)
     on_axis = [np.hypot(*m.nodes[:, :2].T) == 0 for m in (wedge, quarter)]
     assert 0 < on_axis[0].sum() == on_axis[1].sum()
@@ -326,7 +329,8 @@ def test_a_keyed_shaft_lies_between_two_bodies_of_revolution(name: str) -> None:
     slot, last = design.shaft.slot, design.shaft.segment[-1]
     assert slot is not None
     material = Elastic.of(design.part(part).material)
-    K = torsion(Model.of(swept(design, part), material), "grip").K_energy
+    # edges 1.6 times the first mesh's: K rises by 0.2 %, still within the 1 % below
+    K = torsion(Model.of(swept(design, part, 1.6), material), "grip").K_energy
 
     def revolved(changed: dict[str, Any]) -> Stiffness:
         other = design_of(file, part, changes | {"keyway": None} | changed)

@@ -8,6 +8,7 @@ import pty
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import tomllib
 from pathlib import Path
@@ -20,6 +21,20 @@ from flexspline.geometry.load import load_design
 from flexspline.results.letters import STAND_INS
 from flexspline.results.letters import plain as plain_letters
 
+ONE_AFTER_ANOTHER = """
+import json, os, sys
+from flexspline.results.entry import main
+
+for words in json.loads(sys.argv[1]):
+    sys.argv = ["flexspline", *(os.fsdecode(word.encode()) for word in words)]  # as the locale reads them
+    try:
+        main()
+    except SystemExit as ended:
+        if ended.code:
+            sys.exit(f"{words}: {ended.code}")
+    sys.stdout.write(chr(30))
+"""
+"""Commands in one process, which starts once; a record separator after what each says."""
 C_LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 NARROW = {
     "ascii": {"PYTHONIOENCODING": "ascii"},
@@ -74,21 +89,28 @@ def test_every_quick_command(env: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / "gerät.toml").write_text(text, encoding="utf-8")
     (tmp_path / "punkte-ü.csv").write_bytes(head("size-40-end-points"))
     (tmp_path / "torque.csv").write_text("torque_Nm\n0.1\n0.2\n", encoding="utf-8")
-    for words in (
-        ("--help",),
-        ("backlash", "--help"),
-        ("schema",),
-        ("backlash", "gerät.toml", *GIVEN),
-        ("diagnose", "gerät.toml", "punkte-ü.csv", *GIVEN),
-    ):
-        done = run(tmp_path, env, *words)
-        assert done.returncode == 0, (words, done.stderr)
-        assert done.stdout.isascii()
-        assert b"Traceback" not in done.stderr
+    backlash = ["backlash", "gerät.toml", *map(str, GIVEN)]
+    commands = [
+        ["--help"],
+        ["backlash", "--help"],
+        ["schema"],
+        backlash,
+        ["diagnose", "gerät.toml", "punkte-ü.csv", *map(str, GIVEN)],
+        [*backlash, "--json"],
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", ONE_AFTER_ANOTHER, json.dumps(commands)], capture_output=True,
+        check=False, cwd=tmp_path, env=environment(tmp_path / "cache") | env,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.isascii()
+    assert b"Traceback" not in done.stderr
+    said = done.stdout.split(b"\x1e")[:-1]
+    assert len(said) == len(commands)
+    assert all(said)
     written = json.loads((tmp_path / "gerät.out" / "result.json").read_bytes().decode("utf-8"))
     assert written["design"] == "Zähne µ 齿"
-    printed = run(tmp_path, env, "backlash", "gerät.toml", *GIVEN, "--json").stdout
-    assert json.loads(printed)["design"] == "Zähne µ 齿"
+    assert json.loads(said[-1])["design"] == "Zähne µ 齿"
     refused = run(tmp_path, env, "predict", "gerät.toml", "fehlt-ü.csv", "--model", "fehlt.toml")
     assert refused.returncode == 2
     assert refused.stderr.count(b"\n") == 1

@@ -135,11 +135,13 @@ def test_export_writes_cad_and_fields(finished_cup, tmp_path: Path) -> None:
     assert grid["von_mises_MPa"].max() > 0
 
 
-def test_backlash_with_given_stiffness_needs_no_fea(tmp_path: Path) -> None:
-    done = flexspline(
-        "backlash", CUP, "--Kb", 36000, "--Ke", 36000, "--out", tmp_path, "--json",
-        cache=tmp_path / "cache",
-    )  # fmt: skip
+def test_backlash_with_given_stiffness_needs_no_fea(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path / "cache"))
+    done = in_process.flexspline(
+        "backlash", CUP, "--Kb", 36000, "--Ke", 36000, "--out", tmp_path, "--json", folder=tmp_path
+    )
     result = json.loads(done.stdout)
     # 2T/K at 1.8e4 is 11.46 arcsec
     wind_up = result["backlash_arcsec"]["shaft"] + result["backlash_arcsec"]["flexspline"]
@@ -168,8 +170,8 @@ def test_wrong_words_get_one_line_and_status_2(words: list, needle: str, tmp_pat
 
 def test_wrong_design_writes_nothing(tmp_path: Path) -> None:
     design = copy_of(CUP, tmp_path, ("bore_diameter_mm = 8.0", "bore_diameter_mm = 18.5"))
-    done = flexspline("run", design)
-    assert done.returncode == 2
+    done = in_process.flexspline("run", design, folder=tmp_path)
+    assert done.status == 2
     assert "flexspline.bore_diameter_mm = 18.5" in done.stderr
     assert list(tmp_path.iterdir()) == [design]
 
@@ -195,17 +197,19 @@ def test_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["cup", "hat"])
 def test_init_prints_a_design_that_loads(kind: str, tmp_path: Path) -> None:
-    text = flexspline("init", kind).stdout
+    text = in_process.flexspline("init", kind, folder=tmp_path).stdout
     assert tomllib.loads(text)["flexspline"]["kind"] == kind
     path = tmp_path / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    done = flexspline("backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--json")
-    assert done.returncode == 0
+    done = in_process.flexspline(
+        "backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--json", folder=tmp_path
+    )
+    assert done.status == 0
     assert (tmp_path / "mine.out" / "result.json").exists()
 
 
-def test_schema_is_json_schema() -> None:
-    schema = json.loads(flexspline("schema").stdout)
+def test_schema_is_json_schema(tmp_path: Path) -> None:
+    schema = json.loads(in_process.flexspline("schema", folder=tmp_path).stdout)
     assert {"flexspline", "shaft", "material", "gear", "bearing", "load"} <= set(
         schema["properties"]
     )
@@ -213,8 +217,9 @@ def test_schema_is_json_schema() -> None:
 
 def test_a_torque_beyond_the_linear_model_is_said(tmp_path: Path) -> None:
     path = copy_of(CUP, tmp_path, ("torque_Nm = 0.5", "torque_Nm = 5000.0"))
-    done = flexspline("backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--out", tmp_path, "--json")
-    assert done.returncode == 0, done.stderr
+    words = ("backlash", path, "--Kb", 3e4, "--Ke", 4e4, "--out", tmp_path, "--json")
+    done = in_process.flexspline(*words, folder=tmp_path)
+    assert done.status == 0, done.stderr
     result = json.loads(done.stdout)
     # the twist of one of 200 teeth is no more than this away; the diaphragm's shear comes before
     assert 0 < result["linear_torque_limit_Nm"] < 2 * pi / 200 * 1.72e4

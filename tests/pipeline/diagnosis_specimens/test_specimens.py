@@ -250,15 +250,15 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
     context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
     bench = Bench(context, 3e4, 4.3e4, False)
     key = "shaft.segment[1].outer_diameter_mm"
-    values = np.array([15.0, 16, 17, 18, 19, 20])
+    values = np.array([15.0, 17, 18, 20])
     drawn = [
         with_values(design, {key: float(v), "shaft.segment[0].outer_diameter_mm": 22.0})
         for v in values
     ]
     C = np.array([bench.compliance(d, "shaft") for d in drawn])
     specimens = Specimens(
-        Path("made.csv"), tuple("abcdef"), ("shaft",) * 6, 0.82 * noisy(C, 9), np.full(6, 400.0),
-        {key: values, "shaft.segment[0].outer_diameter_mm": np.full(6, 22.0)}, np.arange(6) + 2,
+        Path("made.csv"), tuple("abcd"), ("shaft",) * 4, 0.82 * noisy(C, 9), np.full(4, 400.0),
+        {key: values, "shaft.segment[0].outer_diameter_mm": np.full(4, 22.0)}, np.arange(4) + 2,
     )  # fmt: skip
     outcome, analysis = diagnose_specimens(design, specimens, 3e4, 4.3e4, context, False)
     mine = {c.id for c in outcome.causes} | {a for c in outcome.causes for a in c.alternatives}
@@ -267,13 +267,17 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
     assert analysis is not None
 
 
-def test_sensitivities_of_many_specimens_follow_from_some(bench) -> None:
-    """Forty specimens, 24 solved: the others' slopes are within a tenth of FE's."""
+def test_sensitivities_of_many_specimens_follow_from_some(
+    bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Twenty specimens, twelve solved, for a plane of three numbers: the others' slopes are within a tenth
+    of FE's."""
+    monkeypatch.setattr("flexspline.pipeline.diagnosis.specimens.sensitivity.MOST_SOLVED", 12)
     rng = np.random.default_rng(11)
-    walls, long = rng.uniform(0.36, 0.52, 40).round(3), rng.uniform(24, 40, 40).round(2)
+    walls, long = rng.uniform(0.36, 0.52, 20).round(3), rng.uniform(24, 40, 20).round(2)
     designs = [with_values(DESIGN, {WALL: w, LENGTH: z}) for w, z in zip(walls, long, strict=True)]
     many = compliances(
-        bench, designs, ("flexspline",) * 40, keys={WALL}, zones=False
+        bench, designs, ("flexspline",) * 20, keys={WALL}, zones=False
     ).sensitivities[0]
     alone = compliances(bench, designs[1:4], ("flexspline",) * 3, keys={WALL}, zones=False)
     assert many.slope[1:4] == pytest.approx(alone.sensitivities[0].slope, rel=0.1)

