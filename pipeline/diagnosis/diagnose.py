@@ -34,6 +34,7 @@ from flexspline.pipeline.diagnosis.outcome import (
     NamedCause,
     Verdict,
 )
+from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
@@ -111,6 +112,7 @@ def diagnose_file(
     """
     measurement = read_measurement(csv, counts_per_turn)
     prediction = prediction_of(design, K_b, K_e, K_error)
+    refuse_absurd(measurement, prediction, K_b, K_e)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
         model = behind.model if behind else None

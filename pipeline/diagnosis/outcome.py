@@ -35,12 +35,16 @@ class NamedCause:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """Structure that no named cause explains: in which channel, how large, how surely, what it is like."""
+    """Structure that no named cause explains: in which channel, how large, how surely, what it is like.
+
+    `limit` : a physical limit that the best explanation breaks; `what` is then a sentence.
+    """
 
     channel: str
     rms: float
     p_value: float
     what: str
+    limit: bool = False
 
 
 @dataclass(frozen=True)

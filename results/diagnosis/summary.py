@@ -75,6 +75,10 @@ def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
     if specimens:
         what = "; ".join(u.what for u in outcome.unexplained)
         return f"There is structure that no known cause explains: {what}.{known}"
+    broken = [u.what for u in outcome.unexplained if u.limit]
+    if broken:
+        said = f"No cause is named: {'; '.join(broken)}"
+        return said if said.endswith("?") else f"{said}."
     where = ", ".join(dict.fromkeys(u.channel for u in outcome.unexplained)) or "the data"
     return f"There is structure in {where} that no known cause explains.{known}"
 

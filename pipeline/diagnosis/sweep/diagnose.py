@@ -3,6 +3,7 @@
 | step | file |
 |---|---|
 | read the file (`../diagnose.py`) | `measurement/record.py`, `measurement/table.py` |
+| refuse an absurd size (`../diagnose.py`) | `../plausibility.py`, `size.py` |
 | shorten a long record | `measurement/thinning.py` |
 | choose rows, estimate the noise | `row_selection.py`, `measurement/noise.py`, `prepare.py` |
 | evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |
@@ -12,7 +13,7 @@
 | the same with a shifted torque reading | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
-| verdict | `../decision.py` |
+| verdict; physical limits | `../decision.py`; `limits.py` |
 | error on data held out | `held_out.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """
@@ -24,7 +25,7 @@ from math import hypot
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.decision import decided
+from flexspline.pipeline.diagnosis.decision import Decision, decided
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -32,6 +33,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurem
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.fit import model_of
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
+from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
@@ -71,6 +73,8 @@ def diagnose_sweep(
         return _insufficient(str(error)), None
     explained = with_torque_offset(run_race(prepared))
     identified = explained.identified
+    if hidden := drowned(explained):
+        return _insufficient(hidden), None
     causes = named_causes(explained)
     tests = channel_tests(explained.prepared, identified.fit)
     decision = decided(
@@ -80,6 +84,9 @@ def diagnose_sweep(
         unnamed_rms=identified.unnamed_rms,
         structure=any(t.p_value < SURE for t in tests),
     )
+    broken = broken_limit(sweep, explained, decision.causes)
+    if broken is not None:
+        decision = Decision("unknown", (), (broken, *decision.unexplained))
     ids = [c.id for c in decision.causes]
     outcome = DiagnosisOutcome(
         decision.verdict,

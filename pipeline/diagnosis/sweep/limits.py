@@ -1,0 +1,64 @@
+"""Physical limits that an explanation of a sweep keeps, whatever its evidence."""
+
+from __future__ import annotations
+
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
+from flexspline.pipeline.diagnosis.plausibility import slope_beyond, slope_words
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.size import sweep_size
+
+MOST = 10.0
+"""Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
+SURE = 3.0
+"""Standard deviations below 0 at which a gap is negative: one in 740."""
+WHOLE_GAP = "clearance_offset"
+"""The cause that changes the gap itself."""
+
+
+def broken_limit(
+    sweep: Sweep, explained: ExplainedSweep, causes: tuple[NamedCause, ...]
+) -> Unexplained | None:
+    """A limit that the best explanation breaks, with its channel; None where it keeps all.
+
+    A gear is not ten times softer or stiffer than drawn, and no gap is negative.
+    """
+    prepared, fit = explained.prepared, explained.identified.fit
+    size = sweep_size(prepared.rig.history, prepared.sweep.angle_arcsec, prepared.prediction)
+    if size is not None and slope_beyond(size, MOST):
+        return Unexplained(
+            "torque_Nm", size.residual_arcsec, 0.0, slope_words(size, sweep), limit=True
+        )
+    gap, std = _gap(fit, causes, prepared.prediction)
+    if gap + SURE * std < 0:
+        what = (
+            f"the best explanation needs a gap of {gap:.3g} ± {std:.2g} arcsec, which no gear has"
+        )
+        return Unexplained("torque_Nm", abs(gap) / 2, 0.0, what, limit=True)
+    return None
+
+
+def drowned(explained: ExplainedSweep) -> str:
+    """Why the noise hides everything, "" where it does not: one reading's is above the whole twist."""
+    prepared = explained.prepared
+    noise = explained.identified.search.evidence.noise.std_arcsec
+    torque = prepared.rig.history.torque_Nm
+    twist = abs(float(torque.max() - torque.min())) * prepared.prediction.compliance
+    if float(torque.min()) < 0 < float(torque.max()):
+        twist += prepared.prediction.gap_arcsec
+    if noise <= twist:
+        return ""
+    return f"the noise of one reading, {noise:.3g} arcsec, exceeds the simulated twist, {twist:.3g} arcsec"
+
+
+def _gap(
+    fit: SweepFit, causes: tuple[NamedCause, ...], prediction: Prediction
+) -> tuple[float, float]:
+    """The whole gap at 20 °C as the record has it, and its deviation [arcsec]."""
+    changed = next((c for c in causes if c.id == WHOLE_GAP), None)
+    if changed is not None:
+        return prediction.gap_arcsec + changed.magnitude, changed.magnitude_std
+    found = fit.calibration.gap_arcsec
+    return found.value, found.std

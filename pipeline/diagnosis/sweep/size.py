@@ -1,0 +1,131 @@
+"""How large a record's twist is against the simulated one, by a straight line on both sides of the gap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+
+MOST_ROWS = 20_000
+"""A size needs no more; every n-th row of longer records is taken."""
+NEAR = 0.035
+"""Of the largest torque: rows nearer to 0 may be on either side of the gap (measurement/noise.py)."""
+FEWEST = 8
+"""Rows beyond the crossing: half of them for zero, drift, slope and gap."""
+FAR = 6.0
+"""Robust deviations beyond which a row is no part of the line: spikes."""
+SURE = 4.0
+"""Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
+LARGEST_CORRELATION = 0.99
+"""Of neighbouring residuals: a slow effect counts as no more than 200 rows of one reading each."""
+OUTER = 1.0
+"""Percent of the rows at either end that may be spikes."""
+
+
+@dataclass(frozen=True)
+class SweepSize:
+    """Measured over simulated, each with its standard deviation.
+
+    Attributes
+    ----------
+    chord, chord_std : twist from the lowest to the highest torque, the gap in it, over the simulated.
+    compliance, compliance_std : slope on one side of the gap over the simulated.
+    elastic_arcsec : the slope's twist over all torques. residual_arcsec : rms off the line.
+    simulated_arcsec : the chord's; simulated_gap_arcsec : the gap in it.
+    span_arcsec : range of all readings of a unit.
+    """
+
+    chord: float
+    chord_std: float
+    compliance: float
+    compliance_std: float
+    elastic_arcsec: float
+    residual_arcsec: float
+    simulated_arcsec: float
+    simulated_gap_arcsec: float
+    span_arcsec: float
+
+    @property
+    def chord_range(self) -> tuple[float, float]:
+        """Least and largest ratio of chords that the record allows."""
+        return self.chord - SURE * self.chord_std, self.chord + SURE * self.chord_std
+
+    @property
+    def compliance_range(self) -> tuple[float, float]:
+        """The same of slopes."""
+        std = self.compliance_std
+        return self.compliance - SURE * std, self.compliance + SURE * std
+
+
+def sweep_size(
+    history: History, angle_arcsec: np.ndarray, prediction: Prediction
+) -> SweepSize | None:
+    """The size of a sweep; None where torque moves too little to fit a line.
+
+    θ = zero + drift·row + c·T + ½ g·sign T, zero and drift of each unit its own, by least squares, once
+    more without what lies far off. A drift in step with the torque leaves c a large deviation, and no size.
+    """
+    step = -(-len(history) // MOST_ROWS)
+    h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
+    largest = float(np.abs(h.torque_Nm).max())
+    far = np.abs(h.torque_Nm) > NEAR * largest
+    span = max(
+        float(np.subtract(*np.percentile(angle[rows], [100 - OUTER, OUTER])))
+        for rows in h.unit_slices
+    )
+    h, angle = h.rows(far), angle[far]
+    good = np.ones(len(angle), bool)
+    for _ in range(2):
+        found = _line(h.rows(good), angle[good])
+        if found is None:
+            return None
+        (c, g), cov, residual = found
+        off = np.zeros(len(good))
+        off[good] = residual
+        scale = SIGMA_PER_MAD * float(np.median(np.abs(residual)))
+        good &= np.abs(off) <= FAR * scale + 1e-9
+    extent = float(np.ptp(h.torque_Nm))
+    both = float(h.torque_Nm.min()) < 0 < float(h.torque_Nm.max())
+    along = np.array([extent, 1.0 if both else 0.0])
+    simulated = float(along @ [prediction.compliance, prediction.gap_arcsec])
+    return SweepSize(
+        chord=float(along @ [c, g]) / simulated,
+        chord_std=float(np.sqrt(along @ cov @ along)) / simulated,
+        compliance=c / prediction.compliance,
+        compliance_std=float(np.sqrt(cov[0, 0])) / prediction.compliance,
+        elastic_arcsec=abs(c) * extent,
+        residual_arcsec=float(np.sqrt(np.mean(residual**2))),
+        simulated_arcsec=simulated,
+        simulated_gap_arcsec=float(along[1]) * prediction.gap_arcsec,
+        span_arcsec=span,
+    )
+
+
+def _line(
+    h: History, angle: np.ndarray
+) -> tuple[tuple[float, float], np.ndarray, np.ndarray] | None:
+    """Slope and gap, their covariance, and what they leave."""
+    columns = np.column_stack([h.torque_Nm, h.sign / 2, angle])
+    for rows in h.unit_slices:
+        own = np.column_stack([np.ones(len(rows)), np.linspace(-1, 1, len(rows))])
+        columns[rows] -= own @ np.linalg.lstsq(own, columns[rows], rcond=None)[0]
+    x, y = columns[:, :2], columns[:, 2]
+    size = np.sqrt((x**2).sum(axis=0))
+    if len(y) < FEWEST or size[0] <= 1e-9 * np.abs(h.torque_Nm).max():
+        return None
+    used = [0, 1] if size[1] > 1e-9 * np.sqrt(len(y)) else [0]
+    inverse = np.linalg.pinv(x[:, used].T @ x[:, used])
+    values = inverse @ (x[:, used].T @ y)
+    residual = y - x[:, used] @ values
+    variance = float(residual @ residual) / max(len(y) - 2 * len(h.unit_slices) - 2, 1)
+    power = float(residual @ residual)
+    rho = float(residual[1:] @ residual[:-1]) / power if power > 0 else 0.0
+    rho = min(max(rho, 0.0), LARGEST_CORRELATION)
+    cov = np.zeros((2, 2))
+    cov[np.ix_(used, used)] = inverse * variance * (1 + rho) / (1 - rho)
+    slope, gap = float(values[0]), float(values[1]) if len(used) > 1 else 0.0
+    return (slope, gap), cov, residual

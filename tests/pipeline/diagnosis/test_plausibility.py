@@ -1,0 +1,126 @@
+"""Sizes that no gear has: refused with the reason, or unknown; records of real sizes are not touched."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden.case import Case
+from hidden.cases import draw_case
+from mislabelled import ABSURD, NONE, STRANGE, Fault, mislabelled
+
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
+from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.results.diagnosis.record import diagnosis_record
+
+SEED = 1711
+CLEAN = [draw_case(SEED, k, "clean") for k in range(4)]
+ROOT = Path(__file__).parents[3]
+
+
+def checked(case: Case, text: str, tmp_path: Path) -> None:
+    path = tmp_path / "rig.csv"
+    path.write_text(text, encoding="utf-8")
+    prediction = prediction_of(design_from(tomllib.loads(case.design)), case.K_b, case.K_e)
+    refuse_absurd(read_measurement(path), prediction, case.K_b, case.K_e)
+
+
+def diagnosed(case: Case, text: str, tmp_path: Path) -> Diagnosis:
+    path = tmp_path / "rig.csv"
+    path.write_text(text, encoding="utf-8")
+    return diagnose_file(design_from(tomllib.loads(case.design)), path, case.K_b, case.K_e)
+
+
+@pytest.mark.parametrize("name", ABSURD)
+@pytest.mark.parametrize("number", range(len(CLEAN)))
+def test_an_absurd_size_is_refused_with_its_reason(name: str, number: int, tmp_path: Path) -> None:
+    fault, asked = ABSURD[name]
+    with pytest.raises(MeasurementError) as refusal:
+        checked(CLEAN[number], mislabelled(CLEAN[number], fault), tmp_path)
+    assert asked in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("number", range(16))
+def test_records_with_effects_of_real_size_are_not_refused(number: int, tmp_path: Path) -> None:
+    """Any of the hidden effects, alone and in pairs, and effects of no known cause."""
+    case = draw_case(SEED + 1, number)
+    checked(case, mislabelled(case, NONE), tmp_path)
+
+
+@pytest.mark.parametrize("name", STRANGE)
+def test_more_than_ten_times_is_no_cause(name: str, tmp_path: Path) -> None:
+    fault, asked = STRANGE[name]
+    record = diagnosis_record(diagnosed(CLEAN[0], mislabelled(CLEAN[0], fault), tmp_path))
+    assert record["verdict"] == "unknown"
+    assert record["causes"] == []
+    assert asked in record["summary"]
+    assert asked in record["unexplained"][0]["what"]
+
+
+def test_a_reading_that_drowns_in_noise_says_nothing(tmp_path: Path) -> None:
+    case, rng = CLEAN[1], np.random.default_rng(3)
+    twist = np.ptp([a for unit in case.units for a in unit.angle])
+    noisy = Fault("angle_arcsec", lambda v: float(v + 4 * twist * rng.normal()), "angle_arcsec")
+    found = diagnosed(case, mislabelled(case, noisy), tmp_path)
+    assert found.verdict == "insufficient"
+    assert "noise of one reading" in found.outcome.too_little
+
+
+def test_no_cause_needs_a_negative_gap(tmp_path: Path) -> None:
+    """Twist at each side less than a line through zero gives: play that pushes."""
+    case = CLEAN[2]
+    unit = case.units[0]
+    gap = 0.5 * case.rig.compliance * unit.program.peak + case.rig.gap
+    rows = np.sign(unit.true_torque)
+    head = "time_s,torque_Nm,angle_arcsec"
+    time = unit.program.time[unit.program.rows]
+    values = zip(time, unit.torque, unit.angle - gap * rows, strict=True)
+    text = "\n".join([head, *(",".join(map(repr, map(float, v))) for v in values)]) + "\n"
+    found = diagnosed(case, text, tmp_path)
+    assert not found.causes
+    assert found.verdict == "unknown"
+
+
+END_POINTS = "unit,torque_Nm,{plus},{minus}\n"
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "needle"),
+    [("arcsec", -1, "turned?"), ("arcmin", 1, "in arcsec, not arcmin"), ("deg", 1, "in arcsec, not deg"),
+     ("arcsec", 1 / 206.265, "in mrad, not arcsec"), ("arcsec", 1, "")],
+)  # fmt: skip
+def test_end_points(unit: str, factor: float, needle: str, tmp_path: Path) -> None:
+    case = CLEAN[0]
+    half = (0.5 * case.rig.compliance + case.rig.gap / 2) * factor
+    head = END_POINTS.format(plus=f"angle_plus_{unit}", minus=f"angle_minus_{unit}")
+    text = head + "".join(f"u{i},0.5,{half * (1 + i / 50)},{-half}\n" for i in range(5))
+    if not needle:
+        checked(case, text, tmp_path)
+        return
+    with pytest.raises(MeasurementError, match=needle):
+        checked(case, text, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("unit", "part", "factor", "needle"),
+    [("Nm_per_rad", "flexspline", 1e-3, "in kNm_per_rad, not Nm_per_rad"), 
+     ("Nm_per_arcmin", "shaft", 1, "in Nm_per_rad"),
+     ("Nm_per_rad", "series", 1, ""), ("Nm_per_rad", "flexspline", 20, "")],
+)  # fmt: skip
+def test_specimens(unit: str, part: str, factor: float, needle: str, tmp_path: Path) -> None:
+    case = CLEAN[0]
+    K = {"flexspline": case.K_b, "shaft": case.K_e, "series": 1 / (1 / case.K_b + 1 / case.K_e)}
+    rows = "".join(f"s{i},{K[part] * factor * (1 + i / 100)},{part}\n" for i in range(4))
+    text = f"specimen,stiffness_{unit},part\n{rows}"
+    if not needle:
+        checked(case, text, tmp_path)
+        return
+    with pytest.raises(MeasurementError, match=needle):
+        checked(case, text, tmp_path)
