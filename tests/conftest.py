@@ -28,11 +28,12 @@ WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 SLOWEST = (
-    "test_cli", "test_hidden", "test_documents", "test_face", "test_document_commands", "test_size",
-    "test_legibility_diagnosis", "test_study_command", "test_sensitivity", "test_no_network",
-    "test_specimens", "test_studio_work", "test_diagnose_command",
+    "test_cli", "test_hidden_specimens", "test_swept", "test_document_commands", "test_studio_work",
+    "test_studio_design", "test_documents", "test_specimens", "test_studio_reading", "test_studio_widths",
+    "test_without_opengl", "test_hidden", "test_study_command", "test_optimum", "test_mesher",
+    "test_sensitivity", "test_legibility_diagnosis", "test_studio_stale",
 )  # fmt: skip
-"""Files that take half a minute or more, begun first so that no worker is left alone with one at the end.
+"""Files that take twenty seconds or more, begun first so that no worker is left alone with one at the end.
 The first makes the run that others read."""
 
 

@@ -83,7 +83,14 @@ asyncio.SelectorEventLoop.add_signal_handler = none
 import multiprocessing.popen_fork, types
 # how the library itself ends a process on this system
 multiprocessing.popen_fork.signal = types.SimpleNamespace(SIGKILL=9, SIGTERM=15)
-threading.Timer(8.0, os.kill, (os.getpid(), signal.SIGINT)).start()  # Ctrl-C
+write = sys.stdout.write
+
+def seen(text):
+    if "http://" in text:  # it serves; its workers begin
+        threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()  # Ctrl-C
+    return write(text)
+
+sys.stdout.write = seen
 serve(starting_design(None), "127.0.0.1", 0, browser=False)
 """
 MEMORY = """
