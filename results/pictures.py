@@ -1,7 +1,7 @@
 """All pictures of a run, drawn once for the same content and kept.
 
-Charts are drawn here, parts in `results.renders.process`: where that fails, those pictures are missing and
-everything else comes. What is missing is not kept: the next run tries again.
+Charts are drawn here, parts meanwhile in processes of their own (`results.renders.pool`): where that fails,
+those pictures are missing and everything else comes. What is missing is not kept: the next run tries again.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
@@ -28,7 +29,8 @@ from flexspline.results.figures.convergence import write_convergence
 from flexspline.results.figures.torque_angle import write_torque_angle
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.mesh_picture import write_mesh_picture
-from flexspline.results.renders.process import DrawingProcess, NotDrawnError
+from flexspline.results.renders.pool import DrawingPool
+from flexspline.results.renders.process import NotDrawnError
 from flexspline.results.renders.stress_picture import (
     write_torque_stress,
     write_turning_torque_stress,
@@ -36,6 +38,8 @@ from flexspline.results.renders.stress_picture import (
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 ELLIPSE = "wave_generator"
+PROCESSES = 2
+"""That draw at once: where the processor draws, each uses about one core; VTK takes 0.3 GB in each."""
 DRAWING = 5
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 TURNING = 2
@@ -87,25 +91,48 @@ def write_pictures(
     are missing. A picture of an earlier run that cannot be drawn now is removed: it may be another
     design's.
     """
-    paths, views, missing = {}, {}, {}
-    with DrawingProcess() as process:
-        renders, charts = _renders(context, result, process), _charts(result, extended)
-        for drawing in (*renders, *charts):
-            path = folder / f"{drawing.name}.png"
-            try:
-                with context.progress.stage(f"picture {drawing.name}"):
-                    write_bytes(path, _drawn(context.cache, drawing))
-                paths[drawing.name] = path
-            except NotDrawnError as error:
-                missing[drawing.name] = str(error)
-                path.unlink(missing_ok=True)
+    paths: dict[str, Path] = {}
+    views: dict[str, bytes] = {}
+    missing: dict[str, str] = {}
+
+    def keep_picture(drawing: _Drawing, made: Callable[[], bytes]) -> None:
+        path = folder / f"{drawing.name}.png"
+        try:
+            write_bytes(path, made())
+            paths[drawing.name] = path
+        except NotDrawnError as error:
+            missing[drawing.name] = str(error)
+            path.unlink(missing_ok=True)
+
+    def keep_view(drawing: _Drawing, made: Callable[[], bytes]) -> None:
+        try:
+            views[drawing.name] = made()
+        except NotDrawnError as error:
+            missing[f"3-D view {drawing.name}"] = str(error)
+
+    def begun(drawing: _Drawing, kind: str) -> Callable[[], bytes]:
+        def make() -> bytes:
+            context.progress.note(f"  {kind} {drawing.name}")
+            return _drawn(context.cache, drawing)
+
+        return threads.submit(make).result
+
+    # the processes end first: a thread that waits for one then comes to its end
+    with (
+        context.progress.stage("pictures"),
+        ThreadPoolExecutor(PROCESSES) as threads,
+        DrawingPool(PROCESSES) as pool,
+    ):
+        renders = [(d, begun(d, "picture")) for d in _renders(context, result, pool)]
+        charts = [(c, _drawn(context.cache, c)) for c in _charts(result, extended)]
+        for render, made in renders:
+            keep_picture(render, made)
+        for chart, png in charts:
+            keep_picture(chart, partial(bytes, png))
         # only of pictures that there are: they stand where scripts do not run
-        for drawing in _views(context, result, process, tuple(paths)):
-            try:
-                with context.progress.stage(f"3-D view {drawing.name}"):
-                    views[drawing.name] = _drawn(context.cache, drawing)
-            except NotDrawnError as error:
-                missing[f"3-D view {drawing.name}"] = str(error)
+        turning = [(d, begun(d, "3-D view")) for d in _views(context, result, pool, tuple(paths))]
+        for view, made in turning:
+            keep_view(view, made)
     return RunPictures(paths, views, missing)
 
 
@@ -144,27 +171,25 @@ def _ellipse_inputs(context: AnalysisContext) -> Mapping[str, Any]:
     return {**context.part("flexspline").torsion_key, "w0_mm": w0}
 
 
-def _renders(
-    context: AnalysisContext, result: RunResult, process: DrawingProcess
-) -> Iterable[_Drawing]:
+def _renders(context: AnalysisContext, result: RunResult, pool: DrawingPool) -> Iterable[_Drawing]:
     """The parts whose fields there are: meshes, stress under torque, the ellipse."""
     fields, load = result.fields, result.design.load
     solved = {part: f"{part}_torque" for part in TITLES if f"{part}_torque" in fields}
     for part, name in solved.items():
-        make = partial(process.draw, write_mesh_picture, fields[name].mesh, TITLES[part])
+        make = partial(pool.draw, write_mesh_picture, fields[name].mesh, TITLES[part])
         yield _Drawing(f"{part}_mesh", context.part(part).torsion_key, make)
     for part, name in solved.items():
         shown = fields[name], TITLES[part], load.torque_Nm
-        make = partial(process.draw, write_torque_stress, *shown)
+        make = partial(pool.draw, write_torque_stress, *shown)
         yield _Drawing(name, _stress_inputs(context, part), make)
     if ELLIPSE in fields:
         ellipse = fields[ELLIPSE], result.design.gear.centre_distance_mm
-        make = partial(process.draw, write_ellipse_picture, *ellipse)
+        make = partial(pool.draw, write_ellipse_picture, *ellipse)
         yield _Drawing(ELLIPSE, _ellipse_inputs(context), make)
 
 
 def _views(
-    context: AnalysisContext, result: RunResult, process: DrawingProcess, names: Iterable[str]
+    context: AnalysisContext, result: RunResult, pool: DrawingPool, names: Iterable[str]
 ) -> Iterable[_Drawing]:
     """Those of the stress pictures again, as views that turn."""
     fields, load = result.fields, result.design.load
@@ -173,12 +198,12 @@ def _views(
     for name in names:
         if name == ELLIPSE:
             ellipse = name, fields[name], result.design.gear.centre_distance_mm
-            make = partial(process.draw, write_turning_ellipse, *ellipse)
+            make = partial(pool.draw, write_turning_ellipse, *ellipse)
             yield _Drawing(name, {**key, **_ellipse_inputs(context)}, make)
         elif name in part_of:
             part = part_of[name]
             shown = name, fields[name], TITLES[part], load.torque_Nm
-            make = partial(process.draw, write_turning_torque_stress, *shown)
+            make = partial(pool.draw, write_turning_torque_stress, *shown)
             yield _Drawing(name, {**key, **_stress_inputs(context, part)}, make)
 
 

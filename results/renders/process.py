@@ -17,7 +17,7 @@ import tempfile
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from threading import Timer
+from threading import Lock, Timer
 from typing import Any, TextIO
 
 from flexspline.fea.child_python import child_command
@@ -30,6 +30,7 @@ TYPES: tuple[type, ...] = (SolidField, StressPeak, TetMesh)
 """What may be drawn, beside arrays and plain values."""
 SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
+STOPPED = "drawing was stopped"
 _VTK_LOG = re.compile(r"^(\x1b\[[0-9;]*m)*[\d-]+ [\d:.]+ \([^)]*\) \[[^]]*\]|\x1b\[[0-9;]*m")
 """Colours, time and thread before VTK's words: with them no two reasons are alike."""
 
@@ -41,21 +42,26 @@ class NotDrawnError(ComputationError):
 class DrawingProcess:
     """Calls functions that write a picture; a context that ends the process.
 
-    A function on which the process ended, or that took longer than `slowest_s`, is not called again.
+    A function on which the process ended, or that took longer than `slowest_s`, is not called again:
+    `gave_up` has the reasons by its name, and may be shared with other processes.
     """
 
-    def __init__(self, slowest_s: float = SLOWEST_S) -> None:
+    def __init__(self, slowest_s: float = SLOWEST_S, gave_up: dict[str, str] | None = None) -> None:
         self.slowest_s = slowest_s
         self._process: subprocess.Popen[str] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._gave_up: dict[str, str] = {}
+        self._gave_up = {} if gave_up is None else gave_up
         self._too_slow = False
+        self._closed = False
+        self._starting = Lock()
 
     def __enter__(self) -> DrawingProcess:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._end()
+        with self._starting:  # by another thread, perhaps just now
+            self._closed = True
+            self._end()
         if self._folder is not None:
             self._folder.cleanup()
 
@@ -83,6 +89,8 @@ class DrawingProcess:
         asked.write_bytes(packed(arguments))
         question = {"function": name, "asked": str(asked), "made": str(made)}
         answer = self._exchange(json.dumps(question))
+        if answer is None and self._closed:
+            raise NotDrawnError(STOPPED)
         if answer is None:
             self._gave_up[name] = self._last_words()
             raise NotDrawnError(self._gave_up[name])
@@ -92,7 +100,10 @@ class DrawingProcess:
 
     def _exchange(self, question: str) -> str | None:
         """The answer, None where the process ended first."""
-        process = self._running()
+        with self._starting:
+            if self._closed:
+                return None
+            process = self._running()
         assert process.stdin is not None
         assert process.stdout is not None
         limit = Timer(self.slowest_s, self._stop)
