@@ -200,7 +200,10 @@ def test_sharp_edges_are_the_cads(made: tuple[Design, str, TetMesh]) -> None:
         assert cKDTree(one).query(other)[0].max() < spacing  # both are points along the same curves
 
 
-@pytest.mark.parametrize("name", ["cup on the axis", "solid shaft, holes in its flange"])
+@pytest.mark.parametrize(
+    "name",
+    ["cup on the axis", pytest.param("solid shaft, holes in its flange", marks=pytest.mark.long)],
+)
 def test_a_sector_on_the_axis_stands_for_the_whole(name: str) -> None:
     """Reflected twice it has one set of nodes on the axis, and the same K to the solver's digits.
 
@@ -314,7 +317,14 @@ def test_estimated_bounds_hold_the_guaranteed_stiffness() -> None:
         assert 0.3 < error / half < 3
 
 
-KEYED = [name for name in PARTS if name.startswith("keyed") and "holes" not in name]
+KEYED = [
+    pytest.param(
+        name, marks=[pytest.mark.long] * (name not in ("keyed shaft", "keyed solid shaft"))
+    )
+    for name in PARTS
+    if name.startswith("keyed") and "holes" not in name
+]
+"""By default one with a bore and one without."""
 
 
 @pytest.mark.parametrize("name", KEYED)

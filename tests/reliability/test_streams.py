@@ -17,7 +17,8 @@ import pytest
 from bases import CUP, GIVEN, head, plain
 from shell import command, environment
 
-from flexspline.geometry.load import load_design
+from flexspline.geometry.load import design_from, load_design
+from flexspline.geometry.template import template
 from flexspline.results.letters import STAND_INS
 from flexspline.results.letters import plain as plain_letters
 
@@ -67,19 +68,27 @@ def test_letters_without_a_stand_in_lose_their_accents_or_are_escaped() -> None:
 
 @pytest.mark.parametrize("env", NARROW.values(), ids=NARROW)
 def test_a_first_design_goes_through_a_file(env: dict[str, str], tmp_path: Path) -> None:
-    for kind in ("cup", "hat"):
-        done = run(tmp_path, env, "init", kind)
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.isascii()
-        (tmp_path / "design.toml").write_bytes(done.stdout)
-        whole = run(tmp_path, {"PYTHONIOENCODING": "utf-8"}, "init", kind)
-        assert load_design(tmp_path / "design.toml").model_dump() == _design(whole.stdout)
+    kinds = ("cup", "hat")
+    for kind, text in zip(
+        kinds, said(tmp_path, env, [["init", kind] for kind in kinds]), strict=True
+    ):
+        assert text.isascii()
+        (tmp_path / "design.toml").write_bytes(text)
+        whole = design_from(tomllib.loads(template(kind)))  # what a terminal with all letters shows
+        assert load_design(tmp_path / "design.toml") == whole
 
 
-def _design(text: bytes) -> dict:
-    from flexspline.geometry.load import design_from
-
-    return design_from(tomllib.loads(text.decode("utf-8"))).model_dump()
+def said(folder: Path, env: dict[str, str], commands: list[list[str]]) -> list[bytes]:
+    """What each of the commands, which all succeed, writes to standard output."""
+    done = subprocess.run(
+        [sys.executable, "-c", ONE_AFTER_ANOTHER, json.dumps(commands)], capture_output=True,
+        check=False, cwd=folder, env=environment(folder / "cache") | env,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert b"Traceback" not in done.stderr
+    texts = done.stdout.split(b"\x1e")[:-1]
+    assert len(texts) == len(commands)
+    return texts
 
 
 @pytest.mark.parametrize("env", NARROW.values(), ids=NARROW)
@@ -98,19 +107,11 @@ def test_every_quick_command(env: dict[str, str], tmp_path: Path) -> None:
         ["diagnose", "gerät.toml", "punkte-ü.csv", *map(str, GIVEN)],
         [*backlash, "--json"],
     ]
-    done = subprocess.run(
-        [sys.executable, "-c", ONE_AFTER_ANOTHER, json.dumps(commands)], capture_output=True,
-        check=False, cwd=tmp_path, env=environment(tmp_path / "cache") | env,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.isascii()
-    assert b"Traceback" not in done.stderr
-    said = done.stdout.split(b"\x1e")[:-1]
-    assert len(said) == len(commands)
-    assert all(said)
+    texts = said(tmp_path, env, commands)
+    assert all(text and text.isascii() for text in texts)
     written = json.loads((tmp_path / "gerät.out" / "result.json").read_bytes().decode("utf-8"))
     assert written["design"] == "Zähne µ 齿"
-    assert json.loads(said[-1])["design"] == "Zähne µ 齿"
+    assert json.loads(texts[-1])["design"] == "Zähne µ 齿"
     refused = run(tmp_path, env, "predict", "gerät.toml", "fehlt-ü.csv", "--model", "fehlt.toml")
     assert refused.returncode == 2
     assert refused.stderr.count(b"\n") == 1
