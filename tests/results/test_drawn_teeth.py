@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -13,6 +10,7 @@ from types import MappingProxyType
 import pytest
 from hand_made_gear import content
 from hand_made_gear import design as hand_made
+from in_process import Ended, flexspline
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.geometry.load import load_design
@@ -50,12 +48,10 @@ def written(folder: Path, name: str, ring: str, changes: Mapping[str, str] = NON
     return path
 
 
-def stiffness(path: Path, cache: str = "cache") -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "flexspline.results.cli", "stiffness", str(path), "--json"],
-        capture_output=True, text=True, check=False,
-        env=os.environ | {"FLEXSPLINE_CACHE": str(path.parent / cache)},
-    )  # fmt: skip
+def stiffness(path: Path, cache: str = "cache") -> Ended:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FLEXSPLINE_CACHE", str(path.parent / cache))
+        return flexspline("stiffness", path, "--json", folder=path.parent)
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +62,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def drawn(folder: Path) -> dict:
     done = stiffness(written(folder, "drawn", DRAWN))
-    assert done.returncode == 0, done.stderr
+    assert done.status == 0, done.stderr
     return json.loads(done.stdout)
 
 
@@ -114,7 +110,7 @@ def test_a_ring_that_no_longer_fits_is_refused(folder: Path) -> None:
     fits = written(folder, "fits", "ring_thickness_mm = 0.55", changes)
     assert load_design(fits).flexspline.shoulder_start == pytest.approx(1.01)
     done = stiffness(written(folder, "wide", DRAWN, changes))
-    assert done.returncode == 2
+    assert done.status == 2
     for words in ("flexspline.teeth", "does not fit", "outer_fillet_mm"):
         assert words in done.stderr
     assert not (folder / "wide.out").exists()
