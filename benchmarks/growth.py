@@ -1,8 +1,8 @@
 """How a study grows: `python benchmarks/growth.py` measures rows a second and what a stored row costs.
 
-The study's own loop and storage, and Dask's own scheduler in a process of its own; workers sleep for as
-long as RECORDED real designs took. Processor times stand beside the clock's, which depends on what else
-the machine does.
+The study's own loop and storage, and Dask's own scheduler in a process of its own; workers sleep for times
+that scatter as those of RECORDED real designs. Processor times stand beside the clock's, which depends on
+what else the machine does.
 """
 
 from __future__ import annotations
@@ -35,11 +35,12 @@ from flexspline.results.study.tables import table_of, write_csv
 
 RECORDED = 20
 """Real designs evaluated for their times and figures."""
-CASES = ((1, 1.0), (10, 1.0), (30, 1.0), (100, 1.0), (100, 0.1))
-"""Workers, and the share of a real design's time that they sleep: the last looks for the ceiling."""
+CASES = ((1, 0.4), (10, 0.4), (30, 0.4), (100, 0.4), (100, 0.1))
+"""Workers, and the mean time of a design [s]: 0.4 s is a real one's on a quiet core; the last looks for the
+ceiling."""
 SECONDS = 25.0
 """Of each case, where nothing is lost; at most MOST designs."""
-MOST = 4000
+MOST = 8000
 SIZES = (1_000, 10_000, 100_000)
 TAIL = 500
 """Designs at the end of each size over which the cost of one is taken."""
@@ -64,9 +65,9 @@ def record(path: Path) -> float:
     return sum(o.seconds for o in found) / RECORDED
 
 
-def on_a_cluster(workers: int, share: float, seconds: float, path: Path) -> None:
+def on_a_cluster(workers: int, seconds: float, share: float, path: Path) -> None:
     """Rows a second with so many workers, and whose processor time a row takes."""
-    designs = int(min(MOST, SECONDS * workers / (share * seconds)))
+    designs = int(min(MOST, SECONDS * workers / seconds))
     study = growing(designs)
     work = partial(slept, path, share)
     with (
@@ -79,16 +80,19 @@ def on_a_cluster(workers: int, share: float, seconds: float, path: Path) -> None
             time.sleep(0.1)
         assert pool.width() == workers
         store = trial_store_of(study, Path(name))
-        before = _cpu(), _cpu(dask.scheduler)
+        processes = (psutil.Process(), dask.scheduler, dask.workers)
+        before = [_cpu(p) for p in processes]
         began = time.perf_counter()
         rows = evaluate_all(source_of(study), store, pool, work, lambda p: None)
         passed = time.perf_counter() - began
-        driver, scheduler = _cpu() - before[0], _cpu(dask.scheduler) - before[1]
+        own, scheduler, sleepers = (
+            1e3 * (_cpu(p) - b) / designs for p, b in zip(processes, before, strict=True)
+        )
     busy = share * sum(r.outcome.seconds for r in rows) / passed
     print(
-        f"{workers:4} workers, {share * seconds:.2f} s a design: {designs / passed:6.1f} rows/s, "
-        f"{busy:5.1f} at work; processor, ms a row: study {1e3 * driver / designs:.2f}, "
-        f"scheduler {1e3 * scheduler / designs:.2f}",
+        f"{workers:4} workers, {seconds:.1f} s a design: {designs / passed:6.1f} rows/s, "
+        f"{busy:5.1f} at work; processor, ms a row: study {own:.2f}, "
+        f"scheduler {scheduler:.2f}, all workers {sleepers:.2f}",
         flush=True,
     )
 
@@ -120,10 +124,10 @@ def _filled(folder: Path, path: Path, designs: int) -> tuple[float, float]:
     study = growing(designs)
     store = trial_store_of(study, folder)
     new = designs - len(store.rows())
-    cpu, began = _cpu(), time.perf_counter()
+    cpu, began = time.process_time(), time.perf_counter()
     with _at_once() as pool:
         evaluate_all(source_of(study), store, pool, partial(slept, path, 0.0), Watch(study))
-    return new / (time.perf_counter() - began), 1e3 * (_cpu() - cpu) / new
+    return new / (time.perf_counter() - began), 1e3 * (time.process_time() - cpu) / new
 
 
 @contextmanager
@@ -132,9 +136,9 @@ def _at_once() -> Iterator[WorkerPool]:
         yield WorkerPool(executor, lambda: WIDTH)
 
 
-def _cpu(process: psutil.Process | None = None) -> float:
+def _cpu(process: psutil.Process) -> float:
     """Processor time of a process so far [s]."""
-    times = (process or psutil.Process()).cpu_times()
+    times = process.cpu_times()
     return float(times.user + times.system)
 
 
@@ -142,11 +146,11 @@ def main() -> None:
     print(f"load average before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recorded.json"
-        seconds = record(path)
-        print(f"{RECORDED} real designs: {seconds:.2f} s each")
+        mean = record(path)
+        print(f"{RECORDED} real designs: {mean:.2f} s each")
         if "storage" not in sys.argv:
-            for workers, share in CASES:
-                on_a_cluster(workers, share, seconds, path)
+            for workers, seconds in CASES:
+                on_a_cluster(workers, seconds, seconds / mean, path)
         if "cluster" not in sys.argv:
             storage_alone(path, SIZES)
     print(f"load average after: {os.getloadavg()[0]:.1f}")
