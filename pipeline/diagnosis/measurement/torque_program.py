@@ -18,14 +18,14 @@ SPAN = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
 FEWEST = 3
 """Rows of a hold: two are a turn between samples."""
-PARTS = 60
-"""Of a cycle."""
 CLEAR = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
-FAST = 0.95
-"""Quantile of rates, or of steps, that is a ramp's: most rows may lie in holds."""
+NOISE_MOVES = 5.7
+"""Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
 RANGE_SIGMAS = 6.0
-"""Range of 450 rows of normal noise, in its standard deviations, on average."""
+"""Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
+AROUND = 20
+"""Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
 FEWEST_FOR_NOISE = 8
 """Rows of a unit; of fewer a median of third differences rests on less than five."""
 DEADBAND_SIGMAS = 2.0
@@ -38,38 +38,55 @@ LARGEST_NOISE = 0.02
 
 @dataclass(frozen=True)
 class Rates:
-    """Torque rate [N·m/s] from each row of one unit to `width` rows later, (m,)."""
+    """Torque rate [N·m/s] from each row of one unit to `width` rows later, (m,), and the travel in it.
+
+    `travel_Nm` (m,) is how far torque moves there beyond what its noise does: 0 in a hold.
+    """
 
     width: int
     values: np.ndarray
+    travel_Nm: np.ndarray
 
 
 def rates_of(history: History, rows: np.ndarray) -> Rates:
-    """Rates along one unit's rows, over a width that its torque noise allows."""
+    """Rates along one unit's rows, over the fewest rows in which a ramp moves clear of the torque's noise."""
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history)
-    # a ramp's step, from moves over a small part of a cycle: most rows may lie in holds
-    coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
-    step = np.quantile(np.abs(torque[coarse:] - torque[:-coarse]), FAST) / coarse
-    width = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, max(1, len(rows) // 20)))
+    width, widest = 1, max(1, len(rows) // 20)
+    while True:
+        moved = torque[width:] - torque[:-width]
+        travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
+        # by travel, not by rows: most rows may lie in holds
+        step = by_travel(np.abs(moved), travel, 0.5)
+        if width >= widest or step >= CLEAR * noise:
+            break
+        width = min(2 * width, widest)
     span = np.maximum(t[width:] - t[:-width], 1e-12)
-    return Rates(width, (torque[width:] - torque[:-width]) / span)
+    return Rates(width, moved / span, travel)
+
+
+def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
+    """The value below which `share` of the travel lies; 0 without any."""
+    order = np.argsort(values)
+    passed = np.cumsum(travel_Nm[order])
+    if len(passed) == 0 or passed[-1] <= 0:
+        return 0.0
+    return float(values[order][np.searchsorted(passed, share * passed[-1])])
 
 
 def ramp_rate(history: History) -> float:
-    """Typical torque per second while it moves [N·m/s]; 0 without time."""
+    """Typical torque per second while it moves [N·m/s]: half the travel is faster; 0 without time."""
     if history.time_s is None:
         return 0.0
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
             continue
-        rate = np.abs(rates_of(history, rows).values)
-        fast = np.quantile(rate, FAST)
-        moving = rate[rate > MOVING * fast]
-        if len(moving):
-            found.append(float(np.median(moving)))
+        rates = rates_of(history, rows)
+        rate = by_travel(np.abs(rates.values), rates.travel_Nm, 0.5)
+        if rate > 0:
+            found.append(rate)
     return float(np.median(found)) if found else 0.0
 
 
@@ -79,7 +96,7 @@ def holds(history: History) -> list[np.ndarray]:
     if fast == 0:
         return []
     noise = torque_noise_Nm(history)
-    span = SPAN * float(np.abs(history.torque_Nm).max()) + RANGE_SIGMAS * noise
+    span = SPAN * float(np.abs(history.torque_Nm).max())
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST:
@@ -91,13 +108,43 @@ def holds(history: History) -> list[np.ndarray]:
         floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
         limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
         edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
-        for i, j in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        runs = zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
+        torque = history.torque_Nm[rows]
+        for i, j in _joined([(int(i), int(j)) for i, j in runs], torque, width, noise):
             before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
             hold = rows[i : j + width]
-            if len(hold) >= FEWEST and sharp and np.ptp(history.torque_Nm[hold]) < span:
+            spread = noise * max(RANGE_SIGMAS, _range_sigmas(len(hold)))
+            if len(hold) >= FEWEST and sharp and np.ptp(history.torque_Nm[hold]) < span + spread:
                 found.append(hold)
     return found
+
+
+def _joined(
+    runs: list[tuple[int, int]], torque_Nm: np.ndarray, width: int, noise_Nm: float
+) -> list[tuple[int, int]]:
+    """Runs of still rates (first, after the last), joined where only the torque's noise parts them.
+
+    Noise alone passes any limit once in so many rows, and a hold may have thousands.
+    """
+    found: list[tuple[int, int]] = []
+    for i, j in runs:
+        if found and i - found[-1][1] <= width + BESIDE:
+            a, b = found[-1]
+            before, after = (
+                torque_Nm[max(a, b - AROUND) : b + 1],
+                torque_Nm[i : min(j, i + AROUND) + 1],
+            )
+            if abs(float(before.mean() - after.mean())) < CLEAR / 2 * noise_Nm:
+                found[-1] = (a, j)
+                continue
+        found.append((i, j))
+    return found
+
+
+def _range_sigmas(count: int) -> float:
+    """Range of so many rows of normal noise in its deviations, for many: 2√(2 ln n)."""
+    return 2 * float(np.sqrt(2 * np.log(max(count, 2))))
 
 
 def hold_s(history: History) -> float:

@@ -28,6 +28,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.decision import Decision, decided
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -46,6 +47,8 @@ STILL = 0.1
 """Torque that varies by less than this share of its largest value is constant."""
 FEWEST_TORQUES = 4
 """One more than zero, stiffness and gap."""
+FEWEST_HOLDS = 3
+"""Up, back, and once more: what grows in one hold only may be drift."""
 
 
 @dataclass(frozen=True)
@@ -104,9 +107,15 @@ def _too_little(sweep: Sweep) -> str | None:
     largest = float(np.abs(torque).max())
     if largest == 0 or np.ptp(torque) < STILL * largest:
         return "the torque is constant, so neither stiffness nor gap can be seen"
-    if len(np.unique(np.round(torque / largest, 2))) < FEWEST_TORQUES:
+    different = len(np.unique(np.round(torque / largest, 2)))
+    if different < FEWEST_TORQUES and not _is_creep_test(sweep):
         return "fewer than four different torques"
     return None
+
+
+def _is_creep_test(sweep: Sweep) -> bool:
+    """Whether torque is stepped and held: few torques then show what goes on while they are held."""
+    return len(holds(sweep.history)) >= FEWEST_HOLDS
 
 
 def _insufficient(shortage: str) -> DiagnosisOutcome:

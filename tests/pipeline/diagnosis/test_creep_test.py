@@ -1,0 +1,91 @@
+"""Torque up in seconds, held for minutes, three times: most rows are holds, and creep is what they show."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from creep_test import CreepTest, Kernel, logarithmic, standard_solid, written
+from hidden.gear import draw_gear, draw_rig
+
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds, ramp_rate
+
+PEAK = 2.0
+
+
+def history(test: CreepTest, noise_Nm: float) -> History:
+    corners, levels = test.corners()
+    time = np.arange(0, corners[-1], test.step_s)
+    torque = np.interp(time, corners, levels)
+    torque += noise_Nm * np.random.default_rng(5).normal(size=len(time))
+    return History(torque, np.zeros(len(time), int), np.zeros(len(time), int), time)
+
+
+@pytest.mark.parametrize("noise_Nm", [0.0, 0.002, 0.02])
+@pytest.mark.parametrize("step_s", [0.2, 1.0])
+@pytest.mark.parametrize("back", [0.0, -1.0])
+def test_rate_and_holds_of_a_creep_test(noise_Nm: float, step_s: float, back: float) -> None:
+    test = CreepTest(PEAK, step_s=step_s, back=back)
+    made = history(test, noise_Nm)
+    # all ramps but the first, of two seconds each, go from one level to the other; noise adds to each of
+    # ten steps in a ramp, and the median of so many is shifted by less than a tenth
+    rate = PEAK * (1 - back) / test.ramp_s
+    assert ramp_rate(made) == pytest.approx(rate, rel=0.1)
+    long = [h for h in holds(made) if np.ptp(made.time_s[h]) > test.hold_s / 2]
+    assert len(long) == 2 * test.times
+    for rows in long:
+        # a row may fall to the ramp at either end
+        assert np.ptp(made.time_s[rows]) == pytest.approx(test.hold_s, abs=3 * step_s)
+
+
+def test_steps_of_a_staircase_stay_apart() -> None:
+    """25 steps of 4 % of the largest torque, noise a twentieth of a step."""
+    levels = np.repeat(np.arange(26) / 25 * PEAK, 30)
+    torque = levels + 0.004 * np.random.default_rng(2).normal(size=len(levels))
+    zero = np.zeros(len(torque), int)
+    assert len(holds(History(torque, zero, zero, np.arange(len(torque), dtype=float)))) == 26
+
+
+def diagnosed(seed: int, kernel: Kernel, back: float, folder: Path) -> Diagnosis:
+    rng = np.random.default_rng([4711, seed])
+    rig = draw_rig(rng)
+    gear = draw_gear(rig, rng)
+    peak = rng.uniform(40, 80) / rig.compliance
+    test = CreepTest(peak, hold_s=HOLD_s, step_s=1.0, back=back)
+    path = folder / "creep.csv"
+    path.write_text(written(test, kernel, rig, gear, rng), encoding="utf-8")
+    return diagnose_file(design_from(tomllib.loads(rig.toml)), path, rig.K_b, rig.K_e)
+
+
+HOLD_s = 300.0
+CASES = {
+    "logarithmic, unloaded": (logarithmic(2.5, 1.0), 0.0),
+    "logarithmic, reversed": (logarithmic(3.5, 3.0), -1.0),
+    "one relaxation, unloaded": (standard_solid(3.0, 60.0), 0.0),
+    "one relaxation, reversed": (standard_solid(2.0, 120.0), -1.0),
+}
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("name", CASES)
+def test_creep_is_named_and_nothing_else(name: str, seed: int, tmp_path: Path) -> None:
+    kernel, back = CASES[name]
+    found = diagnosed(seed, kernel, back, tmp_path)
+    assert found.verdict == "named"
+    assert [c.id for c in found.causes] == ["creep"]
+    # docs/contract.md: % of elastic twist in the last decade of a hold
+    truth = 100 * float(np.diff(kernel(np.array([HOLD_s / 10, HOLD_s])))[0])
+    cause = found.causes[0]
+    # three deviations, and the gear's own modulus, which truth is a share of: 2 %
+    assert cause.magnitude == pytest.approx(truth, abs=3 * cause.magnitude_std + 0.02 * truth)
+    assert cause.magnitude_std < truth / 4
+
+
+@pytest.mark.parametrize("back", [0.0, -1.0])
+def test_no_creep_is_made_up(back: float, tmp_path: Path) -> None:
+    assert diagnosed(7, lambda t: 0 * t, back, tmp_path).verdict == "consistent"
