@@ -14,7 +14,7 @@
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
-| error on data held out | `held_out.py` |
+| error on data held out; the model | `held_out.py`, `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """
 
@@ -32,7 +32,6 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.sweep.fit import model_of
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
@@ -42,6 +41,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
 from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
+from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 STILL = 0.1
 """Torque that varies by less than this share of its largest value is constant."""
@@ -98,7 +98,7 @@ def diagnose_sweep(
         gain_of(explained, ids),
         next_measurement(explained, decision),
     )
-    model = model_of(identified.fit, sweep, ids, explained.offset_Nm)
+    model = written_model(explained, sweep, ids)
     return outcome, SweepAnalysis(explained, model, tuple(tests))
 
 
