@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -12,6 +12,7 @@ from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
+from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
@@ -19,6 +20,8 @@ from flexspline.pipeline.enclosure import check_against, held_within, overlap
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 
+SOLID_SECONDS = 60.0
+"""Of all meshes of a part after the first: with that one and the rest of a command, a minute and a half."""
 RIM_ELEMENTS = 40_000
 """About 180 000 unknowns and 5 s for each of the two lobe cases."""
 
@@ -69,8 +72,15 @@ def _revolved_stiffness(model: PartModel) -> Stiffness:
 
 
 def _solid_stiffness(model: PartModel) -> Stiffness:
-    solid = twisted_part(model).stiffness
     enclosure = enclosure_if_any(model, _revolved_stiffness)
+    try:
+        solid = twisted_part(model).stiffness
+    except (ComputationError, MemoryError) as fault:
+        if enclosure is None or not may_answer(model):
+            raise
+        why = f"the solid model failed: {fault}"
+        met = enclosure.half_width <= tolerance_of(model)
+        return replace(enclosure, shortfall="" if met else f"{enclosure.shortfall}, and {why}")
     if enclosure is None:
         return solid
     if may_answer(model):
@@ -88,7 +98,7 @@ def twisted_part(model: PartModel) -> TwistedPart:
     enclosure = enclosure_if_any(model, _revolved_stiffness) if may_answer(model) else None
     tolerance = tolerance_of(model)
     enclosed = enclosure is not None and enclosure.half_width <= tolerance
-    one_mesh = model.is_swept and (enclosed or model.axisymmetric)
+    one_mesh = enclosed or model.axisymmetric
 
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
@@ -119,6 +129,7 @@ def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
         tolerance,
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
+        Deadline(SOLID_SECONDS),
     )
     meshed = [MeshedPart(mesh, edges[0]) for mesh in found.meshes]
     times = sector_of(model.part, "ellipse").degrees / model.sector.degrees

@@ -41,6 +41,15 @@ class MeshSpec:
     stop_energy: float = 10.0
     time_limit_s: float = 300.0
 
+    def scaled(self, factor: float) -> MeshSpec:
+        """The same for a mesh `factor` times as coarse."""
+        return replace(
+            self,
+            grading=self.grading.scaled(factor),
+            envelope=self.envelope * factor,
+            snap_limit=self.snap_limit * factor,
+        )
+
 
 def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     """Mesh a part's sector; the mesher is not deterministic, so a poor mesh is tried again, finer.

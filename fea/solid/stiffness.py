@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import Solved, torsion
@@ -36,6 +37,8 @@ NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 """From mesh to mesh: the singular edges hold most of the error, which is proportional to the edge
 length there, so that is refined by as much as is still missing, within this range. Around them and
 far away the error falls with the fourth power of growth and length: both take the second factor."""
+LONGER = 2.0
+"""Time of the next mesh and its solution over that of the last, at least: it has about twice the elements."""
 AIM = 0.7
 """Share of the tolerance that the next mesh aims at."""
 
@@ -57,17 +60,19 @@ def solid_stiffness(
     tolerance: float,
     symmetry: str,
     progress: Callable[[str], None],
+    deadline: Deadline = NO_DEADLINE,
 ) -> SolidStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
-    Its `shortfall` says why where that was not reached: a finer mesh failed, or MAX_LEVELS are solved.
+    Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
+    or MAX_LEVELS are solved.
 
     Raises
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(mesher, first, material, driven, tolerance, progress)
-    shortfall = refine(found, mesher(first))
+    found = _SolidTorsion(mesher, first, material, driven, tolerance, progress, deadline)
+    shortfall = refine(found, mesher(first), deadline)
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {found.half:.2%} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)
@@ -79,10 +84,11 @@ class _SolidTorsion:
 
     def __init__(
         self, mesher: Mesher, first: MeshSpec, material: Elastic, driven: str, tolerance: float,
-        progress: Callable[[str], None],
+        progress: Callable[[str], None], deadline: Deadline,
     ) -> None:  # fmt: skip
         self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
-        self._tolerance, self._progress = tolerance, progress
+        self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
+        self._began_s = deadline.elapsed()
         self.estimate = ScaledEstimate(USUAL_EFFICIENCY, EFFICIENCY)
         self.meshes: list[TetMesh] = []
 
@@ -106,6 +112,10 @@ class _SolidTorsion:
     def finer(self, mesh: TetMesh) -> TetMesh | None:
         if len(self.meshes) == MAX_LEVELS:
             return None
+        now_s = self._deadline.elapsed()
+        if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:
+            raise OutOfTimeError(self._deadline.limit_s)
+        self._began_s = now_s
         self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
         return self._mesher(self._spec)
 

@@ -99,6 +99,21 @@ def test_where_the_solid_model_fails_the_enclosure_stays(tmp_path: Path, monkeyp
     assert "no mesh" in found.shortfall
 
 
+def test_where_no_mesh_can_be_made_K_b_is_the_enclosures(tmp_path: Path, monkeypatch) -> None:
+    def fails(*given: object, **named: object) -> None:
+        raise ComputationError("no mesh")
+
+    monkeypatch.setattr(part_stiffness, "solid_stiffness", fails)
+    narrow = part_stiffness.part_stiffness(model(CUP, tmp_path))
+    assert narrow.guaranteed
+    assert not narrow.shortfall
+    wide = part_stiffness.part_stiffness(model(WIDE, tmp_path))
+    assert TOO_FAR in wide.shortfall
+    assert "no mesh" in wide.shortfall
+    with pytest.raises(ComputationError, match="no mesh"):
+        part_stiffness.part_stiffness(model(CUP.changed({"solver.model": "solid"}), tmp_path))
+
+
 def test_where_the_enclosure_fails_the_solid_model_stays(tmp_path: Path, monkeypatch) -> None:
     def fails(*given: object) -> None:
         raise ComputationError("a land narrower than any triangle")

@@ -1,0 +1,47 @@
+"""A finer mesh that would end too late is not begun; the coarse one's K stays, and why is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flexspline.fea.deadline import Deadline
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.geometry.load import load_design
+from flexspline.geometry.symmetry import sector_of
+
+SHAFT = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").part("shaft")
+MESH_S = 25.0
+"""What each mesh takes on the clock of these tests."""
+
+
+def stiffness(limit_s: float) -> Stiffness:
+    shown = [0.0]
+    sector = sector_of(SHAFT, "torsion").degrees
+
+    def mesher(spec: MeshSpec) -> TetMesh:
+        shown[0] += MESH_S
+        mesh = swept_mesh(SHAFT, sector, spec)
+        assert mesh is not None
+        return mesh
+
+    deadline = Deadline(limit_s, *2 * [lambda: shown[0]])
+    fine = 1e-3  # the first mesh leaves ± 0.5 %
+    coarse, own = first_spec(SHAFT).scaled(2.0), Elastic.of(SHAFT.material)
+    return solid_stiffness(mesher, coarse, own, "grip", fine, "", print, deadline).stiffness
+
+
+def test_a_mesh_that_would_end_too_late_is_not_begun() -> None:
+    """25 s for the first, twice as long for the second: 75 s."""
+    found = stiffness(limit_s=74.0)
+    assert len(found.levels) == 1
+    assert of_the_machine(found.shortfall)
+    assert "74 s" in found.shortfall
+
+
+def test_one_that_would_end_in_time_is() -> None:
+    assert len(stiffness(limit_s=76.0).levels) == 2
