@@ -100,6 +100,24 @@ def test_bad_data_gets_one_line(name: str, tmp_path: Path) -> None:
     assert "bad.csv" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("head", "sign", "needle"),
+    [
+        ("angle_arcsec", -1, "is the sign of angle or torque turned?"),
+        ("angle_deg", 1, "angle_deg is 3"),
+    ],
+)
+def test_an_absurd_size_gets_one_line_too(
+    head: str, sign: int, needle: str, tmp_path: Path
+) -> None:
+    """The cup's own line, 11.3 arcsec per N·m and a gap of 72, turned or in another unit."""
+    path = tmp_path / "bad.csv"
+    torque = [t / 10 for t in (*range(-10, 11), *range(9, -11, -1))]
+    body = [f"{t},{sign * (11.34 * t + 36 * ((t > 0) - (t < 0))):.3f}" for t in torque]
+    path.write_bytes(rows(f"torque_Nm,{head}", *body))
+    refused(diagnose(path, "--json"), needle, tmp_path / "out")
+
+
 def test_a_missing_file_and_a_folder(tmp_path: Path) -> None:
     refused(diagnose(tmp_path / "none.csv"), "none.csv: no such file", tmp_path / "out")
     refused(diagnose(tmp_path), "directory", tmp_path / "out")

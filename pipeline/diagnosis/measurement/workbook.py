@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
+import zlib
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -17,6 +18,11 @@ from xml.etree import ElementTree
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 
+DAMAGE = (
+    zipfile.BadZipFile, zlib.error, ElementTree.ParseError, LookupError, ValueError, OverflowError,
+    StopIteration, EOFError, OSError, NotImplementedError, RuntimeError,
+)  # fmt: skip
+"""What a damaged zip, damaged XML, or XML that is no workbook's raises."""
 BEGIN = b"PK\x03\x04"
 """How a zip begins."""
 LARGEST_PART = 1_000_000_000
@@ -47,12 +53,11 @@ def first_sheet(path: Path, raw: bytes) -> list[tuple[int, list[str]]]:
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as book:
             return _rows(path, book)
-    except (zipfile.BadZipFile, ElementTree.ParseError, KeyError, EOFError, OSError) as error:
-        raise MeasurementError(path, None, f"is no readable .xlsx workbook ({error})") from None
-    except (ValueError, IndexError, NotImplementedError, RuntimeError) as error:
-        if isinstance(error, MeasurementError):
-            raise
-        raise MeasurementError(path, None, f"is no readable .xlsx workbook ({error})") from None
+    except MeasurementError:
+        raise
+    except DAMAGE as error:
+        reason = f"is no readable .xlsx workbook ({str(error) or type(error).__name__})"
+        raise MeasurementError(path, None, reason) from None
 
 
 def _rows(path: Path, book: zipfile.ZipFile) -> list[tuple[int, list[str]]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
@@ -102,6 +103,24 @@ DAMAGED = {
 def test_damaged_workbooks_are_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(MeasurementError, match=r"a\.xlsx: is no readable \.xlsx workbook"):
         read_measurement(workbook(tmp_path / "a.xlsx", DAMAGED[name]))
+
+
+def test_any_damage_is_refused_or_read(tmp_path: Path) -> None:
+    """Bytes changed and cut out at random: nothing but a refusal in one line comes out."""
+    rng, whole, path = np.random.default_rng(11), BY_OPENPYXL.read_bytes(), tmp_path / "a.xlsx"
+    refusals: list[str] = []
+    for _ in range(300):
+        data = bytearray(whole)
+        for at in rng.integers(4, len(data) - 50, 3):
+            data[at] = rng.integers(256)
+            del data[at + 1 : at + 1 + rng.integers(0, 3)]
+        path.write_bytes(bytes(data))
+        try:
+            read_measurement(path)
+        except MeasurementError as refusal:
+            refusals.append(str(refusal))
+    assert len(refusals) > 150
+    assert not any("\n" in said for said in refusals)
 
 
 def test_a_zip_of_something_else(tmp_path: Path) -> None:
