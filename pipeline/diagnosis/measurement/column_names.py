@@ -138,7 +138,7 @@ def _qualified(quantity: str, words: list[str], written: str | None) -> ColumnNa
     left = [w for w in words if w and w not in SAYS_NOTHING]
     if quantity == "stiffness" and SPREAD & set(left):
         quantity, left = "stiffness_std", [w for w in left if w not in SPREAD]
-    if ANOTHER & set(left):
+    if ANOTHER & set(left) and quantity != "time":  # "Time 1 - default sample rate" is a time
         return None
     if INPUT & set(left):
         if quantity == "torque":

@@ -51,6 +51,11 @@ READ: dict[str, bytes] = {
     "symbols over units": ("M\tφ\tt\nNm\tarcsec\ts\n" + body("\t")).encode(),
     "notes above":
         ("Rig 7;J. Smith\nDate;12.03.2024\nTorque range: 5 Nm\n\n" + GERMAN + body(";", comma)).encode(),
+    "a logger's channel names": ("Zeit  1 - Default sample rate\tMD_Abtrieb Drehmoment\tWinkel Abtrieb\n"
+        "s\tN·m\tarcsec\n" + "".join(f"{t}\t{m}\t{a}\n" for m, a, t in ROWS)).encode("cp1252"),
+    "a measuring program's own header": ("LabVIEW Measurement\t\nDate\t2024/05/01\n***End_of_Header***\t\n\n"
+        "X_Value\tTorque [Nm]\tAngle [arcsec]\tTime [s]\tComment\n"
+        + "".join(f"0\t{m}\t{a}\t{t}\t\n" for m, a, t in ROWS)).encode(),
     "Excel's first line": ("sep=;\n" + GERMAN + body(";", comma)).encode("utf-8-sig"),
     "UTF-8 with mark": (OURS + body()).encode("utf-8-sig"),
     "UTF-16, little end first":
