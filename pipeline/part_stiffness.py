@@ -92,19 +92,17 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
 def twisted_part(model: PartModel) -> TwistedPart:
     """The solid model turned by 1 rad, refined until the tolerance is met; errors as `part_stiffness`.
 
-    Where K is known without it one mesh is enough: of a body of revolution, or where the enclosure meets the
-    tolerance, unless the mesh's bounds and the enclosure are apart.
+    Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
     """
     enclosure = enclosure_if_any(model, _revolved_stiffness) if may_answer(model) else None
     tolerance = tolerance_of(model)
-    enclosed = enclosure is not None and enclosure.half_width <= tolerance
-    one_mesh = enclosed or model.axisymmetric
+    one_mesh = enclosure is not None and enclosure.half_width <= tolerance
 
     def make() -> TwistedPart:
         with model.context.progress.stage(f"torsion of the {model.name}"):
-            if one_mesh:
+            if one_mesh and enclosure is not None:
                 found = _twisted(model, inf)
-                if enclosure is None or overlap(found.stiffness, enclosure):
+                if overlap(found.stiffness, enclosure):
                     return found
             return _twisted(model, tolerance)
 
