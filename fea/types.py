@@ -100,6 +100,8 @@ class StressPeak:
     mises_at_twice_MPa: float | None
     shortfall: str = ""
     """Why the refinement ended before its tolerance was met, in plain words; "" where it was met."""
+    stands_for: str = ""
+    """Why this peak, of another body, is the part's; "" where the part itself was solved."""
 
     def times(self, factor: float) -> StressPeak:
         """The same under `factor` times the load."""

@@ -35,6 +35,10 @@ SEAT_TOLERANCE = 0.02
 """Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
 AGREEMENT = 2 * STRESS_TOLERANCE
 """Relative difference of the two bodies' peaks up to which they are one: what both meshes leave open."""
+WITHOUT_HOLES = (
+    "it is that of the part without its bolt holes, since the part with the ring of the holes cut out has "
+    "the same peak and the stress at the holes is below it"
+)
 KIRSCH = 4.0
 """Largest stress at a small round hole over the plate's, under pure shear; 3 under tension (G. Kirsch, VDI-Z
 42 (1898) 797-807). In a row it rises at most as the ligament falls: pitch over ligament (Peterson's Stress
@@ -92,7 +96,9 @@ def _of_two_bodies(flexspline: PartModel) -> StressPeak | None:
         return None
     same = abs(cut.mises_MPa / whole.mises_MPa - 1) <= AGREEMENT
     here = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
-    return whole if same and here and raised(at_holes, bolts) < whole.mises_MPa else None
+    if not (same and here and raised(at_holes, bolts) < whole.mises_MPa):
+        return None
+    return replace(whole, stands_for=WITHOUT_HOLES)
 
 
 def raised(stress_MPa: float, bolts: BoltCircle) -> float:

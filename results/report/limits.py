@@ -108,7 +108,11 @@ def _ellipse(content: ReportContent) -> str:
         "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
         f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. Its stress hangs on that."
     )
-    if half is None or content.wave_generator_peak is None:
+    if content.wave_generator_peak is None:
+        return said
+    if why := content.wave_generator_peak.stands_for:
+        said += f" The peak: {why}."
+    if half is None:
         return said
     stress = quantity("wave_generator_peak_half_seat_mises_MPa")
     change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
