@@ -20,6 +20,10 @@ FEWEST = 3
 """Rows of a hold: two are a turn between samples."""
 CLEAR = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+PARTS = 60
+"""Of a cycle."""
+FAST = 0.95
+"""Quantile of rates, or of steps, of rows that move, that is a ramp's."""
 NOISE_MOVES = 5.7
 """Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
 RANGE_SIGMAS = 6.0
@@ -53,15 +57,21 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history)
-    width, widest = 1, max(1, len(rows) // 20)
-    while True:
-        moved = torque[width:] - torque[:-width]
-        travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
-        # by travel, not by rows: most rows may lie in holds
-        step = by_travel(np.abs(moved), travel, 0.5)
-        if width >= widest or step >= CLEAR * noise:
+    widest = max(1, len(rows) // 20)
+    # a ramp's step, from moves over a small part of a cycle
+    coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
+    far = np.abs(torque[coarse:] - torque[:-coarse])
+    far = far[far > NOISE_MOVES * noise]
+    step = np.quantile(far, FAST) / coarse if len(far) else 0.0
+    fewest = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, widest))
+    width = 1  # a ramp may be shorter than that part
+    while width < fewest:
+        moved = np.abs(torque[width:] - torque[:-width])
+        if by_travel(moved, np.maximum(moved - NOISE_MOVES * noise, 0.0), 0.5) >= CLEAR * noise:
             break
-        width = min(2 * width, widest)
+        width = min(2 * width, fewest)
+    moved = torque[width:] - torque[:-width]
+    travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
     span = np.maximum(t[width:] - t[:-width], 1e-12)
     return Rates(width, moved / span, travel)
 
@@ -76,7 +86,7 @@ def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
 
 
 def ramp_rate(history: History) -> float:
-    """Typical torque per second while it moves [N·m/s]: half the travel is faster; 0 without time."""
+    """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
     if history.time_s is None:
         return 0.0
     found = []
@@ -84,9 +94,10 @@ def ramp_rate(history: History) -> float:
         if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
             continue
         rates = rates_of(history, rows)
-        rate = by_travel(np.abs(rates.values), rates.travel_Nm, 0.5)
-        if rate > 0:
-            found.append(rate)
+        rate = np.abs(rates.values[rates.travel_Nm > 0])  # most rows may lie in holds
+        if len(rate):
+            fast = np.quantile(rate, FAST)
+            found.append(float(np.median(rate[rate > MOVING * fast])))
     return float(np.median(found)) if found else 0.0
 
 
@@ -110,7 +121,7 @@ def holds(history: History) -> list[np.ndarray]:
         edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
         runs = zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
         torque = history.torque_Nm[rows]
-        for i, j in _joined([(int(i), int(j)) for i, j in runs], torque, width, noise):
+        for i, j in _joined([(int(i), int(j)) for i, j in runs], torque, t, width, noise, fast):
             before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
             hold = rows[i : j + width]
@@ -121,21 +132,32 @@ def holds(history: History) -> list[np.ndarray]:
 
 
 def _joined(
-    runs: list[tuple[int, int]], torque_Nm: np.ndarray, width: int, noise_Nm: float
+    runs: list[tuple[int, int]],
+    torque_Nm: np.ndarray,
+    time_s: np.ndarray,
+    width: int,
+    noise_Nm: float,
+    fast_Nm_per_s: float,
 ) -> list[tuple[int, int]]:
     """Runs of still rates (first, after the last), joined where only the torque's noise parts them.
 
-    Noise alone passes any limit once in so many rows, and a hold may have thousands.
+    Noise alone passes any limit once in so many rows, and a hold may have thousands. What moves over
+    both runs together is a slow ramp under noise, and stays apart.
     """
+
+    def level(first: int, last: int) -> float:
+        return float(torque_Nm[max(first, 0) : last + 1].mean())
+
     found: list[tuple[int, int]] = []
     for i, j in runs:
         if found and i - found[-1][1] <= width + BESIDE:
             a, b = found[-1]
-            before, after = (
-                torque_Nm[max(a, b - AROUND) : b + 1],
-                torque_Nm[i : min(j, i + AROUND) + 1],
-            )
-            if abs(float(before.mean() - after.mean())) < CLEAR / 2 * noise_Nm:
+            stepped = abs(level(max(a, b - AROUND), b) - level(i, min(j, i + AROUND)))
+            share = min(AROUND, (j - a) // 2)  # rows at either end, not the same ones
+            moved = abs(level(a, a + share) - level(j - share, j))
+            passed = time_s[min(j, len(time_s) - 1)] - time_s[a]
+            still = STILL * fast_Nm_per_s * passed + noise_Nm / 2
+            if stepped < CLEAR / 2 * noise_Nm and moved < still:
                 found[-1] = (a, j)
                 continue
         found.append((i, j))
