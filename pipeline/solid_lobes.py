@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
@@ -12,7 +13,7 @@ from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import Sector, sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
-from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.part_stiffness import SOLID_SECONDS, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
 
 MOST_ELEMENTS = 100_000
@@ -47,6 +48,7 @@ def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
                 tolerance,
                 sector.label,
                 lambda text: context.progress.note(f"  {text}"),
+                Deadline(SOLID_SECONDS),
             )
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
