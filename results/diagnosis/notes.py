@@ -9,7 +9,7 @@ from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
-from flexspline.results.diagnosis.reading import reading_notes
+from flexspline.results.diagnosis.reading import heads, reading_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped
 
@@ -37,7 +37,7 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
         found.append("no time was recorded: friction cannot be told from rate dependence")
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
-        found.append(f"columns not used: {', '.join(prepared.sweep.read_as.ignored)}")
+        found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
+from flexspline.geometry.errors import one_line
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES
 
 MARKS = {".": "point", ",": "comma"}
+HEAD_LETTERS = 60
+"""Of a column's head in a sentence: the longest of our own names and a unit; a file may hold anything."""
 
 
 def form_record(read_as: ReadAs) -> dict[str, Any]:
@@ -43,11 +47,18 @@ def reading_notes(read_as: ReadAs) -> list[str]:
     """What a reader should check, one line each; none where the file is written in our words and units."""
     if read_as.as_ours or not read_as.columns:
         return []
-    columns = "; ".join(f'"{c.head}" as {_words(c, read_as)}' for c in read_as.columns)
+    columns = "; ".join(
+        f'"{one_line(c.head, HEAD_LETTERS)}" as {_words(c, read_as)}' for c in read_as.columns
+    )
     found = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
     if read_as.empty:
-        found.append(f"columns empty in every row: {', '.join(read_as.empty)}")
+        found.append(f"columns empty in every row: {heads(read_as.empty)}")
     return found
+
+
+def heads(names: Iterable[str]) -> str:
+    """Heads of columns as they may be printed: on one line, without control characters."""
+    return ", ".join(one_line(name, HEAD_LETTERS) for name in names)
 
 
 def form_words(read_as: ReadAs) -> str:

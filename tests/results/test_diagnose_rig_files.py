@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import unicodedata
 from pathlib import Path
 
 import numpy as np
@@ -131,3 +132,15 @@ def test_counts_of_an_encoder(tmp_path: Path) -> None:
     assert done.exit_code == 2
     assert done.stderr.count("\n") == 1
     assert "--counts-per-turn N" in done.stderr
+
+
+def test_control_characters_of_a_head_are_written_as_escapes(tmp_path: Path) -> None:
+    text = SWEEP.read_text(encoding="utf-8").replace("torque_Nm", "torque_Nm\x16", 1)
+    odd = tmp_path / "odd.csv"
+    odd.write_text(text.replace("cycle", "cyc\x1ble", 1), encoding="utf-8")
+    words = ("--Kb", 31329, "--Ke", 43339, "--out", tmp_path / "out")
+    done = flexspline("diagnose", CUP, odd, *words)
+    assert done.exit_code == 0, done.stderr
+    assert not [c for c in done.output if unicodedata.category(c) == "Cc" and c != "\n"]
+    assert "\\x16" in done.output
+    assert "\\x1b" in done.output
