@@ -135,7 +135,7 @@ def test_counts_of_an_encoder(tmp_path: Path) -> None:
 
 
 def test_control_characters_of_a_head_are_written_as_escapes(tmp_path: Path) -> None:
-    text = SWEEP.read_text(encoding="utf-8").replace("torque_Nm", "torque_Nm\x16", 1)
+    text = SWEEP.read_text(encoding="utf-8").replace("torque_Nm", "\x16torque_Nm", 1)
     odd = tmp_path / "odd.csv"
     odd.write_text(text.replace("cycle", "cyc\x1ble", 1), encoding="utf-8")
     words = ("--Kb", 31329, "--Ke", 43339, "--out", tmp_path / "out")
