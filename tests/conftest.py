@@ -15,6 +15,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from checkout import INSTALLED
+
+# isort: split
 from cad_kernel import why_no_cad
 from finished_run import FinishedRun, finished_run
 from opengl import why_no_pictures
@@ -63,6 +66,10 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         option.loadscopereorder = False  # `SLOWEST` says the order
         for name, count in ONE_THREAD.items():  # which the workers inherit
             os.environ.setdefault(name, count)
+
+
+def pytest_report_header() -> str | None:
+    return None if INSTALLED else "flexspline is not installed: the checkout's own is tested"
 
 
 def pytest_configure(config: pytest.Config) -> None:
