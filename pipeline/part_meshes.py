@@ -16,6 +16,8 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.parts import PartModel
 
+COARSER, COARSENINGS = 1.5, 3
+"""Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
 EDGE_POINTS = 8
 """Of sharp edges, within the stress rule's distance from them."""
 
@@ -53,6 +55,26 @@ class PartMeshes:
         if mesh is None:
             return None
         return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing))
+
+    def coarsened(self, most_elements: float) -> MeshSpec:
+        """The part's first specification, or a coarser one where its swept mesh has more elements than that.
+
+        An edge length that the design states is kept, and so is the last one that can be swept.
+
+        Raises
+        ------
+        DesignError, SolidError : as `meshed`.
+        """
+        model = self.model
+        spec = model.first_spec
+        if not model.is_swept or model.context.design.solver.edge_length_mm is not None:
+            return spec
+        for _ in range(COARSENINGS):
+            coarser = spec.scaled(COARSER)
+            if self.meshed(spec).mesh.elements <= most_elements or self.swept(coarser) is None:
+                return spec
+            spec = coarser
+        return spec
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.

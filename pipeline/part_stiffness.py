@@ -25,8 +25,6 @@ SOLID_SECONDS = 60.0
 FIRST_ELEMENTS = 30_000
 """Of a first mesh: 130 000 unknowns, some 5 s in a compact part. One of 57 000 took more than two minutes
 on a disc with small holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds."""
-COARSER, COARSENINGS = 1.5, 3
-"""Edges of the next, coarser try over the last; a third of the elements."""
 RIM_ELEMENTS = 40_000
 """About 180 000 unknowns and 5 s for each of the two lobe cases."""
 
@@ -115,23 +113,9 @@ def twisted_part(model: PartModel) -> TwistedPart:
     return model.context.cache.get("torsion", key, make, lambda made: is_lasting(made.stiffness))[0]
 
 
-def _first_spec(model: PartModel, meshes: PartMeshes) -> MeshSpec:
-    """The part's own, or a coarser one where a swept mesh of that has more than FIRST_ELEMENTS."""
-    spec = model.first_spec
-    if not model.is_swept or model.context.design.solver.edge_length_mm is not None:
-        return spec
-    for _ in range(COARSENINGS):
-        mesh = meshes.meshed(spec).mesh
-        coarser = spec.scaled(COARSER)
-        if mesh.elements <= FIRST_ELEMENTS or meshes.swept(coarser) is None:
-            return spec
-        spec = coarser
-    return spec
-
-
 def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
     meshes = PartMeshes(model)
-    first = _first_spec(model, meshes)
+    first = meshes.coarsened(FIRST_ELEMENTS)
     edges: list[np.ndarray] = []
 
     def mesher(spec: MeshSpec) -> TetMesh:

@@ -21,7 +21,7 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.drawn_teeth import ring_of, with_plain_ring
 from flexspline.pipeline.progress import Progress
 
-COARSER = 2.0
+UNSWEPT_COARSER = 2.0
 """Edges of the first mesh of a shaft that only fTetWild can mesh, over those of one that is swept. On two of
 them K was ± 0.04 and 2.42 % at 1.5 times and ± 0.05 and 2.43 % at twice, in two thirds of the processor
 time of the first (48 and 33 s)."""
@@ -82,7 +82,7 @@ class PartModel:
         edge = self.context.design.solver.edge_length_mm
         spec = first_spec(self.part, edge)
         if edge is None and self.name == "shaft" and not can_be_swept(self.part):
-            return spec.scaled(COARSER)
+            return spec.scaled(UNSWEPT_COARSER)
         return spec
 
     @property

@@ -17,7 +17,7 @@ from flexspline.fea.types import SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
-from flexspline.pipeline.part_stiffness import twisted_part
+from flexspline.pipeline.part_stiffness import RIM_ELEMENTS, twisted_part
 from flexspline.pipeline.parts import PartModel
 
 LARGEST_STEP = radians(5)
@@ -63,13 +63,18 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
 
 def coarse_ellipse(flexspline: PartModel) -> SolidField:
-    """The same on the mesh that gave K: for pictures, where another model gives the peak."""
+    """The same on the mesh that gave K, or on a coarser one, for pictures: another model gives the peak."""
     w0 = flexspline.context.design.gear.centre_distance_mm
 
     def make() -> SolidField:
-        return _solved(flexspline, twisted_part(flexspline).rim, w0)
+        times = sector_of(flexspline.part, "ellipse").degrees / flexspline.sector.degrees
+        meshed = twisted_part(flexspline).rim
+        if meshed.mesh.elements * times > RIM_ELEMENTS:
+            meshes = PartMeshes(flexspline)
+            meshed = meshes.meshed(meshes.coarsened(RIM_ELEMENTS / times))
+        return _solved(flexspline, meshed, w0)
 
-    inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0, "mesh": "of torsion"}
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "w0_mm": w0, "mesh": "for pictures"}
     return flexspline.context.cache.get("ellipse", inputs, make)[0]
 
 
