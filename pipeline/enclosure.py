@@ -118,6 +118,24 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     )
 
 
+def answered_within(
+    enclosure: Stiffness, solve: Callable[[], Stiffness], tolerance: float
+) -> Stiffness:
+    """`held_within` of what `solve`, the solid model, finds; the enclosure alone where it fails.
+
+    Raises
+    ------
+    NestingError
+    """
+    try:
+        solid = solve()
+    except (ComputationError, MemoryError) as fault:
+        met = enclosure.half_width <= tolerance
+        why = f"{enclosure.shortfall}, and the solid model failed: {fault}"
+        return replace(enclosure, shortfall="" if met else why)
+    return held_within(solid, enclosure, tolerance)
+
+
 def check_against(solid: Stiffness, enclosure: Stiffness) -> None:
     """Raise NestingError where the solid model's bounds and the enclosure have nothing in common."""
     if overlap(solid, enclosure):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Literal, get_args
 
@@ -22,7 +22,7 @@ from flexspline.pipeline.enclosed_part import (
     may_answer,
     tolerance_of,
 )
-from flexspline.pipeline.enclosure import held_within
+from flexspline.pipeline.enclosure import answered_within
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.solid_lobes import solid_lobes
 
@@ -99,13 +99,7 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     tolerance = tolerance_of(flexspline)
     if enclosure.half_width <= tolerance:
         return enclosure
-    try:
-        solid = asked.solid(flexspline)
-    except (ComputationError, MemoryError) as fault:
-        return replace(
-            enclosure, shortfall=f"{enclosure.shortfall}, and the solid model failed: {fault}"
-        )
-    return held_within(solid, enclosure, tolerance)
+    return answered_within(enclosure, partial(asked.solid, flexspline), tolerance)
 
 
 def _of_case(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -12,11 +12,10 @@ from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
-from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
-from flexspline.pipeline.enclosure import check_against, held_within, overlap
+from flexspline.pipeline.enclosure import answered_within, check_against, overlap
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 
@@ -76,19 +75,13 @@ def _revolved_stiffness(model: PartModel) -> Stiffness:
 
 def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = enclosure_if_any(model, _revolved_stiffness)
-    try:
-        solid = twisted_part(model).stiffness
-    except (ComputationError, MemoryError) as fault:
-        if enclosure is None or not may_answer(model):
-            raise
-        why = f"the solid model failed: {fault}"
-        met = enclosure.half_width <= tolerance_of(model)
-        return replace(enclosure, shortfall="" if met else f"{enclosure.shortfall}, and {why}")
-    if enclosure is None:
-        return solid
-    if may_answer(model):
-        return held_within(solid, enclosure, tolerance_of(model))
-    check_against(solid, enclosure)
+    if enclosure is not None and may_answer(model):
+        return answered_within(
+            enclosure, lambda: twisted_part(model).stiffness, tolerance_of(model)
+        )
+    solid = twisted_part(model).stiffness
+    if enclosure is not None:
+        check_against(solid, enclosure)
     return solid
 
 

@@ -128,7 +128,8 @@ def write_pictures(
         for render, made in renders:
             keep_picture(render, made)
         for chart, png in charts:
-            keep_picture(chart, partial(bytes, png))
+            paths[chart.name] = folder / f"{chart.name}.png"
+            write_bytes(paths[chart.name], png)
         # only of pictures that there are: they stand where scripts do not run
         turning = [(d, begun(d, "3-D view")) for d in _views(context, result, pool, tuple(paths))]
         for view, made in turning:
