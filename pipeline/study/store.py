@@ -69,7 +69,7 @@ class Job:
     trial_id: int
     number: int
     slot: int
-    values: Mapping[str, float]
+    values: Values
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from flexspline.pipeline.diagnosis.plausibility import slope_beyond, slope_words
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.size import sweep_size
+from flexspline.pipeline.diagnosis.sweep.size import simulated_twist_arcsec, sweep_size
 
 MOST = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
@@ -44,10 +44,7 @@ def drowned(explained: ExplainedSweep) -> str:
     """Why the noise hides everything, "" where it does not: one reading's is above the whole twist."""
     prepared = explained.prepared
     noise = explained.identified.search.evidence.noise.std_arcsec
-    torque = prepared.rig.history.torque_Nm
-    twist = abs(float(torque.max() - torque.min())) * prepared.prediction.compliance
-    if float(torque.min()) < 0 < float(torque.max()):
-        twist += prepared.prediction.gap_arcsec
+    twist = simulated_twist_arcsec(prepared.rig.history.torque_Nm, prepared.prediction)
     if noise <= twist:
         return ""
     return f"the noise of one reading, {noise:.3g} arcsec, exceeds the simulated twist, {twist:.3g} arcsec"

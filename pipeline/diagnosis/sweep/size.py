@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import BAND_SHARE
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 MOST_ROWS = 20_000
 """A size needs no more; every n-th row of longer records is taken."""
-NEAR = 0.035
-"""Of the largest torque: rows nearer to 0 may be on either side of the gap (measurement/noise.py)."""
 FEWEST = 8
 """Rows beyond the crossing: half of them for zero, drift, slope and gap."""
 FAR = 6.0
@@ -72,7 +71,9 @@ def sweep_size(
     step = -(-len(history) // MOST_ROWS)
     h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
     largest = float(np.abs(h.torque_Nm).max())
-    far = np.abs(h.torque_Nm) > NEAR * largest
+    far = (
+        np.abs(h.torque_Nm) > BAND_SHARE * largest
+    )  # beyond the crossing, whose rows may be on either side
     span = max(
         float(np.subtract(*np.percentile(angle[rows], [100 - OUTER, OUTER])))
         for rows in h.unit_slices
@@ -91,7 +92,7 @@ def sweep_size(
     extent = float(np.ptp(h.torque_Nm))
     both = float(h.torque_Nm.min()) < 0 < float(h.torque_Nm.max())
     along = np.array([extent, 1.0 if both else 0.0])
-    simulated = float(along @ [prediction.compliance, prediction.gap_arcsec])
+    simulated = simulated_twist_arcsec(h.torque_Nm, prediction)
     return SweepSize(
         chord=float(along @ [c, g]) / simulated,
         chord_std=float(np.sqrt(along @ cov @ along)) / simulated,
@@ -103,6 +104,13 @@ def sweep_size(
         simulated_gap_arcsec=float(along[1]) * prediction.gap_arcsec,
         span_arcsec=span,
     )
+
+
+def simulated_twist_arcsec(torque_Nm: np.ndarray, prediction: Prediction) -> float:
+    """From the lowest to the highest torque, with the gap where they differ in sign."""
+    lowest, highest = float(torque_Nm.min()), float(torque_Nm.max())
+    gap = prediction.gap_arcsec if lowest < 0 < highest else 0.0
+    return (highest - lowest) * prediction.compliance + gap
 
 
 def _line(
