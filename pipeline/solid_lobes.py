@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
@@ -48,7 +47,7 @@ def solid_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
                 tolerance,
                 sector.label,
                 lambda text: context.progress.note(f"  {text}"),
-                Deadline(SOLID_SECONDS),
+                SOLID_SECONDS,
             )
 
     inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lobes import solve_lobes
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.torsion import bulk
-from flexspline.fea.deadline import NO_DEADLINE, Deadline
+from flexspline.fea.deadline import Deadline
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import lobes
@@ -66,14 +66,14 @@ def lobe_stiffness(
     tolerance: float,
     symmetry: str,
     progress: Callable[[str], None],
-    deadline: Deadline = NO_DEADLINE,
+    limit_s: float = inf,
 ) -> Stiffness:
     """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
 
     A given load stores too little energy on a mesh, so K_h is an upper bound here too. The recovery
     estimate times a scale is taken off it: the one that comes with the first mesh, then what the last
-    two say (see `fea.solid.stiffness`). Where a mesh after the first fails or would end after the deadline,
-    or there are no more, `shortfall` says so.
+    two say (see `fea.solid.stiffness`). Where a mesh after the first fails or would end `limit_s` seconds after
+    that was made, or there are no more, `shortfall` says so.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def lobe_stiffness(
     estimate = ScaledEstimate(usual, EFFICIENCY)
     rest = (mesh for mesh, _ in meshes)
     found = _SolidLobes(rest, material, supported, tolerance, symmetry, progress, estimate)
-    shortfall = refine(found, mesh, deadline)
+    shortfall = refine(found, mesh, Deadline(limit_s))
     upper, error = estimate.K_Nm_per_rad, estimate.relative
     return Stiffness(
         K_Nm_per_rad=upper / (1 + error),

@@ -72,7 +72,10 @@ def solid_stiffness(
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
     found = _SolidTorsion(mesher, first, material, driven, tolerance, progress, deadline)
-    shortfall = refine(found, mesher(first), deadline)
+    mesh = mesher(first)
+    # what is meshed is solved, however late; `finer` then ends it
+    late = deadline.elapsed() >= deadline.limit_s
+    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline)
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {found.half:.2%} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)

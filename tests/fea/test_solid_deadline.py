@@ -45,3 +45,10 @@ def test_a_mesh_that_would_end_too_late_is_not_begun() -> None:
 
 def test_one_that_would_end_in_time_is() -> None:
     assert len(stiffness(limit_s=200.0).levels) > 1
+
+
+def test_a_first_mesh_that_comes_late_is_solved() -> None:
+    """25 s for the mesh alone, where 10 s are allowed: its K is the answer."""
+    found = stiffness(limit_s=10.0)
+    assert len(found.levels) == 1
+    assert of_the_machine(found.shortfall)
