@@ -72,8 +72,8 @@ def lobe_stiffness(
 
     A given load stores too little energy on a mesh, so K_h is an upper bound here too. The recovery
     estimate times a scale is taken off it: the one that comes with the first mesh, then what the last
-    two say (see `fea.solid.stiffness`). Where a mesh after the first fails or would end `limit_s` seconds after
-    that was made, or there are no more, `shortfall` says so.
+    two say (see `fea.solid.stiffness`). Where a mesh after the first fails, or would end `limit_s` seconds
+    after that was made, or there are no more, `shortfall` says so.
 
     Raises
     ------
