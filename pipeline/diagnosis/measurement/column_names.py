@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.vocabulary import (
     ENDINGS,
     INPUT,
     MINUS,
+    OTHER_TIMES,
     PLUS,
     QUANTITY_OF,
     SAYS_NOTHING,
@@ -25,6 +26,8 @@ DESIGN_KEY = re.compile(r"[a-z]\w*(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)+", re.ASCII)
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|(?<![^\s(\[_])[+\-−](?![^\s)\]_])|\+")
 """Words, figures, and signs that stand alone: a hyphen inside a word is none."""
 _BRACKETS = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|<([^>]*)>|\{([^}]*)\}")
+_SCALE = re.compile(r"[*×÷/=]\s*\d|\d[.,]\d|\d\s*[*×÷/=]")
+"""A factor beside the quantity, whose readings are then not in the unit that stands there."""
 _PARTED = re.compile(r"\s*/\s*|\s+in\s+|\s*[,;:_]\s*|\s+|-")
 """What may stand between words and unit."""
 
@@ -57,7 +60,7 @@ def column_name(head: str) -> ColumnName | None:
         if suffix != text and re.fullmatch(r"_[A-Za-z_]+", suffix):
             return _ours(quantity, suffix[1:])
     words, unit = _parted(text)
-    return _in_words(words, unit)
+    return None if _SCALE.search(words) else _in_words(words, unit)
 
 
 def is_unit(written: str) -> bool:
@@ -138,7 +141,7 @@ def _qualified(quantity: str, words: list[str], written: str | None) -> ColumnNa
     left = [w for w in words if w and w not in SAYS_NOTHING]
     if quantity == "stiffness" and SPREAD & set(left):
         quantity, left = "stiffness_std", [w for w in left if w not in SPREAD]
-    if ANOTHER & set(left) and quantity != "time":  # "Time 1 - default sample rate" is a time
+    if (OTHER_TIMES if quantity == "time" else ANOTHER) & set(left):
         return None
     if INPUT & set(left):
         if quantity == "torque":

@@ -84,7 +84,7 @@ def _with_row(grid: Grid, head: str, below: str) -> ColumnName | None:
     joined = column_name(with_unit(head, below))
     if name is None or name.unit is None:
         return joined
-    if joined is not None and joined.unit not in (None, name.unit):
+    if joined is not None and (joined.strange or joined.unit not in (None, name.unit)):
         reason = f'column {head} has "{below}" below it: two units; leave one'
         raise MeasurementError(grid.path, grid.head_line, reason)
     return name

@@ -73,6 +73,7 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
     if not grid.rows:
         raise MeasurementError(grid.path, grid.head_line, "a header and no data rows")
     across = list(zip(*grid.rows, strict=True))
+    _refuse_unnamed(grid, across)
     cells = {c.at: [t.strip() for t in across[c.at]] for c in columns}
     empty = [c for c in columns if c.name in OPTIONAL and not any(map(_holds, cells[c.at]))]
     columns = tuple(c for c in columns if c not in empty)
@@ -102,6 +103,19 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
             bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(),
         ),
     )  # fmt: skip
+
+
+def _refuse_unnamed(grid: Grid, across: Sequence[Sequence[str]]) -> None:
+    """Refuse values beyond the last name; an unnamed first column is a table's count of its rows."""
+    named = max((i for i, head in enumerate(grid.head) if head.strip()), default=-1)
+    for cells in across[named + 1 :]:
+        for line, text in zip(grid.line, cells, strict=True):
+            if _holds(text.strip()):
+                reason = (
+                    f'"{text.strip()[:SHOWN]}" stands in a column without a name; with decimal commas, '
+                    "separate the columns by semicolons"
+                )
+                raise MeasurementError(grid.path, line, reason)
 
 
 def _holds(text: str) -> bool:

@@ -44,9 +44,13 @@ ANOTHER = _words(
     "setpoint set sp soll sollwert command commanded cmd target demand reference ref limit rate speed "
     "velocity acceleration error fehler std deviation abweichung min max minimum maximum offset zero "
     "range predicted simulated calculated computed model fitted fit type id nominal rated power "
-    "current voltage strom spannung leistung drehzahl beschleunigung"
+    "current voltage strom spannung leistung drehzahl beschleunigung "
+    "change rise delta δ diff difference differenz änderung increment step remaining half double "
+    "x per pro div milli micro mikro kilo"
 )
-"""Words that make of a quantity another one, which no cause needs."""
+"""Words that make of a quantity another one, or scale it."""
+OTHER_TIMES = _words("step remaining left")
+"""Of a time: the others of `ANOTHER` leave it one, as in "Time 1 - default sample rate"."""
 SPREAD = _words("std sd standard deviation standardabweichung abweichung")
 PLUS = _words("plus + pos positive positiv")
 MINUS = _words("minus - − neg negative negativ")

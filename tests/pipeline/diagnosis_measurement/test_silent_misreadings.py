@@ -1,0 +1,53 @@
+"""What could be read as something else without a word is refused, or is no column of ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from flexspline.pipeline.diagnosis.measurement.column_names import column_name
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.table import read_table
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Torque [Nm] x10", "Torque in 0.01 Nm", "Angle [deg] * 1000", "Angle [deg] per 100",
+        "Angle [arcsec] div 3600", "Torque milli Nm", "Angle micro rad", "Torque [Nm] (1 V = 10 Nm)",
+        "Temp. change [K]", "Delta temperature [K]", "Temperature rise [°C]", "Time remaining [s]",
+        "Time step [s]", "Torque change [Nm]", "Half torque [Nm]", "Torque per lobe [Nm]",
+    ],
+)  # fmt: skip
+def test_a_scaled_or_other_quantity_is_no_column_of_ours(head: str) -> None:
+    assert column_name(head) is None
+
+
+@pytest.mark.parametrize("head", ["Torque 1 [Nm]", "Time 1 - default sample rate [s]"])
+def test_a_channel_s_number_is_no_scale(head: str) -> None:
+    assert column_name(head) is not None
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "rig.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_fractions_beyond_the_last_name_are_refused(tmp_path: Path) -> None:
+    rows = "".join(f"{i},91,{60 + i},9,,\n" for i in range(5))
+    with pytest.raises(MeasurementError, match="without a name; with decimal commas"):
+        read_table(written(tmp_path, "torque_Nm,angle_arcsec,,\n" + rows))
+
+
+def test_a_table_s_own_count_of_rows_is_none_of_them(tmp_path: Path) -> None:
+    rows = "".join(f"{i},0.{i},{10 + i}\n" for i in range(5))
+    found = read_table(written(tmp_path, ",torque_Nm,angle_arcsec\n" + rows))
+    assert found.numbers["torque_Nm"].tolist() == [0.0, 0.1, 0.2, 0.3, 0.4]
+
+
+def test_an_unknown_unit_below_a_known_one_is_refused(tmp_path: Path) -> None:
+    text = "torque_Nm,angle_arcsec\nlbf,arcsec\n" + "".join(f"0.{i},{i}\n" for i in range(5))
+    with pytest.raises(MeasurementError, match="two units"):
+        read_table(written(tmp_path, text))
