@@ -152,7 +152,19 @@ def _decimal_mark(
         )
         raise MeasurementError(grid.path, grid.line[later[0][1]], reason)
     if points or commas:
-        return "." if points else ","
+        mark: Mark = "." if points else ","
+        other = "," if points else "."
+        proven = {c.at for c, _ in points or commas}
+        for column, row in either:
+            text = cells[column.at][row]
+            if column.at not in proven and other in text:
+                whole, part = text.replace(other, ""), text.replace(other, mark)
+                reason = (
+                    f"{said(column, row)} may be {whole} or {part}, and another column has a decimal "
+                    f'"{mark}": write all numbers one way'
+                )
+                raise MeasurementError(grid.path, grid.line[row], reason)
+        return mark
     if either and (grid.separator != "," or "," in cells[either[0][0].at][either[0][1]]):
         column, row = either[0]
         text = cells[column.at][row]

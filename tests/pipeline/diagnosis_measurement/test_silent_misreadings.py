@@ -51,3 +51,9 @@ def test_an_unknown_unit_below_a_known_one_is_refused(tmp_path: Path) -> None:
     text = "torque_Nm,angle_arcsec\nlbf,arcsec\n" + "".join(f"0.{i},{i}\n" for i in range(5))
     with pytest.raises(MeasurementError, match="two units"):
         read_table(written(tmp_path, text))
+
+
+def test_a_mark_that_another_column_makes_a_thousand_of_is_refused(tmp_path: Path) -> None:
+    rows = "".join(f"{i}.5;{i + 1},250;1{i}.500\n" for i in range(5))
+    with pytest.raises(MeasurementError, match=r"may be 1250 or 1\.250"):
+        read_table(written(tmp_path, "time_s;torque_Nm;angle_arcsec\n" + rows))
