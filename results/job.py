@@ -68,11 +68,14 @@ LONGEST_LINE = 2000
 
 
 def tell(line: str) -> None:
-    """One line of progress or warning, its control characters escaped."""
+    """One line of progress or warning, its control characters escaped.
+
+    Threads speak too: the line and its end are one write, or another's line would come between them.
+    """
     from flexspline.geometry.errors import one_line
 
     with suppress(OSError):  # whoever listened has gone: no reason to stop
-        print(one_line(line, LONGEST_LINE), file=sys.stderr, flush=True)
+        print(f"{one_line(line, LONGEST_LINE)}\n", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager

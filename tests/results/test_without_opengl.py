@@ -63,9 +63,8 @@ def test_one_warning_names_the_pictures_and_the_package(bare) -> None:
     (warning,) = [line for line in said if "warning" in line]
     assert SAID in warning
     assert all(name in warning for name in RENDERED)
-    assert all(
-        line.startswith(("[", "warning: ")) for line in said
-    )  # VTK's own words are not there
+    others = [line for line in said if not line.startswith(("[", "warning: "))]
+    assert not others  # VTK's own words are not there
 
 
 def test_both_reports_say_what_is_missing_and_why(bare) -> None:
