@@ -13,13 +13,16 @@ from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
+from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.figures.diagnosis.draw import draw_figures
 from flexspline.results.records import as_json
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
 from flexspline.results.report.diagnosis import diagnosis_document
 
-DIAGNOSIS = "diagnosis.json"
+NAME = "diagnosis"
+"""Of the record and the reports: the folder may hold `report.pdf` of a run of the same design."""
+DIAGNOSIS = f"{NAME}.json"
 
 
 def write_diagnosis(
@@ -31,7 +34,8 @@ def write_diagnosis(
 ) -> list[Path]:
     """Write diagnosis.json, the extended model, the figures and the reports into `folder`.
 
-    Nothing is written before all of it is computed; a failure leaves what was there.
+    Nothing is written before all of it is computed; a failure leaves what was there. What an earlier
+    diagnosis wrote there and this one has not is taken away.
     """
     made: dict[str, bytes] = {DIAGNOSIS: (as_json(record) + "\n").encode()}
     if diagnosis.model is not None:
@@ -40,9 +44,11 @@ def write_diagnosis(
         figures = draw_figures(diagnosis, Path(scratch))
         made |= {f.path.name: f.path.read_bytes() for f in figures}
         document = diagnosis_document(diagnosis, figures, used, attached)
-        made |= reports_of(document, {f.path.stem: f.path for f in figures})
+        made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=NAME)
     for name, data in made.items():
         write_bytes(folder / name, data)
+    for name in {EXTENDED_MODEL, *(f"{figure}.png" for figure in CAPTIONS)} - set(made):
+        (folder / name).unlink(missing_ok=True)
     return [folder / name for name in made]
 
 

@@ -9,13 +9,17 @@ from flexspline.results.report.document import Document
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.pdf import pdf_of
 
-PDF, HTML = "report.pdf", "report.html"
+REPORT = "report"
+"""Name of the files of a run and of a study."""
 
 
 def reports_of(
-    document: Document, pictures: Mapping[str, Path], views: Mapping[str, bytes] | None = None
+    document: Document,
+    pictures: Mapping[str, Path],
+    views: Mapping[str, bytes] | None = None,
+    name: str = REPORT,
 ) -> dict[str, bytes]:
-    """Bytes of report.pdf and report.html by file name; the pictures, PNG files, as they are.
+    """Bytes of `name`.pdf and `name`.html by file name; the pictures, PNG files, as they are.
 
     `views` turn in the browser (`results.renders.turntable`), by the names that the figures give.
 
@@ -24,6 +28,6 @@ def reports_of(
     ReportError : typst refused the document.
     """
     return {
-        PDF: pdf_of(document, pictures),
-        HTML: page_of(document, {name: png(path) for name, path in pictures.items()}, views),
+        f"{name}.pdf": pdf_of(document, pictures),
+        f"{name}.html": page_of(document, {n: png(path) for n, path in pictures.items()}, views),
     }

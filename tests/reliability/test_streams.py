@@ -181,7 +181,7 @@ def test_nobody_reads_the_progress(tmp_path: Path) -> None:
     os.close(theirs)
     assert done.returncode == 0
     assert json.loads(done.stdout)["verdict"]
-    assert (tmp_path / "out" / "report.pdf").exists()
+    assert (tmp_path / "out" / "diagnosis.pdf").exists()
 
 
 @pytest.mark.skipif(shutil.which("sh") is None, reason="needs a shell that closes streams")

@@ -170,4 +170,17 @@ def test_constant_torque_is_too_little_but_no_error(torque: list[str], tmp_path:
     assert done.exit_code == 0, done.stderr
     assert '"verdict": "insufficient"' in done.stdout
     out = tmp_path / "out"
-    assert {p.name for p in out.iterdir()} == {"diagnosis.json", "report.pdf", "report.html"}
+    assert {p.name for p in out.iterdir()} == {"diagnosis.json", "diagnosis.pdf", "diagnosis.html"}
+
+
+def test_a_run_s_report_stays_and_an_earlier_diagnosis_goes(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in ("report.pdf", "report.html", "result.json", "causes.png", "extended_model.toml"):
+        (out / name).write_text("earlier")
+    path = tmp_path / "still.csv"
+    path.write_bytes(rows("torque_Nm,angle_arcsec", *(f"0.5,{i % 7}" for i in range(60))))
+    assert diagnose(path).exit_code == 0
+    own = {"diagnosis.json", "diagnosis.pdf", "diagnosis.html"}
+    assert {p.name for p in out.iterdir()} == own | {"report.pdf", "report.html", "result.json"}
+    assert (out / "report.pdf").read_text() == "earlier"

@@ -82,7 +82,7 @@ def test_the_contracts_keys(done: tuple[Path, dict]) -> None:
 def test_files_are_all_there_and_whole(done: tuple[Path, dict]) -> None:
     folder, _ = done
     names = {p.name for p in folder.iterdir()}
-    assert names == PNGS | {"diagnosis.json", "extended_model.toml", "report.pdf", "report.html"}
+    assert names == PNGS | {"diagnosis.json", "extended_model.toml", "diagnosis.pdf", "diagnosis.html"}
     for name in PNGS:
         with Image.open(folder / name) as image:
             data = np.asarray(image.convert("RGB"))
@@ -94,7 +94,7 @@ def test_files_are_all_there_and_whole(done: tuple[Path, dict]) -> None:
 
 def test_the_first_page_is_in_plain_words(done: tuple[Path, dict]) -> None:
     folder, _ = done
-    pages = [p.extract_text() for p in PdfReader(folder / "report.pdf").pages]
+    pages = [p.extract_text() for p in PdfReader(folder / "diagnosis.pdf").pages]
     first = re.sub(r"\s+", " ", pages[0])
     assert 2 <= len(pages) <= 6
     for words in (
@@ -259,7 +259,7 @@ def test_names_print_as_their_letters(name: str, tmp_path: Path) -> None:
     measured.write_text("\n".join([header, *(r + ",x" for r in rows)]) + "\n", encoding="utf-8")
     result = flexspline("diagnose", design, measured, *GIVEN, "--out", tmp_path / "out")
     assert result.exit_code == 0, result.stderr
-    pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "out" / "report.pdf").pages)
+    pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "out" / "diagnosis.pdf").pages)
     letters = re.sub(r"[\s\u200b]", "", pages)
     assert name.replace(" ", "") in letters
     assert "root:" not in pages

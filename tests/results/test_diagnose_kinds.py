@@ -34,7 +34,7 @@ def diagnosed(measured: Path, out: Path) -> tuple[dict, str]:
             data = np.asarray(image.convert("RGB"))
         for edge in (data[0], data[-1], data[:, 0], data[:, -1]):
             assert (edge == 255).all(), picture.name  # nothing is cut off at the edge
-    pages = [p.extract_text() for p in PdfReader(out / "report.pdf").pages]
+    pages = [p.extract_text() for p in PdfReader(out / "diagnosis.pdf").pages]
     return json.loads(result.stdout), re.sub(r"\s+", " ", " ".join(pages))
 
 

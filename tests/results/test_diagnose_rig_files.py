@@ -91,7 +91,7 @@ def test_how_it_was_read_is_said(excel: Path) -> None:
     }  # fmt: skip
     report = " ".join(
         " ".join(
-            p.extract_text() for p in PdfReader(excel.parent / "out" / "report.pdf").pages
+            p.extract_text() for p in PdfReader(excel.parent / "out" / "diagnosis.pdf").pages
         ).split()
     )
     assert "cp1252, columns separated by semicolon, decimal comma, header in line 2" in report

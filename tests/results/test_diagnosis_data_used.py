@@ -66,7 +66,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, np.ndarray, Pa
 
 
 def text_of(out: Path) -> str:
-    pages = [p.extract_text() for p in PdfReader(out / "report.pdf").pages]
+    pages = [p.extract_text() for p in PdfReader(out / "diagnosis.pdf").pages]
     return re.sub(r"\s+", " ", " ".join(pages))
 
 
@@ -75,7 +75,7 @@ def test_the_file_and_its_hash(made: tuple[Path, np.ndarray, Path, dict]) -> Non
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     assert said["measurement"] == {"file": "rig 7.csv", "sha256": digest}
     assert digest in text_of(out).replace(" ", "")
-    assert digest in (out / "report.html").read_text(encoding="utf-8")
+    assert digest in (out / "diagnosis.html").read_text(encoding="utf-8")
     assert digest in diagnosed(path, out)
 
 

@@ -40,7 +40,7 @@ def test_a_diagnosis(tmp_path):
     words = ["diagnose", ROOT / "examples" / "xb1-40.toml", record, "--Kb", 31329, "--Ke", 43339]
     result = CliRunner().invoke(app, [str(w) for w in (*words, "--out", tmp_path)])
     assert result.exit_code == 0, result.stderr
-    pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "report.pdf").pages)
+    pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "diagnosis.pdf").pages)
     said = " ".join((result.stdout + pages).split())
     for old in (
         "Found, and named", "worth to know", "name no cause", "friction stays, lag goes",

@@ -112,8 +112,8 @@ def test_measured_data_are_diagnosed(tab: Page, tmp_path: Path) -> None:
     assert (
         tab.at("#findings img").first.evaluate("i => i.decode().then(() => i.naturalWidth)") > 400
     )
-    name, data = downloaded(tab, "#findings a:has-text('report.pdf')")
-    assert (name, data[:5]) == ("report.pdf", b"%PDF-")
+    name, data = downloaded(tab, "#findings a:has-text('diagnosis.pdf')")
+    assert (name, data[:5]) == ("diagnosis.pdf", b"%PDF-")
     tab.set("flexspline.wall_thickness_mm", "0.41")
     tab.at("#findings.stale").wait_for()
 
