@@ -9,6 +9,7 @@ from flexspline.geometry.errors import one_line
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES
+from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 MARKS = {".": "point", ",": "comma"}
 HEAD_LETTERS = 60
@@ -63,7 +64,7 @@ def heads(names: Iterable[str]) -> str:
 
 def form_words(read_as: ReadAs) -> str:
     """Encoding, separator, decimal mark and head in one line."""
-    if read_as.encoding == "xlsx":
+    if read_as.encoding == WORKBOOK:
         return f"the workbook's first sheet, header in row {read_as.head_line}"
     units = ", units below it" if read_as.unit_row else ""
     return (

@@ -82,7 +82,12 @@ def test_the_contracts_keys(done: tuple[Path, dict]) -> None:
 def test_files_are_all_there_and_whole(done: tuple[Path, dict]) -> None:
     folder, _ = done
     names = {p.name for p in folder.iterdir()}
-    assert names == PNGS | {"diagnosis.json", "extended_model.toml", "diagnosis.pdf", "diagnosis.html"}
+    assert names == PNGS | {
+        "diagnosis.json",
+        "extended_model.toml",
+        "diagnosis.pdf",
+        "diagnosis.html",
+    }
     for name in PNGS:
         with Image.open(folder / name) as image:
             data = np.asarray(image.convert("RGB"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from flexspline.pipeline.diagnosis.measurement.time_stamps import without_form
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES, UNITS, unit_named
 from flexspline.pipeline.diagnosis.measurement.vocabulary import (
     ANOTHER,
@@ -26,8 +27,10 @@ DESIGN_KEY = re.compile(r"[a-z]\w*(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)+", re.ASCII)
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|(?<![^\s(\[_])[+\-−](?![^\s)\]_])|\+")
 """Words, figures, and signs that stand alone: a hyphen inside a word is none."""
 _BRACKETS = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|<([^>]*)>|\{([^}]*)\}")
-_SCALE = re.compile(r"[*×÷/=]\s*\d|\d[.,]\d|\d\s*[*×÷/=]")
-"""A factor beside the quantity, whose readings are then not in the unit that stands there."""
+_SCALE = re.compile(r"[*×÷/=]\s*\d|\d[.,]\d|\d\s*[*×÷/=]|^\s*[-−–]")
+"""A factor beside the quantity, or a sign before it: the readings are then not in the unit beside it."""
+_HALF = re.compile(r"^[^\[({<]*[\])}>]")
+"""The end of a bracket that began before."""
 _PARTED = re.compile(r"\s*/\s*|\s+in\s+|\s*[,;:_]\s*|\s+|-")
 """What may stand between words and unit."""
 
@@ -52,7 +55,7 @@ class ColumnName:
 
 def column_name(head: str) -> ColumnName | None:
     """What a head says; None where it is no quantity of ours."""
-    text = head.strip()
+    text = without_form(head).strip()
     if text in LABELS or text in PLAIN or DESIGN_KEY.fullmatch(text):
         return ColumnName(text, ours=True)
     for quantity in sorted(QUANTITIES, key=len, reverse=True):
@@ -97,8 +100,9 @@ def _parted(text: str) -> tuple[str, str | None]:
     if square is not None:
         return square
     for match in _PARTED.finditer(text):
-        if match.start() and is_unit(text[match.end() :]):
-            return text[: match.start()], text[match.end() :]
+        rest = text[match.end() :]
+        if match.start() and is_unit(rest) and not _HALF.search(rest):
+            return text[: match.start()], rest
     return text, None
 
 

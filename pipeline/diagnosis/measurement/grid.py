@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.file_text import text_of
 from flexspline.pipeline.diagnosis.measurement.number_text import number_of
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
-from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, first_sheet
+from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
 LARGEST_BYTES = 200_000_000
 """Two million rows of 100 letters; a file beyond this is some other file, or never ends."""
@@ -93,7 +93,7 @@ def _of_sheet(path: Path, raw: bytes) -> Grid:
     _refuse_size(path, rows)
 
     head = _head_of(len(rows), lambda i, _: [c.strip() for c in rows[i]], ("",))
-    return _grid(path, raw, "xlsx", head, rows[head.at :], numbers[head.at :])
+    return _grid(path, raw, WORKBOOK, head, rows[head.at :], numbers[head.at :])
 
 
 def _of_text(path: Path, raw: bytes) -> Grid:

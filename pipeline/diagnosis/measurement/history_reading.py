@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
+from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock
 
 LARGEST_CYCLE = 1_000_000
 """A cycle a second for eleven days; a larger number is a slipped column."""
@@ -33,7 +34,8 @@ def history_of(table: MeasuredTable) -> NamedHistory:
     names = tuple(dict.fromkeys(table.labels.get("unit", ("",))))
     code = {name: i for i, name in enumerate(names)}
     unit = np.array([code[u] for u in table.labels.get("unit", ("",) * n)])
-    _refuse_backward(table, "time_s", unit, "time runs backwards")
+    over = "; past midnight? write the date beside it" if is_clock(table.read_as.began) else ""
+    _refuse_backward(table, "time_s", unit, "time runs backwards", over)
     _refuse_backward(table, "cycle", unit, "cycle numbers run backwards")
     torque = table.numbers["torque_Nm"]
     recorded = "cycle" in table.numbers
@@ -85,7 +87,9 @@ def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:
     return 1.0 + np.searchsorted(np.array(starts, int), np.arange(len(torque_Nm)), side="right")
 
 
-def _refuse_backward(table: MeasuredTable, name: str, unit: np.ndarray, reason: str) -> None:
+def _refuse_backward(
+    table: MeasuredTable, name: str, unit: np.ndarray, reason: str, advice: str = ""
+) -> None:
     values = table.numbers.get(name)
     if values is None:
         return
@@ -95,4 +99,5 @@ def _refuse_backward(table: MeasuredTable, name: str, unit: np.ndarray, reason: 
         if len(back):
             row = rows[back[0] + 1]
             was = values[rows[back[0]]]
-            raise table.refuse(int(row), f"{reason}: {name} = {values[row]:g} after {was:g}")
+            found = f"{name} = {values[row]:g} after {was:g}"
+            raise table.refuse(int(row), f"{reason}: {found}{advice}")

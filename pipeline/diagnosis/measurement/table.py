@@ -17,10 +17,20 @@ from flexspline.pipeline.diagnosis.measurement.grid import Grid, read_grid
 from flexspline.pipeline.diagnosis.measurement.number_text import (
     Mark,
     evidence_of,
+    number_of,
     numbers_of,
 )
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
-from flexspline.pipeline.diagnosis.measurement.time_stamps import is_day, is_slashed, seconds_of
+from flexspline.pipeline.diagnosis.measurement.time_stamps import (
+    counted_seconds,
+    form_said,
+    form_shown,
+    is_day,
+    is_short,
+    is_slashed,
+    seconds_of,
+)
+from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 LARGEST_NUMBER = 1e12
 """Beyond this no rig reads; a slipped column or exponent does."""
@@ -151,6 +161,8 @@ def _decimal_mark(
             f"{grid.line[first[0][1]]} a decimal {first[1]}: write all numbers one way"
         )
         raise MeasurementError(grid.path, grid.line[later[0][1]], reason)
+    if grid.encoding == WORKBOOK:
+        _refuse_text(grid, columns, cells)
     if points or commas:
         mark: Mark = "." if points else ","
         other = "," if points else "."
@@ -168,11 +180,24 @@ def _decimal_mark(
     if either and (grid.separator != "," or "," in cells[either[0][0].at][either[0][1]]):
         column, row = either[0]
         text = cells[column.at][row]
-        if not (grid.encoding == "xlsx" and "." in text):
+        if grid.encoding != WORKBOOK:
             whole, part = text.replace(",", "").replace(".", ""), text.replace(",", ".")
             reason = f"{said(column, row)} may be {whole} or {part}: write {whole} or {part}0"
             raise MeasurementError(grid.path, grid.line[row], reason)
     return "."
+
+
+def _refuse_text(grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]) -> None:
+    """Refuse text of a workbook that may be a thousand: a cell that holds a number has no comma."""
+    for column in columns:
+        for line, text in zip(grid.line, cells[column.at], strict=True):
+            if "," in text and number_of(text, ".") is not None:
+                whole, part = text.replace(",", ""), text.replace(",", ".")
+                reason = (
+                    f'{column.head} = "{text[:SHOWN]}" is text, and may be {whole} or {part}: make the '
+                    "cell a number"
+                )
+                raise MeasurementError(grid.path, line, reason)
 
 
 def _labels(grid: Grid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
@@ -191,13 +216,33 @@ def _seconds(grid: Grid, column: ReadColumn, texts: list[str]) -> np.ndarray:
         said = f'{column.head} = "{texts[0][:SHOWN]}"'
         reason = f"{said} is a day without a time of day; write both in one column, or time_s"
         raise MeasurementError(grid.path, grid.line[0], reason)
-    found, bad = seconds_of(texts)
+    found, bad = counted_seconds(texts) if _in_minutes(grid, column, texts) else seconds_of(texts)
     if bad is not None:
         reason = (
             f'{column.head} = "{texts[bad][:SHOWN]}" is no date and time as "{texts[0][:SHOWN]}" is'
         )
         raise MeasurementError(grid.path, grid.line[bad], reason)
     return np.array(found)
+
+
+def _in_minutes(grid: Grid, column: ReadColumn, texts: list[str]) -> bool:
+    """Whether texts of two numbers are minutes and seconds.
+
+    Raises
+    ------
+    MeasurementError : they may be hours and minutes as well.
+    """
+    if column.day_at is not None or not is_short(texts[0]):
+        return False
+    head = f"{column.head} {grid.unit_row[column.at] if grid.unit_row else ''}"
+    form = form_said(head) or form_shown(texts)
+    if form is None:
+        reason = (
+            f'{column.head} = "{texts[0]}" may be hours and minutes or minutes and seconds: write '
+            f'00:{texts[0]} or {texts[0]}:00, or "mm:ss" or "hh:mm" into the head'
+        )
+        raise MeasurementError(grid.path, grid.line[0], reason)
+    return form == "mm:ss"
 
 
 def _values(grid: Grid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:

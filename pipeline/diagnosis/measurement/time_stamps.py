@@ -8,16 +8,26 @@ from datetime import datetime, timedelta
 
 CLOCK = r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d{1,9})?)?(?:\s?(?:Z|[+-]\d{2}:?\d{2}))?"
 DAY_ISO, DAY_DOTS = r"\d{4}-\d{2}-\d{2}", r"\d{1,2}\.\d{1,2}\.\d{4}"
+LAST_HOUR = 23
 STAMP = re.compile(
     rf"(?:(?P<iso>{DAY_ISO})|(?P<dots>{DAY_DOTS}))?[T ,]*(?P<clock>{CLOCK})?", re.ASCII
 )
+SHORT = re.compile(r"(\d{1,4}):([0-5]\d(?:[.,]\d{1,9})?)", re.ASCII)
+"""Two numbers: hours and minutes, or minutes and seconds."""
+FORMS = {
+    "mm:ss": re.compile(r"(?<!:)\b(?:mm?|min):(?:ss?|se[ck])\b", re.IGNORECASE),
+    "hh:mm": re.compile(r"\b(?:hh?|std):(?:mm?|min)(?::(?:ss?|se[ck]))?\b", re.IGNORECASE),
+}
+"""How a head or a unit says which."""
 SLASHES = re.compile(r"\d{1,4}/\d{1,2}/\d{1,4}\b.*", re.ASCII)
 """Day first in Europe, month first in America: two readings."""
 
 
 def is_stamp(text: str) -> bool:
     """Whether a text is a date, a time of day, or both; plain numbers are none."""
-    return bool(text) and (STAMP.fullmatch(text) is not None or is_slashed(text))
+    return bool(text) and (
+        STAMP.fullmatch(text) is not None or SHORT.fullmatch(text) is not None or is_slashed(text)
+    )
 
 
 def is_slashed(text: str) -> bool:
@@ -33,6 +43,41 @@ def is_day(text: str) -> bool:
 def is_clock(text: str) -> bool:
     """Whether it is a time of day without a date."""
     return re.fullmatch(CLOCK, text) is not None
+
+
+def form_said(head: str) -> str | None:
+    """ "mm:ss" or "hh:mm" (also of "hh:mm:ss") where the head of a column says so."""
+    return next((form for form, said in FORMS.items() if said.search(head)), None)
+
+
+def without_form(head: str) -> str:
+    """The head without what `form_said` reads."""
+    for said in FORMS.values():
+        head = said.sub("", head)
+    return head
+
+
+def form_shown(texts: Sequence[str]) -> str | None:
+    """ "mm:ss" where only that explains some of the texts; None where none does."""
+    short = [found for t in texts if (found := SHORT.fullmatch(t))]
+    seconds = any(not found[2].isdigit() or int(found[1]) > LAST_HOUR for found in short)
+    return "mm:ss" if seconds else None
+
+
+def is_short(text: str) -> bool:
+    """Whether it is two numbers with a colon between."""
+    return SHORT.fullmatch(text) is not None
+
+
+def counted_seconds(texts: Sequence[str]) -> tuple[list[float], int | None]:
+    """As `seconds_of`, for minutes and seconds."""
+    found: list[float] = []
+    for i, text in enumerate(texts):
+        match = SHORT.fullmatch(text)
+        if match is None:
+            return found, i
+        found.append(60 * int(match[1]) + float(match[2].replace(",", ".")))
+    return [value - found[0] for value in found], None
 
 
 def seconds_of(texts: Sequence[str]) -> tuple[list[float], int | None]:

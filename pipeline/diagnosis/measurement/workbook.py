@@ -23,6 +23,8 @@ DAMAGE = (
     StopIteration, EOFError, OSError, NotImplementedError, RuntimeError,
 )  # fmt: skip
 """What a damaged zip, damaged XML, or XML that is no workbook's raises."""
+WORKBOOK = "xlsx"
+"""What a workbook has in the place of a text's encoding."""
 BEGIN = b"PK\x03\x04"
 """How a zip begins."""
 LARGEST_PART = 1_000_000_000

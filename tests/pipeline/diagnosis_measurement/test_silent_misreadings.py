@@ -8,6 +8,7 @@ import pytest
 
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
 from flexspline.pipeline.diagnosis.measurement.table import read_table
 
 
@@ -57,3 +58,44 @@ def test_a_mark_that_another_column_makes_a_thousand_of_is_refused(tmp_path: Pat
     rows = "".join(f"{i}.5;{i + 1},250;1{i}.500\n" for i in range(5))
     with pytest.raises(MeasurementError, match=r"may be 1250 or 1\.250"):
         read_table(written(tmp_path, "time_s;torque_Nm;angle_arcsec\n" + rows))
+
+
+def stamped(folder: Path, head: str, *times: str) -> Path:
+    rows = "".join(f"{t};0.{i};{i}\n" for i, t in enumerate(times))
+    return written(folder, f"{head};torque_Nm;angle_arcsec\n{rows}")
+
+
+def test_two_numbers_may_be_minutes_and_seconds(tmp_path: Path) -> None:
+    with pytest.raises(MeasurementError, match="may be hours and minutes or minutes and seconds"):
+        read_table(stamped(tmp_path, "time", "00:01", "00:02", "00:03"))
+
+
+@pytest.mark.parametrize(
+    ("head", "times", "seconds"),
+    [
+        ("Time [mm:ss]", ("00:59", "01:01"), 2.0),
+        ("Zeit (min:sek)", ("00:59", "01:01"), 2.0),
+        ("Time [hh:mm]", ("00:59", "01:01"), 120.0),
+        ("Time [hh:mm:ss]", ("00:59:00", "01:01:00"), 120.0),
+        ("time", ("00:58.5", "01:01.0"), 2.5),  # as Excel shows times
+        ("time", ("00:58,5", "01:01,0"), 2.5),
+        ("time", ("23:59", "24:01"), 2.0),  # no hour
+        ("time", ("2024-01-01 00:59", "2024-01-01 01:01"), 120.0),
+    ],
+)  # fmt: skip
+def test_what_says_which_of_the_two(
+    head: str, times: tuple[str, str], seconds: float, tmp_path: Path
+) -> None:
+    found = read_table(stamped(tmp_path, head, *times)).numbers["time_s"]
+    assert found.tolist() == [0.0, seconds]
+
+
+def test_times_past_midnight_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    path = stamped(tmp_path, "time", "23:59:58", "23:59:59", "00:00:00")
+    with pytest.raises(MeasurementError, match="past midnight"):
+        history_of(read_table(path))
+
+
+@pytest.mark.parametrize("head", ["-Torque [Nm]", "− Torque in Nm", "Angle (1/100 deg)"])
+def test_a_sign_or_a_share_before_the_unit_is_no_column_of_ours(head: str) -> None:
+    assert column_name(head) is None

@@ -134,3 +134,13 @@ def test_a_zip_of_something_else(tmp_path: Path) -> None:
 def test_an_empty_sheet(tmp_path: Path) -> None:
     with pytest.raises(MeasurementError, match="no header line"):
         read_measurement(workbook(tmp_path / "a.xlsx", ""))
+
+
+def test_text_that_may_be_a_thousand_is_refused(tmp_path: Path) -> None:
+    heads = ("torque_Nm", "angle_arcsec")
+    head = "".join(f'<c t="inlineStr"><is><t>{name}</t></is></c>' for name in heads)
+    text = '<c t="inlineStr"><is><t>1,250</t></is></c>'
+    body = "".join(f"<row><c><v>{t}</v></c>{text}</row>" for t in TORQUE)
+    path = workbook(tmp_path / "a.xlsx", f"<row>{head}</row>{body}")
+    with pytest.raises(MeasurementError, match=r'"1,250" is text, and may be 1250 or 1\.250'):
+        sweep(path)
