@@ -118,12 +118,12 @@ def _check(study: Study) -> None:
     for key, spread in file.tolerance.items():
         _check_design_key(study, "tolerance", key)
         if (spread.plus_minus is None) == (spread.std is None):
-            raise StudyError(f'tolerance."{key}"', spread.model_dump(), WORDS["tolerance.*"])
+            raise StudyError(f'tolerance."{key}"', {}, f"must be {WORDS['tolerance.*']}")
         _check_spread(study, key, spread)
     for table in ("objective", "constraint"):
         for key in getattr(file, table):
             if key not in FIGURES:
-                raise StudyError(f'{table}."{key}"', getattr(file, table)[key], not_a_figure(key))
+                raise StudyError(f'{table}."{key}"', {}, not_a_figure(key))
             if key == SPREAD and not _always_stated(study):
                 reason = "needs a standard deviation above 0 in the design's [uncertainty]"
                 raise StudyError(f'{table}."{key}"', {}, reason)

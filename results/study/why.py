@@ -6,9 +6,11 @@ from collections import Counter
 
 import numpy as np
 
+from flexspline.geometry.ranges import SMALLEST_NUMBER
 from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.schema import Limit
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
 from flexspline.results.study.labels import entry, valued
 
@@ -17,7 +19,9 @@ STRONG = 0.3
 AT_END = 0.02
 """Of a span: a best design so near its end would go on if it could."""
 FEWEST = 8
-"""Rows from which a rank correlation says something."""
+"""Rows from which a rank correlation says something, and beyond the dimensions a plane."""
+WORTH = 0.1
+"""Standard deviations of a figure across a whole span: less is no influence that is worth a word."""
 
 
 def influences(result: StudyResult) -> list[str]:
@@ -72,7 +76,8 @@ def limits(result: StudyResult) -> list[str]:
         low, high = span.ends
         reach = AT_END * (high - low)
         for end, name in ((low, "lower"), (high, "upper")):
-            if abs(best.values[key] - end) <= reach:
+            outward = 1 if end == high else -1
+            if abs(best.values[key] - end) <= reach and _may_help(result, key, outward):
                 q = entry(key)
                 said.append(
                     f"Design {best.slot} lies at the {name} end of its span in {q.name} "
@@ -80,12 +85,51 @@ def limits(result: StudyResult) -> list[str]:
                 )
     for key, limit in file.constraint.items():
         value = best.outcome.figures[key]
-        if -limit.excess(value) <= AT_END * limit.size:
+        if _holds(limit, value):
             q = entry(key)
             said.append(
                 f"Design {best.slot} is held by the constraint on {q.name} ({q.with_unit(value)})."
             )
     return said
+
+
+def _may_help(result: StudyResult, key: str, outward: int) -> bool:
+    """Whether a wider span may hold a better design: an objective gains that way, or a constraint eases.
+
+    By the slopes of a plane through all designs built, every dimension in its span's width and every figure
+    in its scatter. True where they are too few for a plane.
+    """
+    rows, file = result.built, result.study.file
+    keys = list(file.vary)
+    if len(rows) < len(keys) + FEWEST:
+        return True
+    x = np.array([[r.values[k] for k in keys] for r in rows])
+    plane = np.column_stack(
+        [np.ones(len(rows)), x / np.maximum(np.ptp(x, axis=0), SMALLEST_NUMBER)]
+    )
+
+    def slope(values: list[float]) -> float:
+        """Standard deviations of a figure per width of the span, outward."""
+        y = np.array(values)
+        fitted = np.linalg.lstsq(plane, y, rcond=None)[0]
+        return outward * float(fitted[1 + keys.index(key)]) / max(float(y.std()), SMALLEST_NUMBER)
+
+    gains = [
+        slope([r.outcome.figures[k] for r in rows]) * (1 if goal == "maximize" else -1)
+        for k, goal in file.objective.items()
+    ]
+    best = result.pareto[0].outcome.figures
+    eases = [
+        -slope([limit.excess(r.outcome.figures[k]) for r in rows])
+        for k, limit in file.constraint.items()
+        if _holds(limit, best[k])
+    ]
+    return any(s > WORTH for s in (*gains, *eases))
+
+
+def _holds(limit: Limit, value: float) -> bool:
+    """Whether a constraint holds a design with this figure back."""
+    return -limit.excess(value) <= AT_END * limit.size
 
 
 def disagreement(check: Check) -> str:

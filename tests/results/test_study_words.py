@@ -15,9 +15,10 @@ from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
 from flexspline.results.study.report import study_document
-from flexspline.results.study.why import disagreement, influences, misses, unfollowed
+from flexspline.results.study.why import disagreement, influences, limits, misses, unfollowed
 
 WALL = "flexspline.wall_thickness_mm"
+LENGTH = "flexspline.length_mm"
 FLAG = "wave_generator_peak_at_excluded_border"
 K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
 STUDY = f"""
@@ -53,6 +54,40 @@ def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
 
 def test_where_something_is_allowed_nothing_is_missed() -> None:
     assert misses(result_of(STUDY.replace("300.0", "310.0"))) == []
+
+
+def at_an_end(objective: str) -> StudyResult:
+    """All designs allowed; stiffness rises with the wall, and the best lies at the span's upper end."""
+    text = (
+        STUDY.replace("300.0", "900.0").replace("90.0", "900.0").replace("max = 0.5", "max = 0.48")
+    )
+    return result_of(text.replace(f'"{K}" = "maximize"', objective))
+
+
+def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
+    (said,) = limits(at_an_end(f'"{K}" = "maximize"'))
+    assert "upper end of its span in wall thickness" in said
+
+
+def test_a_wider_span_is_not_named_where_the_objective_falls_towards_it() -> None:
+    """Two dimensions; the objective gains with one and falls with the other, whose end the best happens
+    to lie at."""
+    text = (
+        STUDY.replace("300.0", "900.0")
+        .replace("90.0", "900.0")
+        .replace("[objective]", f'"{LENGTH}" = {{ min = 20.0, max = 30.0 }}\n[objective]')
+    )
+    study = study_from(tomllib.loads(text), Path(__file__).parents[2] / "examples", "test")
+    places = [(i / 11, (5 * i % 12) / 11) for i in range(12)]
+    places[-1] = (1.0, 1.0)
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.2 * w, LENGTH: 20 + 10 * x},
+            Outcome({K: 3e4 + 100 * w - 8 * x, STRESS: 300.0 + i, TOTAL: 85.0}))
+        for i, (w, x) in enumerate(places)
+    )  # fmt: skip
+    said = limits(StudyResult(study, rows))
+    assert len(said) == 1
+    assert "wall thickness" in said[0]
 
 
 def test_without_an_objective_the_usual_figures_are_followed() -> None:
