@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
-from flexspline.results.diagnosis.words import title_of
+from flexspline.results.diagnosis.words import channel_words, title_of
 
 CONFIRMS = {
     "youngs_modulus": "a tensile or resonance test of the same bar gives E directly",
@@ -13,6 +13,19 @@ CONFIRMS = {
     "load_zone": "specimens with another ring width, which the lobes feel most",
 }
 """What confirms a cause that specimens show."""
+
+SHOWS_STRUCTURE = {
+    "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; what "
+    "repeats belongs to the gear, and how it grows with the amplitude says what it may be",
+    "torque_amplitude": "sweep to a quarter, half and all of the largest torque, each twice",
+    "torque_rate": "repeat the sweep ten times slower and ten times faster",
+    "temperature_C": "repeat the sweep at three temperatures, soaked, wave generator untouched",
+    "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+    "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
+    "cycle": "run twenty further cycles at constant temperature",
+    "unit": "measure the units again in another order, each clamped anew",
+}
+"""What shows structure in a channel, everything else held."""
 
 
 def why(after: NextMeasurement, kind: MeasurementKind) -> str:
@@ -26,8 +39,8 @@ def why(after: NextMeasurement, kind: MeasurementKind) -> str:
 
 def _of_sweep(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
-        where = f"{after.vary} ({after.where})"
-        return f"the structure lies in {where}: vary it alone, everything else held"
+        where = f" ({after.where})" if after.where else ""
+        return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
         return f"to confirm {cause.title}: {cause.reveals}"
@@ -36,6 +49,10 @@ def _of_sweep(after: NextMeasurement) -> str:
         return f"to tell {titles}: {cause.reveals}"
     apart = f"their predictions then differ by {after.separation:.0f} times the noise"
     return f"{after.doing}: {apart}; it tells {titles}"
+
+
+def _alone(channel: str) -> str:
+    return SHOWS_STRUCTURE.get(channel, "vary it alone, everything else held")
 
 
 def _of_end_points(after: NextMeasurement) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.results.diagnosis.advice import why
-from flexspline.results.diagnosis.data_used import calibrated_sentence
+from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
@@ -42,7 +42,9 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
             f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
         )
     if diagnosis.calibration is not None:
-        lines += _wrapped(calibrated_sentence(diagnosis.calibration, diagnosis.prediction))
+        lines += _wrapped(
+            calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome.verdict)
+        )
     gain = outcome.gain
     if gain is not None:
         lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")

@@ -6,6 +6,7 @@ from typing import Any
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.outcome import Verdict
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.results.diagnosis.reading import columns_record, form_record
@@ -59,7 +60,7 @@ def _calibrated(calibration: Calibration) -> dict[str, float]:
     return record
 
 
-def calibrated_sentence(calibration: Calibration, prediction: Prediction) -> str:
+def calibrated_sentences(calibration: Calibration, prediction: Prediction, verdict: Verdict) -> str:
     """Gap and compliance as fitted to the record, each with the simulated one."""
     gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
     parts = [f"gap {gap} arcsec"]
@@ -69,7 +70,10 @@ def calibrated_sentence(calibration: Calibration, prediction: Prediction) -> str
         )
         parts.append(f"compliance {compliance} arcsec per N·m")
     beside = ", without the effects found" if calibration.beside_effects else ""
-    return f"Calibrated on this record{beside}: {'; '.join(parts)}."
+    said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
+    if verdict == "unknown":
+        said += " An effect is unexplained and may have moved them by more than ± says."
+    return said
 
 
 def _against(measured: Estimate, simulated: float, std: float) -> str:

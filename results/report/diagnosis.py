@@ -9,7 +9,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
-from flexspline.results.diagnosis.data_used import calibrated_sentence
+from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
@@ -85,7 +85,9 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.read_as.sha256))))
     yield Paragraph(worded(compared(diagnosis, used)))
     if diagnosis.calibration is not None:
-        sentence = calibrated_sentence(diagnosis.calibration, diagnosis.prediction)
+        sentence = calibrated_sentences(
+            diagnosis.calibration, diagnosis.prediction, diagnosis.outcome.verdict
+        )
         yield Paragraph(worded(sentence))
 
 

@@ -14,6 +14,7 @@ from flexspline.results.diagnosis.words import (
     magnitude_words,
     odds_words,
     sure_words,
+    title_of,
 )
 from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData
 
@@ -42,18 +43,23 @@ def parts(shown: SweepPictureData) -> list[Part]:
     for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:
             continue
-        key = owner.removeprefix("?")
-        words = channel_words(key)
-        lines = (f"{rms:.2g} arcsec rms", f"lies in: {words}", "no known cause explains it")
-        found.append(
-            Part(
-                owner,
-                f"Without a name: structure in {words}",
-                lines,
-                shown.channel(_channel_of(owner)),
-            )
-        )
+        title, lines = _unnamed(owner, rms)
+        found.append(Part(owner, title, lines, shown.channel(_channel_of(owner))))
     return found
+
+
+def _unnamed(owner: str, rms_arcsec: float) -> tuple[str, tuple[str, ...]]:
+    """Title and lines of structure, or of a cause that the model holds and the verdict does not name."""
+    size = f"{rms_arcsec:.2g} arcsec rms"
+    if owner in known_causes():
+        return _short(f"Not named: {title_of(owner)}"), (
+            size,
+            "a trace of it;",
+            "too little to name",
+        )
+    words = channel_words(owner.removeprefix("?"))
+    lines = (size, f"lies in: {words}", "no known cause explains it")
+    return f"Without a name: structure in {words}", lines
 
 
 def _channel_of(owner: str) -> str:

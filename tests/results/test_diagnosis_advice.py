@@ -1,0 +1,25 @@
+"""What to do next where structure has no name, and what its verdict says of the calibrated figures."""
+
+import pytest
+
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.results.diagnosis.advice import SHOWS_STRUCTURE, why
+from flexspline.results.diagnosis.data_used import calibrated_sentences
+from flexspline.results.diagnosis.words import CHANNELS
+
+
+@pytest.mark.parametrize("channel", sorted({*CHANNELS, *SHOWS_STRUCTURE}))
+def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
+    said = why(NextMeasurement(channel, "find_structure", where="jumps"), "sweep")
+    assert said.startswith(f"the structure lies in {CHANNELS[channel]} (jumps): ")
+    assert "_" not in said
+
+
+def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
+    prediction = Prediction(10.0, 0.0, 70.0, 0.0)
+    calibration = Calibration(Estimate(70.0, 0.1), False, Estimate(10.0, 0.01))
+    unknown = calibrated_sentences(calibration, prediction, "unknown")
+    assert calibrated_sentences(calibration, prediction, "named") in unknown
+    assert "unexplained and may have moved them" in unknown
