@@ -1,9 +1,10 @@
 """What bolt holes and keyway of the shaft do to K_e, from one solid solve of the study's nominal design.
 
 The fast model's shaft has none. Its K_e is multiplied by K_solid/K_axisymmetric of the nominal design. The
-ratio holds there within both models' bounds; elsewhere it is an estimate, so the bounds are widened by a
-share of the holes' whole effect as well: they are theorems no longer. (The flexspline needs no such factor:
-every design's K_b has bounds of its own, `pipeline.enclosure`.)
+ratio holds there within both models' bounds, whatever the modulus; where the study changes the shaft it is
+an estimate, so the bounds are widened by a share of the holes' whole effect as well. They are theorems no
+longer. (The flexspline needs no such factor: every design's K_b has bounds of its own,
+`pipeline.enclosure`.)
 """
 
 from __future__ import annotations
@@ -41,6 +42,11 @@ def unfollowed(keys: Iterable[str]) -> tuple[str, ...]:
     return tuple(k for k in of_shaft if k.endswith(("bolt_count", *HOLES)) or ".keyway." in k)
 
 
+def drifts(keys: Iterable[str]) -> bool:
+    """Whether some of the design keys move the ratio: the shaft's dimensions or Poisson's ratio."""
+    return any(k.startswith("shaft.") or k.endswith(".poissons_ratio") for k in keys)
+
+
 def with_holes(found: Mapping[str, float], factor: Factor) -> dict[str, float]:
     """Figures with K_e and its bounds corrected, and the factor beside them."""
     return {
@@ -54,11 +60,15 @@ def with_holes(found: Mapping[str, float], factor: Factor) -> dict[str, float]:
 
 
 def holes_of(
-    design: Design, K_e: Callable[[Design], Stiffness], say: Callable[[str], None]
+    design: Design,
+    K_e: Callable[[Design], Stiffness],
+    say: Callable[[str], None],
+    drift: float = DRIFT,
 ) -> Factor | None:
     """The factor of a nominal design; `K_e` is the fast model's, without the holes.
 
-    None where the shaft has none, or where the solid solve fails, which `say` is told.
+    `drift`: share of the holes' effect, as `DRIFT`; 0 where the study leaves the shaft as it is. None where
+    the shaft has none, or where the solid solve fails, which `say` is told.
     """
     if not pierced(design):
         return None
@@ -74,4 +84,4 @@ def holes_of(
         solid.lower_Nm_per_rad / fast.upper_Nm_per_rad,
         solid.upper_Nm_per_rad / fast.lower_Nm_per_rad,
     )
-    return Factor(value, max(abs(end - value) for end in ends) + DRIFT * abs(1 - value))
+    return Factor(value, max(abs(end - value) for end in ends) + drift * abs(1 - value))

@@ -44,6 +44,11 @@ class Study:
         return frozenset(k for k in self.file.vary if is_whole(self.design, k))
 
     @property
+    def keys(self) -> tuple[str, ...]:
+        """The design keys whose values change from design to design."""
+        return (*self.file.vary, *self.file.link, *self.file.tolerance)
+
+    @property
     def asked(self) -> frozenset[str]:
         """The figures that a design must have: objectives and constraints, else the usual ones."""
         if self.file.run.method == "tolerance":

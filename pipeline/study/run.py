@@ -13,7 +13,7 @@ from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
-from flexspline.pipeline.study.holes import Factor, holes_of
+from flexspline.pipeline.study.holes import DRIFT, Factor, drifts, holes_of
 from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
@@ -45,7 +45,7 @@ def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -
     """
     stored = store.notes().get(HOLES_NOTE)
     if stored is None:
-        found = holes_of(study.design, fast_K_e, say)
+        found = holes_of(study.design, fast_K_e, say, DRIFT if drifts(study.keys) else 0.0)
         stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
         if stored is None:
             stored = asdict(found) if found else {}

@@ -147,8 +147,7 @@ def disagreement(check: Check) -> str:
 
 def unfollowed(study: Study) -> str:
     """Keys of the shaft's holes and keyway that the study changes; "" where there are none."""
-    file = study.file
-    return ", ".join(unfollowed_keys([*file.vary, *file.link, *file.tolerance]))
+    return ", ".join(unfollowed_keys(study.keys))
 
 
 def incomplete(result: StudyResult) -> str:

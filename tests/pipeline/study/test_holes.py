@@ -9,7 +9,7 @@ from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, fast_K_e, figures_of
-from flexspline.pipeline.study.holes import Factor, holes_of, unfollowed
+from flexspline.pipeline.study.holes import Factor, drifts, holes_of, unfollowed
 from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
 from flexspline.pipeline.study.verify import checked, solid_outcome
 
@@ -67,6 +67,39 @@ def nominal(tmp_path_factory: pytest.TempPathFactory) -> Figures:
     solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
     assert not solid.reason
     return plain, corrected, dict(solid.figures)
+
+
+def test_a_shaft_that_the_study_leaves_alone_has_the_solid_s_own_doubt(
+    nominal: Figures, tmp_path: Path
+) -> None:
+    """The ratio is then exact but for both models' bounds: no share of the holes' effect beside them."""
+    _, corrected, solid = nominal
+    wall = STUDY.replace("shaft.segment[0].length_mm", "flexspline.length_mm").replace(
+        "3.5", "25.0"
+    )
+    study = study_of(wall.replace("4.5", "30.0"))
+    holes = nominal_holes(study, trial_store_of(study, tmp_path), lambda line: None)
+    own = dict(figures_of(study.design, ("torsion",), holes).figures)
+    low, high = (f"K_e_bounds_Nm_per_rad[{i}]" for i in (0, 1))
+    assert low_to_high(own) < 0.5 * low_to_high(corrected)
+    assert own[low] <= solid[low]
+    assert own[high] >= solid[high]
+
+
+def low_to_high(figures: dict[str, float]) -> float:
+    return figures["K_e_bounds_Nm_per_rad[1]"] - figures["K_e_bounds_Nm_per_rad[0]"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "moved"),
+    [
+        (("flexspline.length_mm", "material.shaft.youngs_modulus_GPa"), False),
+        (("flexspline.length_mm", "shaft.segment[0].length_mm"), True),
+        (("material.flexspline.poissons_ratio",), True),
+    ],
+)
+def test_what_moves_the_ratio(keys: tuple[str, ...], moved: bool) -> None:
+    assert drifts(keys) is moved
 
 
 def agreed(fast: dict[str, float], solid: dict[str, float]) -> dict[str, bool]:
