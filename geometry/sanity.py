@@ -64,8 +64,19 @@ def _root_radius(design: Design) -> Iterator[str]:
         yield (
             f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm, but the ring's outer radius "
             f"is {ring:.4g} mm: {apart:.3g} mm apart, more than {ROOT_TOLERANCE} module = "
-            f"{allowed:.3g} mm"
+            f"{allowed:.3g} mm{_fitting_ring(design, root)}"
         )
+
+
+def _fitting_ring(design: Design, root_mm: float) -> str:
+    """The ring's thickness that puts its outside to the root, where that is no thinner than the wall."""
+    f = design.flexspline
+    fits = root_mm - f.inner_radius
+    return (
+        f"; flexspline.ring_thickness_mm = {fits:.4g} would fit"
+        if fits >= f.wall_thickness_mm
+        else ""
+    )
 
 
 def _proportions(design: Design) -> Iterator[str]:

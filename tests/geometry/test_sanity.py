@@ -10,7 +10,10 @@ from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
 
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
-    "flexspline.ring_thickness_mm": ("0.7", ("19.75", "19.9", "0.15 mm apart", "0.03 mm")),
+    "flexspline.ring_thickness_mm": (
+        "0.7",
+        ("19.75", "19.9", "0.15 mm apart", "0.03 mm", "= 0.55 would fit"),
+    ),
     # root 0.194(100 − 1.25) = 19.16 inside the tube of 38.4 mm
     "gear.module_mm": ("0.194", ("19.16", "inside the tube", "19.2 mm", "gear.module_mm")),
     "flexspline.wall_thickness_mm": ("0.15", ("0.15 / 38.4 = 0.00391", "0.005 to 0.025")),
@@ -32,6 +35,13 @@ def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
     assert len(lines) == 1
     for words in says:
         assert words in lines[0]
+
+
+def test_no_ring_thinner_than_the_wall_is_advised() -> None:
+    """Wall 0.6 and a ring of 0.7 mm: one of 0.55, the root less the inner radius, would be no ring."""
+    thick = {"flexspline.wall_thickness_mm": "0.6", "flexspline.ring_thickness_mm": "0.7"}
+    (line,) = (w for w in warnings(changed_design("xb1-40", thick)) if "tooth-root" in w)
+    assert "would fit" not in line
 
 
 @pytest.mark.parametrize("example", ["xb1-40", "hat-25", "keyed-shaft"])
