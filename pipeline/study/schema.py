@@ -56,6 +56,13 @@ class Limit(_Frozen):
         size = max(abs(x) for x in (self.min, self.max) if x is not None)
         return size if size > 1 / LARGEST else 1.0
 
+    def ends(self, low: float, high: float) -> tuple[float, float]:
+        """Its ends, those given where it has none."""
+        return (
+            low if self.min is None else float(self.min),
+            high if self.max is None else float(self.max),
+        )
+
     def excess(self, value: float) -> float:
         """How far outside, at most 0 inside; in the figure's unit."""
         over = [value - self.max] if self.max is not None else []

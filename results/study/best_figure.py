@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 SHOWN = 3
 """Designs, a row each."""
-WIDE_IN, SECTION_IN, DETAIL_IN = 9.0, 4.7, (3.0, 0.95)
+WIDE_IN, SECTION_IN, DETAIL_IN = 7.4, 3.8, (2.4, 0.76)
 """The figure's width, the sections' width, a detail's width and height."""
-ROW_IN, LEFT_IN, FOOT_IN = 1.0, 0.75, 0.75
+ROW_IN, LEFT_IN, FOOT_IN = 0.8, 0.7, 0.7
 DETAIL_WALLS = 3.2
 """A detail's height in wall thicknesses of the thickest wall shown."""
 MARGIN_MM = 0.5

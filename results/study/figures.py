@@ -105,7 +105,8 @@ def write_parallel(path: Path, result: StudyResult) -> None:
     import matplotlib as mpl
     from matplotlib.collections import LineCollection
 
-    shown = list(result.shown)
+    limits = result.study.file.constraint
+    shown = [*result.shown, *(k for k in limits if k not in result.shown)][: MOST_AXES - 1]
     keys = list(result.built[0].values)[: max(1, MOST_AXES - len(shown))]
     columns = [np.array([r.values[k] for r in result.built]) for k in keys]
     columns += [_values(result.built, k) for k in shown]
@@ -136,6 +137,11 @@ def write_parallel(path: Path, result: StudyResult) -> None:
             q = entry(key)
             for y, value, side in ((1.03, high[i], "bottom"), (-0.03, low[i], "top")):
                 axes.text(i, y, q.text(value), ha="center", va=side, fontsize=9, color=INK)
+            if key in limits and high[i] > low[i]:
+                ends = [
+                    (e - low[i]) / (high[i] - low[i]) for e in limits[key].ends(low[i], high[i])
+                ]
+                axes.plot([i, i], np.clip(ends, 0, 1), color=ACCENT, lw=5, alpha=0.3, zorder=0)
             axes.text(i, -0.13, lines_of(key), ha="center", va="top", fontsize=8.5, color=INK)
         axes.set_xlim(-0.3, len(names) - 0.7)
         axes.set_ylim(-0.02, 1.02)
@@ -144,7 +150,8 @@ def write_parallel(path: Path, result: StudyResult) -> None:
         figure.text(
             0.08, 0.955,
             f"{'red: the best; ' if best else ''}colour: {first} from low (dark) to high (bright)"
-            f"{'; grey: not allowed' if off.any() else ''}",
+            f"{'; grey: not allowed' if off.any() else ''}"
+            f"{'; bar: what a constraint allows' if limits else ''}",
             fontsize=9.5, color=INK,
         )  # fmt: skip
         save_png(figure, path)

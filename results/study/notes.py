@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from flexspline.geometry.design import Design
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
-from flexspline.pipeline.study.holes import DRIFT, pierced
+from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
@@ -92,10 +92,12 @@ def _shaft_holes(result: StudyResult) -> str:
             "K_e: of the shaft without its holes or keyway, since the solid solve that would tell their "
             "effect failed."
         )
+    moved = drifts(result.study.keys)
+    share = f" and by {100 * DRIFT:g} % of the correction" if moved else ""
     return (
         f"Holes and keyway change K_e by {_percent(100 * (factor - 1))} in the design that the study began "
         "with (one solid solve). Every design's K_e is corrected by that; its bounds are widened by what "
-        f"both solves leave open and by {100 * DRIFT:g} % of the correction, and are estimates."
+        f"both solves leave open{share}, and are estimates."
     )
 
 

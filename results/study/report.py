@@ -46,12 +46,13 @@ METHODS = {
     "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
 }
 WIDTHS = {
-    "pareto.png": 75, "best.png": 48, PICTURE: 75, "convergence.png": 75, "parallel.png": 88,
+    "pareto.png": 75, "best.png": 78, PICTURE: 75, "convergence.png": 75, "parallel.png": 88,
 }  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
     "pareto.png": "Every design built, and the front that none beats.",
-    "parallel.png": "Every design as a line over the varied dimensions and its figures.",
+    "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
+    "constraint allows.",
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
     PICTURE: "Design {first} on the wave generator, by the solid model.",
