@@ -16,6 +16,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.tooth import ring_ends, tooth_faults
+from flexspline.geometry.wave_generator import wave_generator_faults
 
 
 def check(design: Design) -> None:
@@ -38,6 +39,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from _gear_faults(design)
     yield from tooth_faults(design)
     yield from _play_faults(design)
+    yield from wave_generator_faults(design)
     yield from _solver_faults(design)
 
 

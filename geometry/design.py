@@ -17,6 +17,7 @@ from flexspline.geometry.fields import Micrometre, Percent, Table, within
 from flexspline.geometry.material import Material
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
+from flexspline.geometry.wave_generator import WaveGenerator
 
 
 class Materials(Table):
@@ -42,6 +43,9 @@ class Gear(Table):
         description="deg, α"
     )
     flank_clearance_um: Micrometre = Field(description="µm, j_bn0, along the flank's normal")
+    rated_torque_Nm: Annotated[float, within(ranges.TORQUE_Nm)] | None = Field(
+        default=None, description="N·m, T_N; default in proportion to the pitch radius cubed"
+    )
 
     @property
     def centre_distance_mm(self) -> float:
@@ -122,6 +126,7 @@ class Design(Table):
     material: Materials
     gear: Gear
     bearing: Bearing
+    wave_generator: WaveGenerator = WaveGenerator()
     load: Load
     uncertainty: Uncertainty = Uncertainty()
     solver: Solver = Solver()

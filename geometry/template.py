@@ -15,7 +15,13 @@ __all__ = ["design_text", "json_schema", "template"]
 Table = dict[str, Any]
 
 OPTIONAL: frozenset[Location] = frozenset(
-    {("shaft", "keyway"), ("material", "shaft"), ("solver", "edge_length_mm")}
+    {
+        ("shaft", "keyway"),
+        ("material", "shaft"),
+        ("gear", "rated_torque_Nm"),
+        ("wave_generator",),
+        ("solver", "edge_length_mm"),
+    }
 )
 """Written as comments: their absence means something."""
 
@@ -132,8 +138,15 @@ def _values(kind: str) -> Table:
             "teeth_circular_spline": 202,
             "pressure_angle_deg": 20.0,
             "flank_clearance_um": 3.0,
+            "rated_torque_Nm": 23.0,
         },
         "bearing": {"radial_clearance_um": 12.0, "bearing_play_model": "involute"},
+        "wave_generator": {
+            "deflection_mm": 0.2,
+            "ball_count": 23,
+            "ball_diameter_mm": 3.8,
+            "race_thickness_mm": 0.8,
+        },
         "load": {"torque_Nm": 0.5},
         "uncertainty": {
             "youngs_modulus_pct": 2.0,

@@ -13,7 +13,13 @@ from math import pi
 import numpy as np
 from skfem import condense
 
-from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import (
+    RADIAL,
+    TANGENTIAL,
+    Fixed,
+    HarmonicModel,
+    Wave,
+)
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
 from flexspline.fea.axisymmetric.space import factorised
 from flexspline.fea.types import NMM_PER_NM
@@ -80,10 +86,10 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
         wave = Wave(n, torsion=n == 0)
         twist = (peak * lobe_coefficient(n) * model.pressed("mesh", TANGENTIAL, wave))[:, None]
         if n:
-            both = _responses(model, wave, np.column_stack([push, twist]))
+            both = responses(model, wave, np.column_stack([push, twist]))
             pushed, u = both[:, :-1], both[:, -1]
         else:
-            pushed, u = _responses(model, Wave(0), push), _responses(model, wave, twist)[:, 0]
+            pushed, u = responses(model, Wave(0), push), responses(model, wave, twist)[:, 0]
         radial = Wave(n).around * spread.T @ pushed[3 * seat + RADIAL]
         harmonics.append((radial + radial.T) / 2)
         work += float(u @ twist[:, 0])
@@ -108,9 +114,11 @@ def _spread(model: HarmonicModel, seat: np.ndarray, most: int) -> np.ndarray:
     return hats / hats.sum(axis=0)
 
 
-def _responses(model: HarmonicModel, wave: Wave, loads: np.ndarray) -> np.ndarray:
-    """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held."""
-    free, _ = model.prescribed(wave, model.held("mount"))
+def responses(
+    model: HarmonicModel, wave: Wave, loads: np.ndarray, also: list[Fixed] | None = None
+) -> np.ndarray:
+    """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held, and what is `also` fixed."""
+    free, _ = model.prescribed(wave, [*model.held("mount"), *(also or [])])
     out = np.zeros_like(loads)
     inside = condense(model.stiffness(wave), I=np.flatnonzero(free), expand=False)
     out[free] = factorised(inside).solve(loads[free])

@@ -1,0 +1,121 @@
+"""A body of revolution seen from a few places: displacement there per force there, harmonic by harmonic.
+
+A `Port` is a way to push on the body's circles: nodal forces on the meridian in one direction, all of them
+together 1 N per radian. Everything repeats after half a turn (two lobes), so only even harmonics occur, and
+a point force stands at φ and at φ + π.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from flexspline.fea.axisymmetric.couplings import RADIAL, TANGENTIAL
+from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.seat import responses
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where and how the body is pushed: `weights` (count,) of the P2 numbers add up to 1."""
+
+    component: int
+    weights: np.ndarray
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """Displacement per force of p ports.
+
+    Attributes
+    ----------
+    tangential : (p,) whether a port pushes tangentially, else radially outwards.
+    harmonics : (h, p, p) amplitudes of the harmonics 0, 2, … 2(h − 1) [mm per N/rad]: radial ones go with
+        cos nφ, tangential ones with sin nφ (of n = 0: the rotation about the axis).
+    """
+
+    tangential: np.ndarray
+    harmonics: np.ndarray
+
+    @property
+    def last(self) -> int:
+        """The highest harmonic."""
+        return 2 * (len(self.harmonics) - 1)
+
+    def compliance(self, port: np.ndarray, angle: np.ndarray) -> np.ndarray:
+        """Displacement (k, k) per point force [mm/N] among points: port numbers and angles [rad], (k,) each.
+
+        A pair of forces F at φ_j and φ_j + π is (F/π)(1 + 2 Σ cos n(φ − φ_j)) N/rad; the last harmonic counts
+        once, as in a discrete Fourier series.
+        """
+        turned = self.tangential[port]
+        total = np.zeros((len(port), len(port)))
+        for i, part in enumerate(self.harmonics):
+            n = 2 * i
+            times = (1 if n in (0, self.last) else 2) / pi
+            phase = np.exp(-1j * n * angle) * np.where(turned, 1j, 1)
+            around = phase.real[:, None] * phase.real + phase.imag[:, None] * phase.imag
+            total += times * part[np.ix_(port, port)] * around
+        return total
+
+
+def condensed(
+    model: HarmonicModel, ports: Sequence[Port], last: int, loose: Sequence[Fixed] = ()
+) -> Condensed:
+    """Condense the even harmonics up to `last`; `mount` is held.
+
+    `loose`: what else is fixed in the harmonic 0, for a body without a mount.
+
+    Raises
+    ------
+    HarmonicError, RuntimeError : the body is not held.
+    """
+    if last % 2:
+        raise ValueError("the last harmonic must be even")
+    tangential = np.array([port.component == TANGENTIAL for port in ports])
+    loads = np.zeros((3 * model.space.count, len(ports)))
+    for column, port in enumerate(ports):
+        loads[port.component :: 3, column] = port.weights
+    found = []
+    for n in range(0, last + 1, 2):
+        waves = [Wave(n)] if n else [Wave(0), Wave(0, torsion=True)]
+        matrix = np.zeros((len(ports), len(ports)))
+        for wave in waves:
+            mine = np.ones(len(ports), bool) if n else tangential == wave.torsion
+            if not mine.any():
+                continue
+            pushes = loads[:, mine]
+            # a density of 1 N/rad times cos nφ has the nodal amplitude ∫ cos² nφ dφ
+            fixed = [] if n or wave.torsion else list(loose)
+            moved = responses(model, wave, wave.around * pushes, fixed)
+            block = pushes.T @ moved
+            matrix[np.ix_(mine, mine)] = (block + block.T) / 2
+        found.append(matrix)
+    return Condensed(tangential, np.stack(found))
+
+
+def even(model: HarmonicModel, patch: str, component: int) -> Port:
+    """An even traction on a straight patch; its displacement is the patch's mean."""
+    own = model.pressed(patch, RADIAL, Wave(0))[RADIAL::3]
+    return Port(component, own / own.sum())
+
+
+def along(model: HarmonicModel, patch: str, at: np.ndarray) -> list[Port]:
+    """Radial pressures on a cylinder, each a hat over z from one of `at` (m,) [mm], rising, to the next.
+
+    Raises
+    ------
+    ValueError : the mesh has no node under a hat.
+    """
+    own = model.pressed(patch, RADIAL, Wave(0))[RADIAL::3]
+    z = model.space.places[:, 1]
+    ports = []
+    for one in np.eye(len(at)):
+        weights = own * np.interp(z, at, one)
+        if not weights.sum() > 0:
+            raise ValueError(f"{patch} has too few nodes for {len(at)} places")
+        ports.append(Port(RADIAL, weights / weights.sum()))
+    return ports

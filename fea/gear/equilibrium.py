@@ -1,0 +1,152 @@
+"""Contact forces at a torque: F ≥ 0 where gaps are closed, with T their sum, springs of Hertz's law among them.
+
+The forces minimise the complementary energy ½ F·S F + Φ(F) + g·F over F ≥ 0 with −c·F = T; the rotation θ is
+the multiplier. So they are unique, and the gaps are g + c θ + S F + δ(F) ≥ 0. Solved as
+`fea.axisymmetric.lift_off` does, by Mehrotra's predictor and corrector (SIAM J. Optim. 2 (1992) 575-601), with
+the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+from flexspline.geometry.errors import ComputationError
+
+EPS = 1e-9
+"""Forces times gaps, and what gaps and torque are off by, end below this share of the largest."""
+MOST_ROUNDS = 120
+"""Gears took up to 30."""
+CENTRING = 3
+"""Mehrotra's: the target falls with this power of what the plain Newton step leaves."""
+BACK = 0.99
+"""Share of the way to the nearest bound that a step may go."""
+LOADED = 1e-6
+"""Of the largest force: what is below is not in contact."""
+
+
+class EquilibriumError(ComputationError):
+    """No equilibrium was found; the message carries the numbers."""
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """k places that can touch.
+
+    Attributes
+    ----------
+    free : (k,) gaps [mm] with no forces and θ = 0.
+    compliance : (k, k) gap per force [mm/N], symmetric, positive semidefinite.
+    turning : (k,) c: gap per rotation [mm/rad]; the forces' torque is −c·F [N·mm].
+    hertz : (k,) C [mm/N^(2/3)], 0 where there is none.
+    """
+
+    free: np.ndarray
+    compliance: np.ndarray
+    turning: np.ndarray
+    hertz: np.ndarray
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Forces (k,) [N], rotation [rad], and its slope dθ/dT [rad/(N·mm)] with forces' slopes dF/dT [1/mm]."""
+
+    torque: float
+    rotation: float
+    forces: np.ndarray
+    slope: float
+    forces_slope: np.ndarray
+
+    @property
+    def loaded(self) -> np.ndarray:
+        """(k,) which places carry."""
+        return self.forces > LOADED * self.forces.max()
+
+
+def equilibrium(at: Contacts, torque: float, start: np.ndarray | None = None) -> Equilibrium:
+    """At a torque [N·mm]; `start`: forces near the answer, or none.
+
+    Raises
+    ------
+    EquilibriumError : it did not settle, or no contact can carry that torque.
+    """
+    if torque and not (at.turning * torque < 0).any():
+        raise EquilibriumError("no tooth within reach can carry a torque")
+    forces, rotation = _settled(at, torque, start)
+    slope, forces_slope = _tangent(at, forces)
+    return Equilibrium(torque, rotation, forces, slope, forces_slope)
+
+
+def _settled(at: Contacts, torque: float, start: np.ndarray | None) -> tuple[np.ndarray, float]:
+    matrix, turning = at.compliance, at.turning
+    size = float(np.abs(at.free).max())
+    arm = float(np.abs(turning).max())
+    typical = max(size / float(matrix.diagonal().mean()), abs(torque) / arm)
+    if start is None or not start.max() > 0:
+        force, gap = np.full(len(at.free), typical), np.full(len(at.free), size)
+        rotation = 0.0
+    else:
+        typical = float(start.max())
+        force = np.maximum(start, 1e-3 * typical)
+        rotation = 0.0
+        gap = np.full(len(at.free), 1e-2 * size)
+    for _ in range(MOST_ROUNDS):
+        spring = at.hertz * force ** (2 / 3)
+        fits = at.free + rotation * turning + matrix @ force + spring
+        off, lack = gap - fits, torque + float(turning @ force)
+        both = force * gap
+        if (
+            np.abs(off).max() < EPS * size
+            and abs(lack) < EPS * arm * force.max()
+            and both.max() < EPS * size * force.max()
+        ):
+            return force, rotation
+        diagonal = gap / force + 2 / 3 * at.hertz * force ** (-1 / 3)
+        try:
+            factor = cho_factor(matrix + np.diag(diagonal), check_finite=False)
+        except LinAlgError as fault:
+            raise EquilibriumError(f"the contact forces did not settle: {fault}") from fault
+        aside = cho_solve(factor, turning)
+        weight = float(turning @ aside)
+
+        def towards(product: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+            """Newton step to forces times gaps larger by `product`, to gaps that fit and the torque."""
+            by = cho_solve(factor, product / force + off)  # noqa: B023  (called in this round only)
+            turn = (float(turning @ by) + lack) / weight  # noqa: B023
+            by = by - turn * aside  # noqa: B023
+            return by, (product - gap * by) / force, turn  # noqa: B023
+
+        push, lift, _ = towards(-both)
+        reach = _room(force, push, gap, lift)
+        left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
+        push, lift, turn = towards(left**CENTRING * both.mean() - both - push * lift)
+        reach = BACK * _room(force, push, gap, lift)
+        force, gap, rotation = force + reach * push, gap + reach * lift, rotation + reach * turn
+    raise EquilibriumError(
+        f"the contact forces did not settle in {MOST_ROUNDS} rounds: force times gap is "
+        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {EPS:.0e}"
+    )
+
+
+def _room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray) -> float:
+    """Share of a step, at most 1, that leaves forces and gaps positive."""
+    nearest = max(float((-push / force).max()), float((-lift / gap).max()))
+    return 1.0 if nearest <= 1 else 1 / nearest
+
+
+def _tangent(at: Contacts, forces: np.ndarray) -> tuple[float, np.ndarray]:
+    """dθ/dT and dF/dT while the same places stay in contact."""
+    on = np.flatnonzero(forces > LOADED * forces.max())
+    stiff = at.compliance[np.ix_(on, on)] + np.diag(
+        2 / 3 * at.hertz[on] * forces[on] ** (-1 / 3)
+    )
+    aside = np.linalg.solve(stiff, at.turning[on])
+    weight = float(at.turning[on] @ aside)
+    if not weight > 0:  # nothing that carries can turn
+        return np.inf, np.zeros_like(forces)
+    slope = 1 / weight  # S dF + c dθ = 0 and c·dF = −dT
+    found = np.zeros_like(forces)
+    found[on] = -aside * slope
+    return slope, found

@@ -1,0 +1,46 @@
+"""The outer race of the flexible bearing: a ring of rectangular section that bends and tilts, held by nothing.
+
+Ports: radial pressure on its outside at each place, as wide as the seat, then the balls' groove.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.fea.axisymmetric.couplings import AXIAL
+from flexspline.fea.axisymmetric.couplings import RADIAL
+from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
+from flexspline.fea.gear.condensed import Condensed, along, condensed, even
+from flexspline.fea.gear.rim import fine_enough
+from flexspline.fea.types import Elastic
+from flexspline.geometry.outline import Meridian, Segment
+
+
+def race_outline(outer_radius: float, thickness: float, low: float, high: float, groove: float) -> Meridian:
+    """From z = low to high [mm]; the balls touch the middle `groove` [mm] of the inside."""
+    inner, middle = outer_radius - thickness, (low + high) / 2
+    corners: list[tuple[tuple[float, float], str | None]] = [
+        ((inner, low), None),
+        ((outer_radius, low), "seat"),
+        ((outer_radius, high), None),
+        ((inner, high), None),
+        ((inner, middle + groove / 2), "groove"),
+        ((inner, middle - groove / 2), None),
+    ]
+    ends = [point for point, _ in corners[1:]] + [corners[0][0]]
+    return Meridian(
+        tuple(Segment(point, end, patch=patch) for (point, patch), end in zip(corners, ends, strict=True))
+    )
+
+
+def condensed_race(outline: Meridian, material: Elastic, places: np.ndarray, last: int) -> Condensed:
+    """Ports: the outside at each of `places` (z, mm), then the groove.
+
+    Raises
+    ------
+    MeshingError, HarmonicError
+    """
+    model = HarmonicModel(fine_enough(outline, "seat", len(places)), material)
+    still = Fixed(model.on("groove")[:1], AXIAL)  # else it could drift along the axis
+    ports = [*along(model, "seat", places), even(model, "groove", RADIAL)]
+    return condensed(model, ports, last, [still])

@@ -1,0 +1,141 @@
+"""The wave generator's flexible bearing: what a design file may say of it, and proportions for the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import asin, pi, sin
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from flexspline.geometry.bounds import span
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import SMALLEST_MM, Length, Table
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+
+FEWEST_BALLS, MOST_BALLS = 6, 200
+"""With fewer the rim is no ellipse between them; thin section bearings of a metre have some 150."""
+USUAL_BALLS = 23
+"""Of the flexible bearings in most papers on such gears."""
+BALL_SHARE = 0.20
+"""Ball's diameter over the tube's inner radius: 23 such balls leave a fifth of their circle to the cage."""
+RACE_SHARE = 0.04
+"""Outer race's thickness at the groove's bottom over the tube's inner radius: some 1.2 mm at 30 mm, read off
+drawings in papers. Not standardised; makers keep it to themselves."""
+DEFLECTION_SHARES = (0.5, 1.5)
+"""Of m(z2 − z1)/2: with less the teeth hardly meet, with more they stand on the ground of their spaces."""
+THICKEST_RACE = 0.25
+"""Of the inner radius: beyond, the race is no flexible ring."""
+
+
+class WaveGenerator(Table):
+    """The wave generator; what is left out is taken in proportion, and named with the result."""
+
+    deflection_mm: Length | None = Field(
+        default=None, description="mm, w0, radial stroke of the plug; default m(z2 - z1)/2"
+    )
+    ball_count: Annotated[int, Field(ge=FEWEST_BALLS, le=MOST_BALLS)] | None = Field(
+        default=None, description=f"number of balls; default {USUAL_BALLS}, or as many as fit"
+    )
+    ball_diameter_mm: Length | None = Field(
+        default=None, description=f"mm, default {BALL_SHARE:g} of the tube's inner radius"
+    )
+    race_thickness_mm: Length | None = Field(
+        default=None,
+        description=f"mm, outer race at its groove; default {RACE_SHARE:g} of the tube's inner radius",
+    )
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """A value [mm, or none] that the design file does not state, and where it comes from."""
+
+    key: str
+    value: float
+    why: str
+
+
+@dataclass(frozen=True)
+class FlexibleBearing:
+    """The wave generator with every dimension; lengths in mm."""
+
+    deflection: float
+    ball_count: int
+    ball_diameter: float
+    race_thickness: float
+    assumed: tuple[Assumed, ...]
+
+
+def flexible_bearing(design: Design) -> FlexibleBearing:
+    """What the design states, and proportions for the rest."""
+    given, radius = design.wave_generator, design.flexspline.inner_radius
+    assumed: list[Assumed] = []
+
+    def taken(key: str, value: float, why: str) -> float:
+        stated = getattr(given, key)
+        if stated is not None:
+            return float(stated)
+        assumed.append(Assumed(f"wave_generator.{key}", value, why))
+        return value
+
+    stroke = design.gear.centre_distance_mm
+    deflection = taken("deflection_mm", stroke, "m(z2 - z1)/2")
+    race = taken("race_thickness_mm", RACE_SHARE * radius, f"{RACE_SHARE:g} of the inner radius")
+    room = radius - race
+    wanted = given.ball_count or USUAL_BALLS
+    ball = taken(
+        "ball_diameter_mm",
+        min(BALL_SHARE * radius, largest_ball(room, wanted)),
+        f"{BALL_SHARE:g} of the inner radius, or what {wanted} balls leave room for",
+    )
+    most = most_balls(room, ball)
+    count = taken("ball_count", min(USUAL_BALLS, most), "usual, or as many as fit")
+    return FlexibleBearing(deflection, int(count), ball, race, tuple(assumed))
+
+
+def largest_ball(room: float, count: int) -> float:
+    """Diameter [mm] of `count` balls that touch each other inside a circle of radius `room` [mm]."""
+    s = sin(pi / count)
+    return 2 * room * s / (1 + s)
+
+
+def most_balls(room: float, diameter: float) -> int:
+    """How many balls have room side by side inside a circle of radius `room` [mm]; 0 for none."""
+    ratio = diameter / (2 * room - diameter) if 2 * room > diameter else 2.0
+    return int(pi / asin(ratio) * (1 + 1e-12)) if ratio <= 1 else 0
+
+
+def wave_generator_faults(design: Design) -> Iterator[DesignError]:
+    """Balls that find no room, a race that does not bend, a stroke that does not mesh."""
+    given, radius = design.wave_generator, design.flexspline.inner_radius
+    stroke, w0 = design.gear.centre_distance_mm, given.deflection_mm
+    low, high = (share * stroke for share in DEFLECTION_SHARES)
+    if w0 is not None and not low <= w0 <= high:
+        yield DesignError(
+            "wave_generator.deflection_mm",
+            w0,
+            f"must be {span(low, high, 4)} mm, {DEFLECTION_SHARES[0]:g} to {DEFLECTION_SHARES[1]:g} of "
+            f"m(z2 - z1)/2 = {stroke:.4g} mm",
+        )
+    race = given.race_thickness_mm
+    if race is not None and race > THICKEST_RACE * radius:
+        yield DesignError(
+            "wave_generator.race_thickness_mm",
+            race,
+            f"must be {span(SMALLEST_MM, THICKEST_RACE * radius, 4)} mm: up to {THICKEST_RACE:g} of the "
+            "tube's inner radius",
+        )
+        return
+    room = radius - (race if race is not None else RACE_SHARE * radius)
+    ball = given.ball_diameter_mm
+    count = given.ball_count if given.ball_count is not None else FEWEST_BALLS
+    if ball is not None and ball > (largest := largest_ball(room, count)) * (1 + 1e-12):
+        yield DesignError(
+            "wave_generator.ball_diameter_mm",
+            ball,
+            f"must be {span(SMALLEST_MM, largest, 4)} mm: {count} balls inside a race of radius "
+            f"{room:.4g} mm touch each other beyond",
+        )
