@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.face import (
         backlash,
         diagnose,
+        gear,
         predict,
         sensitivity,
         stiffness,
@@ -31,6 +32,7 @@ _PLACE = {
     "load_design": "geometry.load",
     "backlash": "pipeline.face",
     "diagnose": "pipeline.face",
+    "gear": "pipeline.face",
     "predict": "pipeline.face",
     "sensitivity": "pipeline.face",
     "stiffness": "pipeline.face",
@@ -44,6 +46,7 @@ __all__ = [
     "__version__",
     "backlash",
     "diagnose",
+    "gear",
     "load_design",
     "predict",
     "sensitivity",

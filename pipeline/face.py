@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
 from flexspline.pipeline.ellipse_peak import ellipse_field
+from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.load_cases import (
     RIM_CASES,
     RimCase,
@@ -135,6 +136,31 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     """
     used = stiffness_pair(analysis_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
+
+
+def gear(design: Design) -> GearCurve:
+    """The whole gear with its wave generator locked: torque-angle curve, K1, K2, K3, lost motion.
+
+    Returns
+    -------
+    GearCurve : `K1_Nm_per_rad` … `lost_motion_arcsec`, the loop `torque_Nm`, `angle_arcsec`, and `assumed`:
+        what the design does not state.
+
+    Raises
+    ------
+    DesignError
+    ComputationError : no mesh or no solution, or no equilibrium at a torque.
+
+    Examples
+    --------
+    Teeth that come into contact one after another make it stiffen:
+
+    >>> from flexspline import gear, load_design
+    >>> found = gear(load_design("examples/xb1-40.toml"))
+    >>> found.K1_Nm_per_rad < found.K2_Nm_per_rad < found.K3_Nm_per_rad
+    True
+    """
+    return gear_curve(analysis_context(design))
 
 
 def sensitivity(design: Design) -> tuple[Slope, ...]:

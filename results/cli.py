@@ -164,6 +164,23 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
 
 
 @app.command()
+def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
+    """The whole gear, wave generator locked: torque-angle curve, K1, K2, K3, lost motion."""
+    with answered(design):
+        job = begin(design, out)
+        from flexspline.pipeline.gear import gear_curve
+        from flexspline.results.gear import assumed_lines, gear_record, write_gear
+
+        curve = gear_curve(job.context)
+        tell_all(curve.warnings)
+        for line in assumed_lines(curve):
+            tell(line)
+        record = gear_record(job.design, curve, job.wall_s)
+        write_gear(job.folder, curve)
+        deliver(job.folder, record, json)
+
+
+@app.command()
 def export(
     design: DesignFile,
     out: Out = None,

@@ -251,6 +251,54 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Reason for that limit",
         kind="text",
     ),
+    *(
+        Quantity(
+            f"{key}_Nm_per_rad",
+            f"{key}_Nm_per_rad",
+            _STIFFNESS,
+            f"Whole gear, {name}",
+            f"K_{key[1]}",
+            digits=3,
+        )
+        for key, name in (
+            ("K1", "stiffness from 0 to T1"),
+            ("K2", "stiffness from T1 to T2"),
+            ("K3", "stiffness from T2 to rated torque"),
+        )
+    ),
+    *(
+        Quantity(key, key, "N·m", name, symbol, digits=3)
+        for key, name, symbol in (
+            ("T1_Nm", "Torque T1", "T_1"),
+            ("T2_Nm", "Torque T2", "T_2"),
+            ("rated_torque_Nm", "Rated torque", "T_N"),
+        )
+    ),
+    Quantity(
+        "lost_motion_arcsec",
+        "lost_motion_arcsec",
+        "arcsec",
+        "Lost motion, between ± 4 % of rated torque",
+        decimals=1,
+    ),
+    Quantity(
+        "teeth_in_contact", "teeth_in_contact", "", "Teeth in contact at rated torque", kind="count"
+    ),
+    *(
+        Quantity(
+            f"compliance_shares.{part}",
+            f"compliance_share_{part}",
+            "",
+            f"Share of the {name} in the compliance at rated torque",
+            decimals=3,
+        )
+        for part, name in (
+            ("flexspline", "flexspline"),
+            ("shaft", "shaft"),
+            ("teeth", "teeth"),
+            ("bearing", "bearing"),
+        )
+    ),
     Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
     Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),
     Quantity("solver.dofs", "solver_dofs", "", "Unknowns, finest mesh", kind="count"),

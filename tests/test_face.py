@@ -18,7 +18,7 @@ import flexspline
 ROOT = Path(__file__).parents[1]
 NAMES = {
     "load_design", "Design", "stiffness", "stress", "backlash", "sensitivity", "study", "diagnose",
-    "predict", "FlexsplineError", "__version__",
+    "predict", "gear", "FlexsplineError", "__version__",
 }  # fmt: skip
 ROOMS = ("geometry", "fea", "pipeline", "results")
 ERRORS = [

@@ -19,13 +19,16 @@ def point_contact(
 ) -> float:
     """C of δ = C F^(2/3) [mm/N^(2/3)].
 
-    `along`, `across`: sums of both bodies' curvatures in the two principal planes [1/mm], convex positive; both > 0.
+    `along`, `across`: sums of both bodies' curvatures in the two principal planes [1/mm], convex positive;
+    both are above 0.
     """
     total, apart = along + across, abs(along - across) / (along + across)
     ratio = _ellipticity(apart)
     m = 1 - ratio**-2
     shape = 2 * ellipk(m) / pi * (pi / (2 * ratio**2 * ellipe(m))) ** (1 / 3)
-    soft = sum((1 - e.poissons_ratio**2) / e.youngs_modulus_MPa for e in (material, other or material))
+    soft = sum(
+        (1 - e.poissons_ratio**2) / e.youngs_modulus_MPa for e in (material, other or material)
+    )
     return float(shape * (3 * soft / (2 * total)) ** (2 / 3) * total / 2)
 
 
@@ -36,7 +39,9 @@ def _ellipticity(apart: float) -> float:
         m = 1 - k**-2
         return ((k * k + 1) * ellipe(m) - 2 * ellipk(m)) / ((k * k - 1) * ellipe(m)) - apart
 
-    if apart < 1e-6:  # a circle: the formula is 0/0 there, and the shape factor differs from 1 by apart²
+    if (
+        apart < 1e-6
+    ):  # a circle: the formula is 0/0 there, and the shape factor differs from 1 by apart²
         return 1.0
     return float(brentq(excess, 1 + 1e-7, 1e4))
 

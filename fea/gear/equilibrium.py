@@ -1,9 +1,9 @@
-"""Contact forces at a torque: F ≥ 0 where gaps are closed, with T their sum, springs of Hertz's law among them.
+"""Contact forces at a torque: F ≥ 0 where gaps are closed, springs of Hertz's law among them.
 
 The forces minimise the complementary energy ½ F·S F + Φ(F) + g·F over F ≥ 0 with −c·F = T; the rotation θ is
 the multiplier. So they are unique, and the gaps are g + c θ + S F + δ(F) ≥ 0. Solved as
-`fea.axisymmetric.lift_off` does, by Mehrotra's predictor and corrector (SIAM J. Optim. 2 (1992) 575-601), with
-the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope.
+`fea.axisymmetric.lift_off` does, by Mehrotra's predictor and corrector (SIAM J. Optim. 2 (1992) 575-601),
+with the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ CENTRING = 3
 """Mehrotra's: the target falls with this power of what the plain Newton step leaves."""
 BACK = 0.99
 """Share of the way to the nearest bound that a step may go."""
-LOADED = 1e-6
-"""Of the largest force: what is below is not in contact."""
+LOADED = 1e-5
+"""Of the largest force: what is below is not in contact. Where gaps are open some 1e-8 is left."""
 
 
 class EquilibriumError(ComputationError):
@@ -139,9 +139,7 @@ def _room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray
 def _tangent(at: Contacts, forces: np.ndarray) -> tuple[float, np.ndarray]:
     """dθ/dT and dF/dT while the same places stay in contact."""
     on = np.flatnonzero(forces > LOADED * forces.max())
-    stiff = at.compliance[np.ix_(on, on)] + np.diag(
-        2 / 3 * at.hertz[on] * forces[on] ** (-1 / 3)
-    )
+    stiff = at.compliance[np.ix_(on, on)] + np.diag(2 / 3 * at.hertz[on] * forces[on] ** (-1 / 3))
     aside = np.linalg.solve(stiff, at.turning[on])
     weight = float(at.turning[on] @ aside)
     if not weight > 0:  # nothing that carries can turn

@@ -11,16 +11,11 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 
 import numpy as np
-from scipy.optimize import brentq
 
 LARGEST_WITHDRAWAL = 1.34
-"""Of w0: y = w0 (1 − cos 2φ) at 55°, where plain flanks of 20° begin to cut into each other."""
-NEAR = pi / 6
-"""Where plain flanks are meant to meet; a flank that comes closer than there farther out interferes."""
-
-
-STEPS = 200
-"""Of a search for a gap's least: parabolas are met to 1e-5."""
+"""Of the stroke: y = w0 (1 − cos 2φ) at 55°, where plain flanks of 20° begin to cut into each other."""
+STEPS = 1000
+"""Of the search for a gap's largest value: a parabola's is met to 1e-6 of it."""
 
 
 @dataclass(frozen=True)
@@ -70,26 +65,32 @@ class Mesh:
 
     @property
     def reach(self) -> float:
-        """φ [rad] up to which teeth can touch: there they leave the working depth, or plain flanks interfere."""
-        leaves = float(np.arccos(1 - LARGEST_WITHDRAWAL) / 2)
+        """φ [rad] at which teeth leave the working depth."""
+        return float(np.arccos(1 - LARGEST_WITHDRAWAL) / 2)
 
-        def nearest(phi: np.ndarray) -> np.ndarray:
-            return np.minimum(*self.free_gaps(phi, self.stroke))
+    def relief(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What is taken off the front and the back flanks at φ [mm], for the ideal rim.
 
-        least = float(nearest(np.linspace(0, NEAR, STEPS)).min())
-        far = np.linspace(NEAR, leaves, STEPS)
-        closer = np.flatnonzero(nearest(far) < least)
-        if not len(closer):
-            return leaves
-        if closer[0] == 0:
-            return NEAR
-        ends = far[closer[0] - 1], far[closer[0]]
-        return float(brentq(lambda phi: float(nearest(np.array([phi]))[0]) - least, *ends))
+        Plain flanks come closer again far from the major axis. Teeth that should run are relieved there: as
+        much as it takes that no gap is smaller than one nearer to the axis.
+        """
+        grid = np.linspace(0, self.reach, STEPS)
+        front, back = self.free_gaps(grid, self.stroke)
+        off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
+        ahead, behind = (np.interp(np.abs(phi), grid, each) for each in off)
+        # the mirror of a front flank is the back flank on the other side
+        return np.where(phi >= 0, ahead, behind), np.where(phi >= 0, behind, ahead)
 
     @property
-    def interferes(self) -> bool:
-        """Whether plain flanks would cut into each other within the working depth."""
-        return self.reach < float(np.arccos(1 - LARGEST_WITHDRAWAL) / 2) - 1e-9
+    def largest_relief(self) -> float:
+        """Within reach [mm]."""
+        return float(max(part.max() for part in self.relief(np.linspace(0, self.reach, STEPS))))
+
+    @property
+    def relieved_from(self) -> float:
+        """φ [rad] of the largest gap of the plain front flank, beyond which it is relieved."""
+        grid = np.linspace(0, self.reach, STEPS)
+        return float(grid[self.free_gaps(grid, self.stroke)[0].argmax()])
 
     def stations(self, teeth: int, most: int) -> tuple[np.ndarray, float]:
         """Angles of the teeth within reach, one of them on the major axis, and teeth per station.

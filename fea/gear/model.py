@@ -1,7 +1,7 @@
 """The gear as one contact problem: teeth on both flanks, the rim on its race, balls between race and plug.
 
-Places that can touch, in this order: front flanks, back flanks, seat (angle by angle, place by place), balls. All
-stand twice, at φ and φ + π; forces are those of one of the two, so half the torque is theirs.
+Places that can touch, in this order: front flanks, back flanks, seat (angle by angle, place by place), balls.
+All stand twice, at φ and φ + π; forces are those of one of the two, so half the torque is theirs.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from math import cos, pi, sin
 import numpy as np
 
 from flexspline.fea.gear.condensed import Condensed
-from flexspline.fea.gear.equilibrium import Contacts
+from flexspline.fea.gear.equilibrium import Contacts, Equilibrium, equilibrium
 from flexspline.fea.gear.kinematics import Mesh
 from flexspline.fea.gear.rim import FIRST_PLACE, TOOTH_RADIAL, TOOTH_TANGENTIAL
+from flexspline.fea.types import NMM_PER_NM
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,11 @@ class GearModel:
     def shares(self) -> dict[str, np.ndarray]:
         """(k, k) gap per force [mm/N] of flexspline, teeth and race."""
         k = self.balls.stop
-        found = {"flexspline": self._of_rim(), "teeth": np.zeros((k, k)), "bearing": np.zeros((k, k))}
+        found = {
+            "flexspline": self._of_rim(),
+            "teeth": np.zeros((k, k)),
+            "bearing": np.zeros((k, k)),
+        }
         flanks = np.arange(k)[self.flanks]
         found["teeth"][flanks, flanks] = self.pair / self.teeth_per_station
         if self.race:
@@ -111,10 +116,10 @@ class GearModel:
     def contacts(self) -> Contacts:
         phi, wave = self.tooth_angles, self.wave_generator
         still = np.zeros_like(phi)
-        front, back = self.mesh.gaps(phi, still, still)
+        plain, relief = self.mesh.gaps(phi, still, still), self.mesh.relief(phi)
         k = self.balls.stop
         free, turning, hertz = np.zeros(k), np.zeros(k), np.zeros(k)
-        free[self.flanks] = np.concatenate([front, back])
+        free[self.flanks] = np.concatenate(plain) + np.concatenate(relief)
         arm = self.mesh.pitch_radius * cos(self.mesh.pressure_angle)
         turning[: len(phi)], turning[len(phi) : self.flanks.stop] = -arm, arm
         if self.race:
@@ -123,13 +128,45 @@ class GearModel:
         else:
             plug = wave.play / 2 - wave.deflection * np.cos(2 * self.seat_angles)
             free[self.seat] = np.repeat(plug, self.places)
-        return Contacts(free, sum(self.shares.values()), turning, hertz)
+        return Contacts(free, sum(self.shares.values(), np.zeros((k, k))), turning, hertz)
+
+    def compliance_of(self, at: Equilibrium) -> dict[str, float]:
+        """Parts of dθ/dT [rad/(N·mm)] at an equilibrium, while the same places stay in contact; they add up.
+
+        By the energy of a small further load: dT dθ = Σ dF·C dF over flexspline, teeth and bearing.
+        """
+        change = at.forces_slope / 2  # each half takes half the torque
+        found = {part: 2 * float(change @ C @ change) for part, C in self.shares.items()}
+        ball, force = change[self.balls], at.forces[self.balls]
+        on = at.loaded[self.balls]
+        yields = 2 / 3 * self.wave_generator.hertz * force[on] ** (-1 / 3)
+        found["bearing"] += 2 * float(ball[on] ** 2 @ yields)
+        return found
+
+    def at_torque(self, torque_Nm: float, start: np.ndarray | None = None) -> Equilibrium:
+        """At a torque on the whole gear [N·m]; `Equilibrium.torque` is that of one half [N·mm].
+
+        Raises
+        ------
+        EquilibriumError
+        """
+        return equilibrium(self.contacts, torque_Nm * NMM_PER_NM / 2, start)
+
+    def teeth_loaded(self, at: Equilibrium) -> float:
+        """How many teeth of the whole gear carry on either flank."""
+        t = len(self.tooth_angles)
+        either = at.loaded[:t] | at.loaded[t : 2 * t]
+        return 2 * float(either.sum()) * self.teeth_per_station
 
     def _of_rim(self) -> np.ndarray:
         phi, a, m = self.tooth_angles, len(self.seat_angles), self.places
         t = len(phi)
         port = np.concatenate(
-            [np.full(t, TOOTH_RADIAL), np.full(t, TOOTH_TANGENTIAL), np.tile(FIRST_PLACE + np.arange(m), a)]
+            [
+                np.full(t, TOOTH_RADIAL),
+                np.full(t, TOOTH_TANGENTIAL),
+                np.tile(FIRST_PLACE + np.arange(m), a),
+            ]
         )
         angle = np.concatenate([phi, phi, np.repeat(self.seat_angles, m)])
         s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)

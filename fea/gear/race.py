@@ -1,4 +1,4 @@
-"""The outer race of the flexible bearing: a ring of rectangular section that bends and tilts, held by nothing.
+"""The outer race of the flexible bearing: a ring of rectangular section that bends and tilts.
 
 Ports: radial pressure on its outside at each place, as wide as the seat, then the balls' groove.
 """
@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.couplings import AXIAL
-from flexspline.fea.axisymmetric.couplings import RADIAL
+from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
 from flexspline.fea.gear.condensed import Condensed, along, condensed, even
 from flexspline.fea.gear.rim import fine_enough
@@ -16,7 +15,9 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import Meridian, Segment
 
 
-def race_outline(outer_radius: float, thickness: float, low: float, high: float, groove: float) -> Meridian:
+def race_outline(
+    outer_radius: float, thickness: float, low: float, high: float, groove: float
+) -> Meridian:
     """From z = low to high [mm]; the balls touch the middle `groove` [mm] of the inside."""
     inner, middle = outer_radius - thickness, (low + high) / 2
     corners: list[tuple[tuple[float, float], str | None]] = [
@@ -29,11 +30,16 @@ def race_outline(outer_radius: float, thickness: float, low: float, high: float,
     ]
     ends = [point for point, _ in corners[1:]] + [corners[0][0]]
     return Meridian(
-        tuple(Segment(point, end, patch=patch) for (point, patch), end in zip(corners, ends, strict=True))
+        tuple(
+            Segment(point, end, patch=patch)
+            for (point, patch), end in zip(corners, ends, strict=True)
+        )
     )
 
 
-def condensed_race(outline: Meridian, material: Elastic, places: np.ndarray, last: int) -> Condensed:
+def condensed_race(
+    outline: Meridian, material: Elastic, places: np.ndarray, last: int
+) -> Condensed:
     """Ports: the outside at each of `places` (z, mm), then the groove.
 
     Raises

@@ -61,8 +61,12 @@ def _at_pitch_point(surface: Condensed, lift: float) -> Condensed:
 
 
 def fine_enough(outline: Meridian, patch: str, places: int) -> MeridianMesh:
-    """The first mesh, halved until the patch has two edges for each place."""
+    """The first mesh refined once, then on until the patch has two edges for each place.
+
+    A further refinement moves K1 to K3 of xb1-40 by 0.2 to 0.3 %.
+    """
     mesh = triangulate(outline)
+    mesh = refined(mesh, np.ones(mesh.elements, bool))
     while np.isin(mesh.edge_segment, mesh.segments_of(patch)).sum() < 2 * places:
         mesh = refined(mesh, np.ones(mesh.elements, bool))
     return mesh

@@ -1,8 +1,8 @@
 """How far a pair of teeth yields along the normal of its flanks [mm/N].
 
 Two straight-sided teeth loaded at the pitch point: bending, shear and compression of the tooth as a beam of
-variable section, its root in an elastic half plane (Cornell, J. Mech. Des. 103 (1981) 447-459, plane strain), and
-the contact of the flanks (Yang and Sun, J. Mech. Transm. Autom. Des. 107 (1985) 529-535).
+variable section, its root in an elastic half plane (Cornell, J. Mech. Des. 103 (1981) 447-459, plane strain),
+and the contact of the flanks (Yang and Sun, J. Mech. Transm. Autom. Des. 107 (1985) 529-535).
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ POINTS = 16
 """Of the Gauss rule up the tooth; the integrands are smooth."""
 
 
-def tooth(lever: float, thickness: float, pressure_angle: float, width: float, material: Elastic) -> float:
+def tooth(
+    lever: float, thickness: float, pressure_angle: float, width: float, material: Elastic
+) -> float:
     """Of one tooth [mm/N].
 
     Parameters
@@ -36,9 +38,7 @@ def tooth(lever: float, thickness: float, pressure_angle: float, width: float, m
     y, w = lever * (x + 1) / 2, lever * w / 2
     t = thickness + 2 * y * tan(pressure_angle)
     moment = c * y - s * thickness / 2
-    beam = (
-        moment**2 * 12 / (plane * t**3) + SHEAR * c * c / (material.mu * t) + s * s / (plane * t)
-    )
+    beam = moment**2 * 12 / (plane * t**3) + SHEAR * c * c / (material.mu * t) + s * s / (plane * t)
     slender = lever / (thickness + 2 * lever * tan(pressure_angle))
     root = (
         16.67 / pi * slender**2

@@ -1,0 +1,116 @@
+"""From a design to the contact model of the whole gear: every law with its numbers."""
+
+from __future__ import annotations
+
+from math import pi, radians
+
+from flexspline.fea.gear.ball import ball_between_races
+from flexspline.fea.gear.kinematics import Mesh
+from flexspline.fea.gear.model import GearModel, WaveGenerator
+from flexspline.fea.gear.race import condensed_race, race_outline
+from flexspline.fea.gear.rim import condensed_rim, places_along
+from flexspline.fea.gear.tooth_pair import flank_contact, tooth
+from flexspline.fea.threads import one_thread
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
+
+LAST_HARMONIC = 48
+"""96 move K1 to K3 of xb1-40 by 0.2 %, 144 by 0.3 %."""
+PLACES = 5
+"""Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %."""
+MOST_STATIONS = 128
+"""Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K1 by 2.5 %."""
+BEARING_STEEL = Elastic(208e3, 0.3)
+"""100Cr6, of races and balls: E = 208 GPa (maker's data sheets)."""
+CONFORMITY = 0.52
+"""Groove radius over ball diameter, usual in deep groove bearings (Harris and Kotzalas, chapter 2)."""
+GROOVE_SHARE = 0.3
+"""Width on which a ball presses on its race, over its diameter: the contact spreads through the race. Half
+of it moves K by up to 0.5 %."""
+
+
+LEAST_LEVER = 0.2
+"""Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
+
+
+def gear_model(design: Design, flexspline: Part) -> GearModel:
+    """The gear without its shaft and bolt holes.
+
+    `flexspline` is the design's, but for drawn teeth, which are the plain ring as stiff.
+
+    Raises
+    ------
+    DesignError : the bearing's play takes the whole stroke.
+    ComputationError : no mesh or no solution.
+    """
+    bearing, gear = flexible_bearing(design), design.gear
+    play = design.bearing.radial_clearance_um / 1e3
+    if play / 2 >= bearing.deflection:
+        raise DesignError(
+            "bearing.radial_clearance_um",
+            design.bearing.radial_clearance_um,
+            f"must be below {2e3 * bearing.deflection:.4g} µm: twice the wave generator's stroke",
+        )
+    part, shape = flexspline.without_holes(), flexspline.shape
+    assert not isinstance(shape, Shaft)
+    material = Elastic.of(part.material)
+    pitch = gear.module_mm * gear.teeth_flexspline / 2
+    places = places_along(shape.ring_start, shape.ring_end, PLACES)
+    middle = (shape.inner_radius + shape.ring_radius) / 2
+    more = gear.teeth_circular_spline - gear.teeth_flexspline
+    mesh = Mesh(
+        pitch_radius=pitch,
+        lag=more / gear.teeth_circular_spline,
+        stroke=gear.centre_distance_mm,
+        clearance=gear.flank_clearance_um / 1e3,
+        pressure_angle=radians(gear.pressure_angle_deg),
+        height=(pitch - middle) / middle,
+    )
+    with one_thread():
+        rim = condensed_rim(part.meridian, material, pitch, places, LAST_HARMONIC)
+        groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
+        race = condensed_race(
+            race_outline(
+                shape.inner_radius, bearing.race_thickness, shape.ring_start, shape.ring_end, groove
+            ),
+            BEARING_STEEL,
+            places,
+            LAST_HARMONIC,
+        )
+    return GearModel(
+        mesh,
+        _wave_generator(bearing, shape.inner_radius, play),
+        rim,
+        race,
+        pair_compliance(design),
+        gear.teeth_flexspline,
+        MOST_STATIONS,
+    )
+
+
+def _wave_generator(bearing: FlexibleBearing, inner_radius: float, play: float) -> WaveGenerator:
+    hertz = ball_between_races(
+        bearing.ball_diameter, inner_radius - bearing.race_thickness, CONFORMITY, BEARING_STEEL
+    )
+    return WaveGenerator(bearing.deflection, play, even(bearing.ball_count), hertz)
+
+
+def even(balls: int) -> int:
+    """The next even number: two lobes share the balls evenly."""
+    return balls + balls % 2
+
+
+def pair_compliance(design: Design) -> float:
+    """Of a tooth of the flexspline and one alike of the circular spline, at the pitch point [mm/N]."""
+    f, gear = design.flexspline, design.gear
+    pitch = gear.module_mm * gear.teeth_flexspline / 2
+    material = Elastic.of(design.material.flexspline)
+    lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
+    one = tooth(
+        lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), f.ring_width_mm, material
+    )
+    return 2 * one + flank_contact(f.ring_width_mm, material)

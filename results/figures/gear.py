@@ -1,0 +1,67 @@
+"""The whole gear's torque-angle curve with the catalogue's three slopes, and loads over teeth and balls."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from flexspline.pipeline.gear import GearCurve
+from flexspline.results.quantities import quantity
+from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
+
+
+def write_gear_angle(path: Path, curve: GearCurve) -> None:
+    """θ(T) with K1, K2 and K3 as the chords that they are."""
+    torque, angle = np.array(curve.torque_Nm), np.array(curve.angle_arcsec)
+    with styled():
+        figure = new_figure(8.0, 4.6)
+        axes = figure.add_axes((0.11, 0.13, 0.86, 0.77))
+        axes.axhline(0, color=MUTED, lw=0.8)
+        axes.axvline(0, color=MUTED, lw=0.8)
+        axes.plot(torque, angle, color=PALETTE[0], lw=2.2)
+        for end, key in (
+            (curve.T1_Nm, "T1"),
+            (curve.T2_Nm, "T2"),
+            (curve.rated_torque_Nm, "rated"),
+        ):
+            at = float(np.interp(end, *_rising(torque, angle)))
+            axes.plot([end], [at], "o", color=ACCENT, ms=5)
+            axes.annotate(key, (end, at), xytext=(-4, 6), textcoords="offset points", ha="right")
+        words = "\n".join(
+            f"{name} {quantity(f'{name}_Nm_per_rad').with_unit(getattr(curve, f'{name}_Nm_per_rad'))}"
+            for name in ("K1", "K2", "K3")
+        )
+        axes.text(0.97, 0.06, words, transform=axes.transAxes, ha="right", va="bottom")
+        axes.set_title("Whole gear, wave generator locked")
+        axes.set_xlabel("Torque in N·m")
+        axes.set_ylabel("Angle in arcsec")
+        axes.grid(True)
+        save_png(figure, path)
+
+
+def write_gear_loads(path: Path, curve: GearCurve) -> None:
+    """Forces of teeth and balls over the angle from the major axis, at rated torque, one lobe."""
+    ball_angle = (np.array(curve.ball_angle_deg) + 90) % 180 - 90  # one half turn about the lobe
+    with styled():
+        figure = new_figure(8.0, 5.2)
+        teeth, balls = np.array(curve.tooth_angle_deg), ball_angle
+        forces = (
+            ("Force of a pair of teeth in N", teeth, np.array(curve.tooth_force_N), 1.2),
+            ("Force of a ball in N", balls, np.array(curve.ball_force_N), 5.0),
+        )
+        for i, (title, angle, force, width) in enumerate(forces):
+            axes = figure.add_axes((0.11, 0.59 - 0.47 * i, 0.86, 0.32))
+            axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
+            axes.set_title(title)
+            axes.set_xlim(-92, 92)
+            axes.set_xticks(range(-90, 91, 30))
+            axes.grid(True, axis="y")
+        axes.set_xlabel("Angle from the major axis in degrees, rated torque")
+        save_png(figure, path)
+
+
+def _rising(torque: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The first branch, 0 to rated torque."""
+    last = int(torque.argmax()) + 1
+    return torque[:last], angle[:last]

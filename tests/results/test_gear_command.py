@@ -1,0 +1,111 @@
+"""`flexspline gear`: keys, files, what is assumed, and one line for what cannot be built."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexspline
+from flexspline.geometry.wave_generator import flexible_bearing
+from flexspline.pipeline.gear import GearCurve
+from flexspline.results.gear import gear_record, write_gear
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(
+    # a shaft without holes is solved on its meridian: this is no test of tetrahedra
+    {"shaft.bolt_count": 0, "gear.rated_torque_Nm": 20.0}
+)
+
+
+@pytest.fixture(scope="module")
+def curve() -> GearCurve:
+    return flexspline.gear(DESIGN)
+
+
+def test_the_contract_s_keys(curve: GearCurve) -> None:
+    record = json.loads(json.dumps(gear_record(DESIGN, curve, 1.0)))
+    assert {
+        "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "lost_motion_arcsec",
+        "teeth_in_contact", "compliance_shares",
+    } <= set(record)  # fmt: skip
+    assert "hysteresis_loss_arcsec" not in record
+    assert set(record["compliance_shares"]) == {"flexspline", "shaft", "teeth", "bearing"}
+    assert sum(record["compliance_shares"].values()) == pytest.approx(1)
+    assert (record["T1_Nm"], record["T2_Nm"]) == pytest.approx((3.0, 10.0))
+
+
+def test_it_stiffens_and_turns_both_ways_alike(curve: GearCurve) -> None:
+    assert curve.K1_Nm_per_rad < curve.K2_Nm_per_rad < curve.K3_Nm_per_rad
+    torque, angle = np.array(curve.torque_Nm), np.array(curve.angle_arcsec)
+    order = np.argsort(torque, kind="stable")
+    assert (
+        np.diff(angle[order]).min() > -1e-3
+    )  # loading and unloading settle to 1e-9 of the largest gap
+    assert angle[order] == pytest.approx(-angle[order][::-1], abs=1e-4)
+    # rated to T2 is K3's chord
+    rad = np.radians(np.interp([10.0, 20.0], torque[:10], angle[:10]) / 3600)
+    assert 10.0 / np.diff(rad)[0] == pytest.approx(curve.K3_Nm_per_rad)
+
+
+def test_lost_motion_holds_the_clearance_of_the_flanks(curve: GearCurve) -> None:
+    """j_bn0/(r_p cos α) of a bearing without play; play and wind-up come on top."""
+    flanks = flexspline.backlash(DESIGN, K_b=1e9, K_e=1e9).flank_clearance_arcsec
+    assert curve.lost_motion_arcsec > flanks
+    tight = {"bearing.radial_clearance_um": 0.0, "gear.flank_clearance_um": 0.0}
+    assert flexspline.gear(DESIGN.changed(tight)).lost_motion_arcsec < curve.lost_motion_arcsec
+
+
+def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
+    keys = [a.key for a in curve.assumed]
+    assert keys == [f"wave_generator.{key}" for key in (
+        "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")]  # fmt: skip
+    stated = DESIGN.changed({a.key: a.value for a in curve.assumed})
+    assert flexible_bearing(stated).assumed == ()
+    assert flexspline.gear(stated).K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
+
+
+def test_files(curve: GearCurve, tmp_path: Path) -> None:
+    write_gear(tmp_path, curve)
+    with (tmp_path / "torque_angle.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(curve.torque_Nm)
+    assert float(rows[9]["torque_Nm"]) == pytest.approx(20.0)
+    assert float(rows[9]["angle_arcsec"]) == pytest.approx(curve.angle_arcsec[9])
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png"}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"wave_generator.deflection_mm": 0.02}, "must be from 0.1 to 0.3 mm"),
+        ({"wave_generator.race_thickness_mm": 9.0}, "must be from 0.001 to 4.8 mm"),
+        ({"wave_generator.ball_count": 40, "wave_generator.ball_diameter_mm": 3.8}, "40 balls"),
+        ({"wave_generator.ball_count": 3}, "from 6 to 200"),
+        ({"gear.rated_torque_Nm": 0.0}, "rated_torque_Nm"),
+    ],
+)
+def test_what_cannot_be_built_is_refused_in_one_line(changes: dict, says: str) -> None:
+    with pytest.raises(flexspline.FlexsplineError, match=says) as fault:
+        DESIGN.changed(changes)
+    assert "\n" not in str(fault.value)
+
+
+def test_the_range_that_is_told_works() -> None:
+    crowd = {"wave_generator.ball_count": 40}
+    with pytest.raises(flexspline.FlexsplineError) as fault:
+        DESIGN.changed({**crowd, "wave_generator.ball_diameter_mm": 3.8})
+    largest = float(str(fault.value).split(" mm: 40 balls")[0].split()[-1])
+    assert DESIGN.changed({**crowd, "wave_generator.ball_diameter_mm": largest})
+
+
+def test_play_beyond_the_stroke_is_refused() -> None:
+    loose = DESIGN.changed(
+        {"bearing.bearing_play_model": "small_displacement", "bearing.radial_clearance_um": 400.0}
+    )
+    with pytest.raises(flexspline.FlexsplineError, match="must be below 400 µm"):
+        flexspline.gear(loose)
