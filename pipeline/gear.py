@@ -1,9 +1,9 @@
 """The whole gear with its wave generator locked: θ(T), and what the makers' catalogues say of such a curve.
 
-K1 is the chord from 0 to T1, K2 from T1 to T2, K3 from T2 to rated torque, as in the makers' catalogues; "0"
-is a thousandth of rated torque: a clearance that the teeth first cross is not booked as softness. Lost motion is
-the whole twist between ± 4 % of rated torque, clearance included. Friction is left out: loading and unloading
-are one curve.
+K1 is the chord from 0 to T1, K2 from T1 to T2, K3 from T2 to rated torque, as in the makers'
+catalogues; "0" is a thousandth of rated torque: a clearance that the teeth first cross is not
+booked as softness. Lost motion is the whole twist between ± 4 % of rated torque, clearance
+included. Friction is left out: loading and unloading are one curve.
 """
 
 from __future__ import annotations
