@@ -1,4 +1,7 @@
-"""Where the command begins and ends: little is loaded here, so that an early Ctrl-C is answered too."""
+"""Where the command begins and ends: little is loaded here, so that an early Ctrl-C is answered too.
+
+A request to end (SIGTERM: a job scheduler, a container that stops) is answered as Ctrl-C is.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,20 @@ import signal
 import sys
 
 INTERRUPTED = 130
-"""Exit status, as shells have it: 128 and the signal's number."""
+TERMINATED = 143
+"""Exit statuses, as shells have them: 128 and the signal's number."""
 
 
 def main() -> None:
     """Entry point of the console script."""
+    asked: list[int] = []
+
+    def end(number: int, frame: object) -> None:
+        asked.append(number)
+        raise KeyboardInterrupt
+
     try:
+        signal.signal(signal.SIGTERM, end)
         from flexspline.results.streams import readable_streams
 
         with readable_streams():
@@ -22,8 +33,13 @@ def main() -> None:
                 app()
     except KeyboardInterrupt:
         print("flexspline: interrupted", file=sys.stderr)
-        raise SystemExit(INTERRUPTED) from None
+        raise SystemExit(TERMINATED if asked else INTERRUPTED) from None
+    except SystemExit as ended:
+        if asked and ended.code == INTERRUPTED:
+            raise SystemExit(TERMINATED) from None
+        raise
     finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to be told about
 
 

@@ -176,8 +176,13 @@ def test_wrong_design_writes_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [design]
 
 
-def test_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
-    env = os.environ | {"FLEXSPLINE_CACHE": str(tmp_path / "cache")}
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_request_to_stop_leaves_no_half_written_file(
+    number: signal.Signals, status: int, tmp_path: Path
+) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    env = os.environ | {"FLEXSPLINE_CACHE": str(tmp_path / "cache"), "TMPDIR": str(scratch)}
     process = subprocess.Popen(
         [sys.executable, "-m", "flexspline.results.cli", "run", str(CUP), "--out", str(tmp_path / "out")],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env,
@@ -186,13 +191,14 @@ def test_interrupt_leaves_no_half_written_file(tmp_path: Path) -> None:
         if "mesh of the flexspline" in line:
             break
     time.sleep(0.5)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     _, rest = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == status
     assert "interrupted" in rest
     assert "Traceback" not in rest
     assert not (tmp_path / "out").exists()
     assert not list(tmp_path.rglob("*.part"))
+    assert not list(scratch.iterdir())
 
 
 @pytest.mark.parametrize("kind", ["cup", "hat"])
