@@ -125,6 +125,8 @@ def _answer(content: ReportContent) -> Iterable[Block]:
     )  # fmt: skip
     if fatigue := limits.fatigue(content):
         yield Paragraph(fatigue)
+    if any(name.startswith("K_b_lobes") for name in content.stiffnesses):
+        yield Paragraph(_which(content.design.solver.load_case))
     if count := len(content.warnings):
         said = "warning" if count == 1 else f"{count} warnings"
         yield Callout(
@@ -133,6 +135,24 @@ def _answer(content: ReportContent) -> Iterable[Block]:
             + ref("warnings")
             + bold(" before using these figures."),
         )
+
+
+def _which(load_case: str) -> Words:
+    """Which of the flexspline's stiffnesses is for what."""
+    resting, free = (
+        symbol(quantity(f"K_b_lobes_{case}_Nm_per_rad").symbol)
+        for case in ("contact", "unsupported")
+    )
+    return (
+        *plain("Which stiffness of the flexspline to use: teeth bring the torque in at the two lobes, and "
+               "the rim only rests on the wave generator, so "),
+        *resting,
+        *plain(" is nearest to a mounted gear. The uniform case is the stiffest; it compares parts. "),
+        *free,
+        *plain(" shows how much the wave generator carries. No case holds the compliance of teeth, "
+               "wave-generator bearing and bolts, which make a gear softer. The backlash sum uses the case "
+               f"“{load_case}” (solver.load_case)."),
+    )  # fmt: skip
 
 
 def _stress(content: ReportContent, roomy: bool) -> Iterable[Block]:
