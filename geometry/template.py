@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from flexspline.geometry.design import Design
@@ -24,6 +24,8 @@ OPTIONAL: frozenset[Location] = frozenset(
     }
 )
 """Written as comments: their absence means something."""
+
+NO_REASONS: Mapping[Location, str] = {}
 
 # The cup is that of examples/xb1-40.toml; the hat has the same tube, shorter.
 _STEEL = {
@@ -101,6 +103,8 @@ _HAT_SHAFT: Table = {
 
 _FIRST: dict[str, tuple[Table, Table]] = {"cup": (_CUP, _CUP_SHAFT), "hat": (_HAT, _HAT_SHAFT)}
 """Flexspline and shaft of each kind."""
+MODELS = {"cup": "examples/xb1-40.toml", "hat": "`flexspline init hat`"}
+"""Which design the first of a kind is."""
 
 
 def template(kind: str = "cup") -> str:
@@ -110,11 +114,13 @@ def template(kind: str = "cup") -> str:
     ------
     DesignError : no such kind.
     """
-    if kind not in _FIRST:
-        known = " or ".join(f'"{k}"' for k in _FIRST)
-        raise DesignError("kind", kind, f"must be {known}")
     title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
-    lines = [title, *_lines((), _values(kind), kind, OPTIONAL, optional=False)]
+    return text_of(title, first_values(kind), kind, {})
+
+
+def text_of(title: str, values: Table, kind: str, why: Mapping[Location, str]) -> str:
+    """Text of a design file with these tables, every key with its meaning and why it has its value."""
+    lines = [title, *_lines((), values, kind, OPTIONAL, optional=False, why=why)]
     return "\n".join(lines) + "\n"
 
 
@@ -125,7 +131,16 @@ def design_text(design: Design) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _values(kind: str) -> Table:
+def first_values(kind: str) -> Table:
+    """The tables of the first design of a kind.
+
+    Raises
+    ------
+    DesignError : no such kind.
+    """
+    if kind not in _FIRST:
+        known = " or ".join(f'"{k}"' for k in _FIRST)
+        raise DesignError("kind", kind, f"must be {known}")
     flexspline, shaft = _FIRST[kind]
     return {
         "name": f"my {kind}",
@@ -164,14 +179,21 @@ def _values(kind: str) -> Table:
 
 
 def _lines(
-    location: Location, table: Table, kind: str, hidden: frozenset[Location], optional: bool
+    location: Location,
+    table: Table,
+    kind: str,
+    hidden: frozenset[Location],
+    optional: bool,
+    why: Mapping[Location, str] = NO_REASONS,
 ) -> Iterator[str]:
     """The table's own keys, then the tables below it, as TOML wants them; `hidden` as comments."""
     for key, value in table.items():
         if not isinstance(value, dict | list):
             off = "# " if optional or (*location, key) in hidden else ""
             setting = f"{off}{key} = {_toml(value)}"
-            yield f"{setting:<36} # {_meaning((*location, key), kind)}"
+            reason = why.get((*location, key))
+            assumed = f"; assumed: {reason}" if reason else ""
+            yield f"{setting:<36} # {_meaning((*location, key), kind)}{assumed}"
     for key, value in table.items():
         below = (*location, key)
         off = "# " if optional or below in hidden else ""
@@ -180,11 +202,11 @@ def _lines(
             if any(not isinstance(v, dict) for v in value.values()):  # [material] holds tables only
                 yield ""
                 yield f"{off + f'[{name}]':<36} # {_about(below, kind)}"
-            yield from _lines(below, value, kind, hidden, bool(off))
+            yield from _lines(below, value, kind, hidden, bool(off), why)
         elif isinstance(value, list):
             for i, item in enumerate(value):
                 yield f"{off + f'[[{name}]]':<36} # {_about((*below, i), kind)}"
-                yield from _lines((*below, i), item, kind, hidden, bool(off))
+                yield from _lines((*below, i), item, kind, hidden, bool(off), why)
 
 
 def _about(location: Location, kind: str) -> str:

@@ -19,6 +19,7 @@ from flexspline.fea.gear.model import GearModel
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.design import Design
+from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import Assumed, flexible_bearing
 from flexspline.pipeline import revolved
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
@@ -27,9 +28,6 @@ from flexspline.pipeline.gear_model import even, gear_model
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
-RATED_Nm_per_mm3 = 2.9e-3
-"""Rated torque over the pitch radius cubed: the median of sizes 14, 17, 20 and 25 at ratio 100, which have
-1.8, 3.1, 3.2 and 2.7 (10, 31, 52 and 87 N·m at 17.78, 21.59, 25.40 and 31.75 mm; CSG catalogue)."""
 T1_SHARE, T2_SHARE = 0.15, 0.50
 """Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in those four sizes."""
 LOST_MOTION_SHARE = 0.04
@@ -190,17 +188,6 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         ball_angle_deg=tuple(np.degrees(model.wave_generator.angles).tolist()),
         ball_force_N=tuple(full.forces[model.balls].tolist()),
     )
-
-
-def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
-    """T_N [N·m], and the assumption where the design states none."""
-    stated = design.gear.rated_torque_Nm
-    if stated is not None:
-        return stated, ()
-    pitch = design.gear.module_mm * design.gear.teeth_flexspline / 2
-    value = RATED_Nm_per_mm3 * pitch**3
-    why = f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes"
-    return value, (Assumed("gear.rated_torque_Nm", value, why),)
 
 
 def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -> list[str]:

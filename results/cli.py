@@ -256,12 +256,24 @@ def predict(
 @app.command()
 def init(
     kind: Annotated[str, typer.Argument(metavar="[cup|hat]", help="Kind of flexspline.")] = "cup",
+    size: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Of a catalogue: in proportion, assumptions marked."),
+    ] = None,
+    ratio: Annotated[
+        int | None, typer.Option(metavar="I", help="Reduction, with a size; default 100.")
+    ] = None,
 ) -> None:
     """Print a commented design file to start from."""
     with answered():
+        from flexspline.geometry.errors import DesignError
+        from flexspline.geometry.sized import sized_template
         from flexspline.geometry.template import template
 
-        show(template(kind).removesuffix("\n"))
+        if size is None and ratio is not None:
+            raise DesignError("--ratio", ratio, "needs a --size, such as 25")
+        text = template(kind) if size is None else sized_template(kind, size, ratio or 100)
+        show(text.removesuffix("\n"))
 
 
 @app.command()

@@ -1,0 +1,31 @@
+"""Rated torque where a design states none: in proportion to the pitch radius cubed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flexspline.geometry.wave_generator import Assumed
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+
+RATED_Nm_per_mm3 = 2.9e-3
+"""The median of sizes 14, 17, 20 and 25 at ratio 100, which have 1.8, 3.1, 3.2 and 2.7 (10, 31, 52 and 87 N·m
+at 17.78, 21.59, 25.40 and 31.75 mm; Schaeffler TPI 275, examples/catalogue/)."""
+RATED_WHY = (
+    f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes"
+)
+
+
+def rated_in_proportion(pitch_radius_mm: float) -> float:
+    """[N·m] of a pitch radius."""
+    return RATED_Nm_per_mm3 * pitch_radius_mm**3
+
+
+def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
+    """T_N [N·m], and the assumption where the design states none."""
+    stated = design.gear.rated_torque_Nm
+    if stated is not None:
+        return stated, ()
+    value = rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
+    return value, (Assumed("gear.rated_torque_Nm", value, RATED_WHY),)

@@ -1,0 +1,106 @@
+"""A first design for a catalogue's size and ratio: the first design of its kind in proportion.
+
+Makers keep inner dimensions to themselves. Sizes are the pitch diameter in tenths of an inch (size
+25 has a pitch radius of 31.75 mm at all ratios, size 14 17.78; as in Schaeffler's TPI 275), and the
+ratio with the circular spline held is z1/(z2 − z1). Everything else is the kind's first design,
+scaled by the pitch radius.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import Range
+from flexspline.geometry.rated import RATED_WHY, rated_in_proportion
+from flexspline.geometry.schema import Location
+from flexspline.geometry.template import MODELS, Table, first_values, text_of
+
+PITCH_RADIUS_PER_SIZE_mm = 1.27
+"""Half of a tenth of an inch."""
+SIZES = Range(3, 200)
+"""Catalogues go from 3 to 100; twice that is the largest built."""
+RATIOS = Range(30, 320)
+"""As catalogues; with fewer teeth the rim must bend too far, with more a module is beyond making."""
+DEDENDUM = 1.25
+"""Of the standard basic rack (ISO 53), in modules: where the ring ends."""
+DIGITS = 4
+"""Significant ones of a length: closer than any tolerance of ISO 2768-f."""
+LOAD_SHARE = 0.04
+"""Of rated torque: where makers measure lost motion."""
+
+Why = dict[Location, str]
+
+
+def sized_template(kind: str, size: float, ratio: int) -> str:
+    """Text of a design that loads as it stands; every assumed value says where it comes from.
+
+    Raises
+    ------
+    DesignError : no such kind, size or ratio.
+    """
+    values, why = sized_values(kind, size, ratio)
+    title = (
+        f"# A strain wave gear with a {kind}, size {size:g}, ratio {ratio}. Catalogues hide inside sizes:\n"
+        f'# what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
+    )
+    return text_of(title, values, kind, why)
+
+
+def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
+    """The design file's tables, and where each assumed value comes from; errors as `sized_template`."""
+    for option, value, allowed in (("--size", size, SIZES), ("--ratio", ratio, RATIOS)):
+        if value not in allowed:
+            raise DesignError(option, value, f"must be {allowed}")
+    first = first_values(kind)
+    gear = first["gear"]
+    was, pitch = gear["module_mm"] * gear["teeth_flexspline"] / 2, PITCH_RADIUS_PER_SIZE_mm * size
+    why: Why = {}
+    values = _scaled(first, (), pitch / was, was, why)
+    flexspline, gear = values["flexspline"], values["gear"]
+    module = _rounded(pitch / ratio)
+    values["name"] = f"{kind} of size {size:g}, ratio {ratio}"
+    gear |= {
+        "module_mm": module,
+        "teeth_flexspline": 2 * ratio,
+        "teeth_circular_spline": 2 * ratio + 2,
+    }
+    why[("gear", "module_mm")] = f"pitch radius {pitch:g} mm over the ratio, two lobes"
+    inner = 2 * (module * (ratio - DEDENDUM) - flexspline["ring_thickness_mm"])
+    flexspline["inner_diameter_mm"] = _rounded(inner, DIGITS + 1)
+    why[("flexspline", "inner_diameter_mm")] = f"root m(z1/2 - {DEDENDUM:g}) less the ring"
+    part = module / first["gear"]["module_mm"]
+    for table, key in (("gear", "flank_clearance_um"), ("bearing", "radial_clearance_um")):
+        values[table][key] = _rounded(first[table][key] * part)
+        values["uncertainty"][key] = _rounded(first["uncertainty"][key] * part)
+        for place in (table, "uncertainty"):
+            why[(place, key)] = (
+                f"{first[place][key] / first['gear']['module_mm'] / 1e3:.3g} modules"
+            )
+    rated = rated_in_proportion(pitch)
+    gear["rated_torque_Nm"] = _rounded(rated, 3)
+    why[("gear", "rated_torque_Nm")] = RATED_WHY
+    values["load"]["torque_Nm"] = _rounded(LOAD_SHARE * rated, 3)
+    why[("load", "torque_Nm")] = (
+        f"{LOAD_SHARE:.0%} of rated torque, where makers measure lost motion"
+    )
+    wave = values["wave_generator"]
+    wave["deflection_mm"] = module
+    return values, why
+
+
+def _scaled(table: Table, location: Location, factor: float, was: float, why: Why) -> Any:
+    """Lengths times a factor, all else as it is; `was`: the pitch radius that they belong to [mm]."""
+    if isinstance(table, list):
+        return [_scaled(each, (*location, i), factor, was, why) for i, each in enumerate(table)]
+    if not isinstance(table, dict):
+        key = str(location[-1])
+        if not key.endswith("_mm") or key == "edge_length_mm" or not table:
+            return table
+        why[location] = f"{table / was:.3g} of the pitch radius"
+        return _rounded(table * factor)
+    return {key: _scaled(value, (*location, key), factor, was, why) for key, value in table.items()}
+
+
+def _rounded(value: float, digits: int = DIGITS) -> float:
+    return float(f"{value:.{digits}g}")

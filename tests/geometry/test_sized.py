@@ -1,0 +1,56 @@
+"""A design for a catalogue's size: it loads, is as large as the catalogue says, and marks what it assumes."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+import pytest
+
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
+from flexspline.geometry.sanity import warnings
+from flexspline.geometry.sized import sized_template, sized_values
+
+
+@pytest.mark.parametrize("kind", ["cup", "hat"])
+@pytest.mark.parametrize(("size", "ratio"), [(8, 30), (14, 50), (25, 100), (58, 160), (100, 320)])
+def test_every_size_loads_without_a_warning(kind: str, size: float, ratio: int) -> None:
+    text = sized_template(kind, size, ratio)
+    for each in (text, re.sub(r"(?m)^# (?=\[|\w+ = )", "", text)):  # with its optional keys, too
+        design = design_from(tomllib.loads(each))
+        gear = design.gear
+        ratio_found = gear.teeth_flexspline / (gear.teeth_circular_spline - gear.teeth_flexspline)
+        assert ratio_found == ratio
+        assert gear.module_mm * gear.teeth_flexspline / 2 == pytest.approx(1.27 * size, rel=1e-3)
+        assert warnings(design) == ()
+
+
+def test_the_pitch_radii_of_a_catalogue() -> None:
+    """Schaeffler TPI 275: 17.78, 21.59, 25.40, 31.75 mm at sizes 14, 17, 20, 25."""
+    for size, radius in ((14, 17.78), (17, 21.59), (20, 25.40), (25, 31.75)):
+        gear = design_from(tomllib.loads(sized_template("cup", size, 100))).gear
+        assert gear.module_mm * gear.teeth_flexspline / 2 == pytest.approx(radius, rel=1e-3)
+
+
+def test_every_assumed_value_says_so_where_it_stands() -> None:
+    text = sized_template("cup", 25, 100)
+    _, why = sized_values("cup", 25, 100)
+    marked = [line for line in text.splitlines() if "; assumed: " in line]
+    assert len(marked) == len(why)
+    lengths = re.findall(r"(?m)^\w+_mm = (?!0\.0 ).*$", text)
+    assert lengths
+    assert all("; assumed: " in line for line in lengths if not line.startswith("edge_length"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "ratio", "says"),
+    [
+        ("cup", 1.0, 100, "--size = 1.0: must be from 3 to 200"),
+        ("cup", 25.0, 10, "--ratio = 10: must be from 30 to 320"),
+        ("pancake", 25.0, 100, 'must be "cup" or "hat"'),
+    ],
+)
+def test_what_no_catalogue_has_is_refused(kind: str, size: float, ratio: int, says: str) -> None:
+    with pytest.raises(DesignError, match=re.escape(says)):
+        sized_template(kind, size, ratio)
