@@ -76,4 +76,6 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
         first_cycle=cycle,
         first_time_s=time,
     )
-    return model_text(diagnosis.model, provenance, diagnosis.outcome.causes, diagnosis.outcome.gain)
+    outcome, sweep = diagnosis.outcome, diagnosis.sweep
+    doubt = sweep.doubt if sweep is not None else None
+    return model_text(diagnosis.model, provenance, outcome.causes, outcome.gain, doubt)

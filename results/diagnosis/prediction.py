@@ -1,10 +1,10 @@
-"""What `flexspline predict` does: the input's columns, and the predicted angle beside them."""
+"""What `flexspline predict` does: the input's columns, the predicted angle and its deviation beside them."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,7 @@ from flexspline.results.atomic import write_bytes
 from flexspline.results.records import as_json
 
 PREDICTION = "prediction.csv"
-COLUMN = "angle_predicted_arcsec"
+COLUMN, STD_COLUMN = "angle_predicted_arcsec", "angle_std_arcsec"
 
 
 def predict_and_write(
@@ -45,33 +45,42 @@ def predict_and_write(
         )
     for line in predicted.warnings:
         tell(f"warning: {one_line(line)}")
-    angle = predicted.angle_arcsec
-    write_bytes(
-        folder / PREDICTION, with_column(torque, angle, predicted.read_as.decimal_mark).encode()
-    )
+    if predicted.angle_std_arcsec is None:
+        tell(
+            "note: no deviations: only a model of a torque sweep says what its angles may be off by"
+        )
+    angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
+    added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})
+    text = with_columns(torque, added, predicted.read_as.decimal_mark)
+    write_bytes(folder / PREDICTION, text.encode())
     if json:
-        return as_json({"angle_arcsec": angle.tolist()})
-    return (
-        f"{len(angle)} rows, {angle.min():.6g} to {angle.max():.6g} arcsec\n{folder / PREDICTION}"
-    )
+        record = {"angle_arcsec": angle.tolist()}
+        return as_json(record | ({"angle_std_arcsec": std.tolist()} if std is not None else {}))
+    off = "" if std is None else f", ± {std.min():.3g} to {std.max():.3g} (one standard deviation)"
+    said = f"{len(angle)} rows, {angle.min():.6g} to {angle.max():.6g} arcsec{off}"
+    return f"{said}\n{folder / PREDICTION}"
 
 
-def with_column(path: Path, angle_arcsec: np.ndarray, decimal_mark: str = ".") -> str:
-    """The file's rows as they stand, comments left out, with the predicted angle as last column.
+def with_columns(
+    path: Path, added_arcsec: Mapping[str, np.ndarray], decimal_mark: str = "."
+) -> str:
+    """The file's rows as they stand, comments left out, with further columns (n,) at their end.
 
     Separator, decimal mark and row of units stay the file's own; a workbook's sheet is written with commas
-    and points. A column of that name, from an earlier prediction, is replaced.
+    and points. Columns of an earlier prediction are replaced.
     """
     table = read_grid(path)  # it was there a moment ago
     separator = table.separator or ","
     comma = separator != "," and decimal_mark == ","
-    at = [i for i, name in enumerate(table.head) if name != COLUMN]
+    at = [i for i, name in enumerate(table.head) if name not in (COLUMN, STD_COLUMN)]
     out = io.StringIO()
     writer = csv.writer(out, delimiter=separator, lineterminator="\n")
-    writer.writerow([*(table.head[i] for i in at), COLUMN])
+    writer.writerow([*(table.head[i] for i in at), *added_arcsec])
     if table.unit_row:
-        writer.writerow([*(table.unit_row[i] for i in at), "arcsec"])
-    for row, angle in zip(table.rows, angle_arcsec, strict=True):
-        text = f"{angle:.6f}"
-        writer.writerow([*(row[i] for i in at), text.replace(".", ",") if comma else text])
+        writer.writerow([*(table.unit_row[i] for i in at), *("arcsec" for _ in added_arcsec)])
+    for row, *values in zip(table.rows, *added_arcsec.values(), strict=True):
+        texts = [f"{value:.6f}" for value in values]
+        writer.writerow(
+            [*(row[i] for i in at), *(t.replace(".", ",") if comma else t for t in texts)]
+        )
     return out.getvalue()

@@ -106,10 +106,12 @@ def test_a_prediction_keeps_the_file_s_form(excel: Path) -> None:
     done = flexspline("predict", CUP, "--model", model, excel, "--out", out, "--json")
     assert done.exit_code == 0, done.stderr
     lines = (out / "prediction.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0].endswith("Notiz;angle_predicted_arcsec")
-    assert lines[1].endswith(";arcsec")
-    written = [float(s.rpartition(";")[2].replace(",", ".")) for s in lines[2:]]
-    np.testing.assert_allclose(written, json.loads(done.stdout)["angle_arcsec"], atol=1e-6)
+    assert lines[0].endswith("Notiz;angle_predicted_arcsec;angle_std_arcsec")
+    assert lines[1].endswith(";arcsec;arcsec")
+    written = [[float(t.replace(",", ".")) for t in s.split(";")[-2:]] for s in lines[2:]]
+    said = json.loads(done.stdout)
+    for i, name in enumerate(("angle_arcsec", "angle_std_arcsec")):
+        np.testing.assert_allclose([w[i] for w in written], said[name], atol=1e-6)
     again = out / "prediction.csv"  # what is written can be read
     done = flexspline("predict", CUP, "--model", model, again, "--out", out)
     assert done.exit_code == 0, done.stderr

@@ -13,6 +13,8 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Shape
 from flexspline.pipeline.diagnosis.measurement.errors import ModelFileError
 from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
+from flexspline.pipeline.diagnosis.model.doubt import Doubt
+from flexspline.pipeline.diagnosis.model.doubt_file import read_doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
     CALIBRATED,
@@ -24,6 +26,7 @@ from flexspline.pipeline.diagnosis.model.model_keys import (
     OWN,
     PROVENANCE,
     TOP,
+    TOP_OPTIONAL,
     UNIT,
     Refuse,
     check,
@@ -63,11 +66,12 @@ class Provenance:
 
 @dataclass(frozen=True)
 class ModelFile:
-    """A model and where it comes from."""
+    """A model, where it comes from, and what its predictions may be off by (None: the file does not say)."""
 
     path: Path
     model: ExtendedModel
     provenance: Provenance
+    doubt: Doubt | None = None
 
 
 def read_model_file(path: Path) -> ModelFile:
@@ -83,7 +87,7 @@ def read_model_file(path: Path) -> ModelFile:
     def refuse(reason: str) -> ModelFileError:
         return ModelFileError(path, reason)
 
-    check(data, TOP, {"cause": (list,)}, "the model", lambda r: refuse(f"no extended model: {r}"))
+    check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"no extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
     origin, calibrated = data["provenance"], data["calibrated"]
@@ -121,7 +125,9 @@ def read_model_file(path: Path) -> ModelFile:
     )
     given = {key: origin[key] for key in PROVENANCE}
     cycle, time = ({name: float(u[key]) for name, u in units.items() if key in u} for key in ORIGIN)
-    return ModelFile(path, model, Provenance(**given, first_cycle=cycle, first_time_s=time))
+    provenance = Provenance(**given, first_cycle=cycle, first_time_s=time)
+    doubt = read_doubt(data["doubt"], model, refuse) if "doubt" in data else None
+    return ModelFile(path, model, provenance, doubt)
 
 
 def _toml(path: Path) -> dict[str, Any]:

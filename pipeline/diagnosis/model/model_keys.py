@@ -12,6 +12,7 @@ Refuse = Callable[[str], ModelFileError]
 Keys = dict[str, tuple[type, ...]]
 NUMBER = (int, float)
 TOP: Keys = {"format": (int,), "provenance": (dict,), "calibrated": (dict,), "unit": (list,)}
+TOP_OPTIONAL: Keys = {"cause": (list,), "doubt": (dict,)}
 PROVENANCE: Keys = {
     "program": (str,), "design": (str,), "measurement": (str,), "measurement_sha256": (str,),
     "verdict": (str,), "K_b_Nm_per_rad": NUMBER, "K_e_Nm_per_rad": NUMBER,
@@ -30,6 +31,13 @@ ELEMENT: Keys = {"amplitudes": (list,), "shape": (dict,)}
 GAIN: Keys = {
     "held_out": (str,), "rmse_before": NUMBER, "rmse_calibrated": NUMBER, "rmse_after": NUMBER,
     "noise_floor": NUMBER, "unit": (str,),
+}  # fmt: skip
+DOUBT: Keys = {
+    "reading_arcsec": NUMBER, "torque_noise_Nm": NUMBER, "covariance": (list,), "measured": (dict,),
+}  # fmt: skip
+MEASURED: Keys = {"torque_Nm": (list,)}
+MEASURED_OPTIONAL: Keys = {
+    "rate_Nm_per_s": NUMBER, "temperature_C": (list,), "input_angle_deg": (list,),
 }  # fmt: skip
 NAMES = {int: "a whole number", str: "text", bool: "true or false", list: "a list", dict: "a table"}
 

@@ -9,6 +9,8 @@ from flexspline.geometry.toml_text import quoted
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.model.doubt import Doubt
+from flexspline.pipeline.diagnosis.model.doubt_file import doubt_lines
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import FORMAT, Provenance
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
@@ -26,11 +28,13 @@ def model_text(
     provenance: Provenance,
     found: Sequence[NamedCause] = (),
     gain: Gain | None = None,
+    doubt: Doubt | None = None,
 ) -> str:
     """The file's text; `found` and `gain` are told beside the numbers that predict."""
     name = one_line(provenance.design)
     lines = [f"# Extended model of {name}, written by {provenance.program}.", ABOUT]
     lines += [f"format = {FORMAT}", "", *_provenance(provenance, gain), *_calibrated(model)]
+    lines += doubt_lines(doubt) if doubt is not None else []
     for unit, zero in model.zeros_arcsec.items():
         lines += _unit(unit, zero, provenance, model.own.get(unit))
     told = {c.id: c for c in found}

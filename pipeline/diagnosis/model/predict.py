@@ -12,6 +12,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHistory, history_of
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
+from flexspline.pipeline.diagnosis.model.doubt import deviation_of
+from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
 
@@ -21,11 +23,18 @@ CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
 
 @dataclass(frozen=True)
 class Predicted:
-    """`angle_arcsec` (n,), what the reader should know about it, one line each, and how the file was read."""
+    """What a model says of a history.
+
+    Attributes
+    ----------
+    angle_arcsec : (n,). warnings : what the reader should know about it, one line each.
+    angle_std_arcsec : (n,) one standard deviation of a reading from it; None where the model does not say.
+    """
 
     angle_arcsec: np.ndarray
     warnings: tuple[str, ...]
     read_as: ReadAs = AS_OURS
+    angle_std_arcsec: np.ndarray | None = None
 
 
 def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = None) -> Predicted:
@@ -56,7 +65,11 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
     told = f"unit {', '.join(strange)}: " if any(strange) else ""
     warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []
-    return Predicted(angle, tuple(warnings), table.read_as)
+    if file.doubt is None:
+        return Predicted(angle, tuple(warnings), table.read_as)
+    deviation = deviation_of(file.model, file.doubt, history, found.units)
+    warnings += extrapolated(deviation, file.doubt.span, history)
+    return Predicted(angle, tuple(warnings), table.read_as, deviation.std_arcsec)
 
 
 def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:

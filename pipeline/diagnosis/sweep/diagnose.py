@@ -29,6 +29,7 @@ from flexspline.pipeline.diagnosis.decision import Decision, decided
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.measurement.torque_program import holds
+from flexspline.pipeline.diagnosis.model.doubt import Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -55,11 +56,13 @@ FEWEST_HOLDS = 3
 class SweepAnalysis:
     """What stands behind the verdict on a sweep, with all that a figure or a report needs.
 
-    `model` is the calibrated simulation with the causes found; `tests` are of what it leaves.
+    `model` is the calibrated simulation with the causes found, `doubt` what its predictions may be off by;
+    `tests` are of what it leaves.
     """
 
     explained: ExplainedSweep
     model: ExtendedModel
+    doubt: Doubt
     tests: tuple[ChannelTest, ...]
 
 
@@ -91,15 +94,16 @@ def diagnose_sweep(
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
     ids = [c.id for c in decision.causes]
+    gain = gain_of(explained, ids)
     outcome = DiagnosisOutcome(
         decision.verdict,
         decision.causes,
         decision.unexplained,
-        gain_of(explained, ids),
+        gain,
         next_measurement(explained, decision),
     )
-    model = written_model(explained, sweep, ids)
-    return outcome, SweepAnalysis(explained, model, tuple(tests))
+    written = written_model(explained, sweep, ids, gain)
+    return outcome, SweepAnalysis(explained, written.model, written.doubt, tuple(tests))
 
 
 def _too_little(sweep: Sweep) -> str | None:

@@ -70,13 +70,22 @@ def settling(history: History) -> np.ndarray:
     What a friction element remembers from before the record is not known; the first far turn wipes it
     out. Only where most of the record remains.
     """
+    out = before_far_turn(history)
+    for rows in history.unit_slices:
+        if out[rows].sum() >= SETTLING_SHARE * len(rows):
+            out[rows] = False
+    return out
+
+
+def before_far_turn(history: History) -> np.ndarray:
+    """(n,) rows before a unit's torque first turns far from zero; all where it never does."""
     direction = rising(history, deadband_Nm(history) + 1e-9)
     far = SETTLED_AT * np.abs(history.torque_Nm).max()
-    out = np.zeros(len(history), bool)
+    out = np.ones(len(history), bool)
     for rows in history.unit_slices:
         turned = [i for i in _turns(direction[rows]) if abs(history.torque_Nm[rows[i]]) > far]
-        if turned and turned[0] < SETTLING_SHARE * len(rows):
-            out[rows[: turned[0]]] = True
+        if turned:
+            out[rows[turned[0] :]] = False
     return out
 
 

@@ -3,14 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
+from flexspline.pipeline.diagnosis.model.span import span_of
+from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 
 
-def written_model(explained: ExplainedSweep, sweep: Sweep, named: Collection[str]) -> ExtendedModel:
+@dataclass(frozen=True)
+class WrittenModel:
+    """The model, and what its predictions may be off by."""
+
+    model: ExtendedModel
+    doubt: Doubt
+
+
+def written_model(
+    explained: ExplainedSweep, sweep: Sweep, named: Collection[str], gain: Gain | None
+) -> WrittenModel:
     """The calibrated simulation with the named causes, by the best set's shapes.
 
     Where the best set has nuisance terms or minor causes beside them, zeros, stiffness, gap and amplitudes
@@ -20,4 +37,39 @@ def written_model(explained: ExplainedSweep, sweep: Sweep, named: Collection[str
     evidence, terms = identified.search.evidence, identified.best.terms
     kept = tuple(i for i in terms if (c := evidence.terms[i].cause) is not None and c.id in named)
     fit = identified.fit if kept == tuple(terms) else fit_regressors(evidence, kept)
-    return model_of(fit, sweep, list(named), explained.offset_Nm)
+    model = model_of(fit, sweep, list(named), explained.offset_Nm)
+    noise = explained.identified.fit.residual_as_read()[explained.prepared.kept]
+    floor = float(np.sqrt(np.mean(noise**2)))
+    doubt = Doubt(
+        max(floor, gain.rmse_after) if gain else floor,
+        torque_noise_Nm(sweep.history),
+        _covariance(fit, model),
+        span_of(sweep.history),
+    )
+    return WrittenModel(model, doubt)
+
+
+def _covariance(fit: SweepFit, model: ExtendedModel) -> np.ndarray:
+    """(p, p) of the model's parameters in the order of `model.doubt.parameter_columns`.
+
+    An element that the fit did not estimate has zeros. (0, 0) where there are too many.
+    """
+    k = fit.units
+    at = list(range(k + 2 + (2 * k if k > 1 else 0)))
+    place = fit.posterior.base_count
+    fitted: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
+    for i in fit.posterior.terms:
+        term = fit.evidence.terms[i]
+        width = term.at.stop - term.at.start
+        if term.cause is not None:
+            key = term.cause.id, tuple(sorted(term.shape.items()))
+            fitted[key] = list(range(place, place + width))
+        place += width
+    for cause_id, elements in model.elements.items():
+        for e in elements:
+            key = cause_id, tuple(sorted(e.shape.items()))
+            at += fitted.get(key, [-1] * len(e.amplitudes))
+    if len(at) > MOST_PARAMETERS:
+        return np.empty((0, 0))
+    chosen, known = np.array(at), np.array(at) >= 0
+    return np.where(np.outer(known, known), fit.posterior.covariance[np.ix_(chosen, chosen)], 0.0)

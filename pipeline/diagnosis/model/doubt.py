@@ -1,0 +1,115 @@
+"""How far a reading may be from what an extended model predicts, row by row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, beyond, clipped
+from flexspline.pipeline.diagnosis.sweep.row_selection import before_far_turn
+
+FRICTION = "friction_hysteresis"
+BEYOND_THE_EDGE = 0.5
+"""Of what a cause adds beyond the most that it adds within what was measured: laws that agree inside go apart
+outside. A cubic and a quadratic hardening, each fitted to the other, differ by 0.4 and 0.6 of that at one
+and a half times the record's largest torque."""
+MOST_PARAMETERS = 120
+"""Of a covariance in a file: sixty thousand letters. Many units: a zero, a stiffness and a gap each."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What a model's predictions may be off by.
+
+    Attributes
+    ----------
+    reading_arcsec : rms error on rows of the record that were not used for fitting, the reading's noise
+        among it; where none could be spared, that noise. torque_noise_Nm : of the torque reading.
+    covariance : (p, p) of the parameters in the order of `parameter_columns`; (0, 0): too many to be kept.
+    span : what was measured; predictions beyond are extrapolated.
+    """
+
+    reading_arcsec: float
+    torque_noise_Nm: float
+    covariance: np.ndarray
+    span: MeasuredSpan
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """`std_arcsec` (n,) of a reading from its prediction; `rows_beyond`: rows outside, by channel."""
+
+    std_arcsec: np.ndarray
+    rows_beyond: dict[str, int]
+
+
+def parameter_columns(model: ExtendedModel, history: History, units: tuple[str, ...]) -> np.ndarray:
+    """(n, p) what one of each parameter adds to the angle.
+
+    In this order: the zeros; compliance; gap; each unit's own compliance and gap; the amplitudes of each
+    cause's elements.
+    """
+    true = model.true_history(history)
+    of_unit = [
+        np.isin(true.unit, [u for u, given in enumerate(units) if given == name]).astype(float)
+        for name in model.zeros_arcsec
+    ]
+    torque, side = true.torque_Nm, true.sign / 2
+    own = [column for rows in of_unit for column in (rows * torque, rows * side)]
+    columns = [*of_unit, torque, side, *(own if model.own else [])]
+    blocks = [np.column_stack(columns)]
+    for cause_id, elements in model.elements.items():
+        blocks += [known_causes()[cause_id].columns(e.shape, true) for e in elements]
+    return np.hstack(blocks)
+
+
+def parameter_count(model: ExtendedModel) -> int:
+    """The p of `parameter_columns`."""
+    amplitudes = sum(len(e.amplitudes) for of in model.elements.values() for e in of)
+    units = len(model.zeros_arcsec)
+    return units + 2 + (2 * units if model.own else 0) + amplitudes
+
+
+def deviation_of(
+    model: ExtendedModel, doubt: Doubt, history: History, units: tuple[str, ...]
+) -> Deviation:
+    """How far readings of a history may be from the model's angles: one standard deviation.
+
+    Independent parts: the error on rows that were held out; the parameters' posterior covariance; until
+    torque first turns far from zero half the width of the friction's loop, whose state is not known; near
+    T = 0 the torque's noise, which puts a row on the wrong side of the gap g with the probability
+    Φ(−|T|/σ_T), a square of g²Φ on average; beyond what was measured a share of what the causes add there.
+    Outside, all but the last grow in proportion to the distance.
+    """
+    from scipy.special import ndtr
+
+    variance = np.full(len(history), doubt.reading_arcsec**2)
+    if len(doubt.covariance):
+        columns = parameter_columns(model, history, units)
+        variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
+    true = model.true_history(history)
+    if doubt.torque_noise_Nm > 0:
+        wrong = ndtr(-np.abs(true.torque_Nm) / doubt.torque_noise_Nm)
+        variance += model.gap_arcsec**2 * wrong
+    if FRICTION in model.elements:
+        width = known_causes()[FRICTION].angle_arcsec(model.elements[FRICTION], true)
+        variance += before_far_turn(true) * np.abs(width).max() ** 2
+    outside = beyond(doubt.span, history)
+    growth = 1 + sum(outside.values())
+    std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * _over(model, doubt.span, true)) ** 2)
+    counts = {channel: int((far > 0).sum()) for channel, far in outside.items()}
+    return Deviation(std, {channel: n for channel, n in counts.items() if n})
+
+
+def _over(model: ExtendedModel, span: MeasuredSpan, true: History) -> np.ndarray:
+    """(n,) angle [arcsec] that the causes add beyond the most that each adds within the span."""
+    inside, total = clipped(span, true), np.zeros(len(true))
+    for cause_id, elements in model.elements.items():
+        cause = known_causes()[cause_id]
+        most = np.abs(cause.angle_arcsec(elements, inside)).max()
+        total += np.maximum(np.abs(cause.angle_arcsec(elements, true)) - most, 0.0)
+    return total

@@ -1,0 +1,102 @@
+"""What predictions may be off by, in extended_model.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.model.doubt import Doubt, parameter_count
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.model_keys import (
+    DOUBT,
+    MEASURED,
+    MEASURED_OPTIONAL,
+    Refuse,
+    check,
+    is_number,
+)
+from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan
+
+ABOUT = """\
+[doubt]   # one standard deviation of a reading from its prediction
+reading_arcsec = {reading}   # rms error on rows not used for fitting, the reading's noise among it
+torque_noise_Nm = {noise}
+# covariance of zeros, compliance, gap, each unit's own compliance and gap, and all amplitudes below, in the
+# order of this file; lower triangle
+covariance = ["""
+
+
+def doubt_lines(doubt: Doubt) -> list[str]:
+    """Lines of the table [doubt]."""
+    lines = [ABOUT.format(reading=repr(doubt.reading_arcsec), noise=repr(doubt.torque_noise_Nm))]
+    lines += [
+        f"  [{', '.join(repr(float(v)) for v in row[: i + 1])}],"
+        for i, row in enumerate(doubt.covariance)
+    ]
+    lines += ["]", "[doubt.measured]   # beyond these, predictions extrapolate"]
+    span = doubt.span
+    lines.append(f"torque_Nm = {_pair(span.torque_Nm)}")
+    if span.rate_Nm_per_s is not None:
+        lines.append(f"rate_Nm_per_s = {span.rate_Nm_per_s!r}")
+    for name in ("temperature_C", "input_angle_deg"):
+        ends = getattr(span, name)
+        if ends is not None:
+            lines.append(f"{name} = {_pair(ends)}")
+    return [*lines, ""]
+
+
+def read_doubt(table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse) -> Doubt:
+    """The table [doubt] of a file, checked against its model.
+
+    Raises
+    ------
+    ModelFileError : unknown or missing keys, no covariance, or not the model's.
+    """
+    check(table, DOUBT, {}, "[doubt]", refuse)
+    measured = table["measured"]
+    check(measured, MEASURED, MEASURED_OPTIONAL, "[doubt.measured]", refuse)
+    for key in ("reading_arcsec", "torque_noise_Nm"):
+        if table[key] < 0:
+            raise refuse(f"{key} in [doubt] must not be negative")
+    covariance = _covariance(table["covariance"], refuse)
+    if len(covariance) not in (0, parameter_count(model)):
+        raise refuse(
+            f"covariance in [doubt] is of {len(covariance)} parameters; the model has "
+            f"{parameter_count(model)}"
+        )
+    ends = {
+        key: _ends(measured[key], key, refuse)
+        for key in ("torque_Nm", "temperature_C", "input_angle_deg")
+        if key in measured
+    }
+    rate = measured.get("rate_Nm_per_s")
+    if rate is not None and rate <= 0:
+        raise refuse("rate_Nm_per_s in [doubt.measured] must be above 0")
+    span = MeasuredSpan(**ends, rate_Nm_per_s=None if rate is None else float(rate))
+    return Doubt(float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span)
+
+
+def _covariance(rows: list[Any], refuse: Refuse) -> np.ndarray:
+    found = np.zeros((len(rows), len(rows)))
+    for i, row in enumerate(rows):
+        if not isinstance(row, list) or len(row) != i + 1 or not all(map(is_number, row)):
+            raise refuse(f"row {i + 1} of covariance in [doubt] must be {i + 1} numbers")
+        found[i, : i + 1] = row
+    found += np.tril(found, -1).T
+    if len(found) and np.linalg.eigvalsh(found)[0] < -1e-9 * np.abs(np.diag(found)).max():
+        raise refuse(
+            "covariance in [doubt] is none: a combination of parameters has a negative variance"
+        )
+    return found
+
+
+def _ends(values: list[Any], name: str, refuse: Refuse) -> Ends:
+    if len(values) != 2 or not all(map(is_number, values)) or values[0] > values[1]:
+        raise refuse(f"{name} in [doubt.measured] must be two numbers, the smaller first")
+    return float(values[0]), float(values[1])
+
+
+def _pair(ends: Ends) -> str:
+    return f"[{ends[0]!r}, {ends[1]!r}]"

@@ -1,0 +1,121 @@
+"""What a model's record spans, and how far another history goes beyond it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import (
+    FEWEST,
+    by_travel,
+    rates_of,
+    torque_noise_Nm,
+)
+
+Ends = tuple[float, float]
+MOST_TRAVEL = 0.95
+"""Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
+SLACK = 0.05
+"""Of a channel's range, or of the rate: noise and rounding are no extrapolation."""
+LEAST_RANGE_K = 10.0
+"""Temperatures that differ by less are one: beyond it, distances are told in this."""
+QUARTER_DEG = 90.0
+"""Of a turn of the wave generator: its strongest error, two a turn, goes from peak to zero in 45°."""
+
+
+@dataclass(frozen=True)
+class MeasuredSpan:
+    """Ends of what was measured; None where the channel was not recorded.
+
+    `rate_Nm_per_s` is the fastest at which torque moved for more than an instant.
+    """
+
+    torque_Nm: Ends
+    rate_Nm_per_s: float | None = None
+    temperature_C: Ends | None = None
+    input_angle_deg: Ends | None = None
+
+
+def span_of(history: History) -> MeasuredSpan:
+    """The span of a record."""
+    rates = [r for r in (_rates(history, rows) for rows in history.unit_slices) if r is not None]
+    fastest = [by_travel(rate, travel, MOST_TRAVEL) for rate, travel in rates]
+    return MeasuredSpan(
+        _ends(history.torque_Nm),
+        max(fastest) if fastest and max(fastest) > 0 else None,
+        None if history.temperature_C is None else _ends(history.temperature_C),
+        None if history.input_angle_deg is None else _ends(history.input_angle_deg),
+    )
+
+
+def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
+    """(n,) how far each row lies outside, by channel, as a share of what was measured; 0 inside.
+
+    Torque: of its largest value. Rate: doublings. Temperature: of its range, at least 10 K. Position: of a
+    quarter turn, whole turns taken off.
+    """
+    low, high = span.torque_Nm
+    largest = max(abs(low), abs(high), 1e-12)
+    room = SLACK * largest + 3 * torque_noise_Nm(history)
+    found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
+    if span.rate_Nm_per_s is not None and history.time_s is not None:
+        found["torque_rate"] = _doublings(history, span.rate_Nm_per_s * (1 + SLACK))
+    if span.temperature_C is not None and history.temperature_C is not None:
+        wide = max(float(np.ptp(span.temperature_C)), LEAST_RANGE_K)
+        out = _outside(history.temperature_C, span.temperature_C, SLACK * wide)
+        found["temperature_C"] = out / wide
+    if span.input_angle_deg is not None and history.input_angle_deg is not None:
+        found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
+    return found
+
+
+def clipped(span: MeasuredSpan, history: History) -> History:
+    """The history with torque and temperature held at the ends of what was measured."""
+    temperature = history.temperature_C
+    if temperature is not None and span.temperature_C is not None:
+        temperature = np.clip(temperature, *span.temperature_C)
+    return replace(
+        history, torque_Nm=np.clip(history.torque_Nm, *span.torque_Nm), temperature_C=temperature
+    )
+
+
+def _ends(values: np.ndarray) -> Ends:
+    return float(values.min()), float(values.max())
+
+
+def _outside(values: np.ndarray, ends: Ends, room: float) -> np.ndarray:
+    off = np.maximum(ends[0] - values, values - ends[1])
+    return np.where(off > room, off, 0.0)
+
+
+def _turned(angle_deg: np.ndarray, ends: Ends) -> np.ndarray:
+    """Quarter turns to the nearer end of the arc that was measured."""
+    arc = ends[1] - ends[0]
+    if arc >= 360.0 - QUARTER_DEG / 2:  # the gap is closed from both sides
+        return np.zeros(len(angle_deg))
+    past = (angle_deg - ends[0]) % 360.0
+    out = np.where(past <= arc, 0.0, np.minimum(past - arc, 360.0 - past))
+    return np.where(out > SLACK * QUARTER_DEG, out / QUARTER_DEG, 0.0)
+
+
+def _rates(history: History, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Rate [N·m/s] and travel [N·m] from each row of a unit on, or None without time."""
+    if history.time_s is None or len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
+        return None
+    found = rates_of(history, rows)
+    return np.abs(found.values), found.travel_Nm
+
+
+def _doublings(history: History, measured_Nm_per_s: float) -> np.ndarray:
+    out = np.zeros(len(history))
+    for rows in history.unit_slices:
+        if (found := _rates(history, rows)) is None:
+            continue
+        rate, travel = found
+        moving = np.where(travel > 0, rate, 0.0)
+        own = np.log2(np.maximum(moving / measured_Nm_per_s, 1.0))
+        out[rows[: len(own)]] = own
+        out[rows[len(own) :]] = own[-1]
+    return out

@@ -1,0 +1,150 @@
+"""What predictions may be off by: by hand, in the file, and where they extrapolate."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from histories import shape_of, sweep
+
+from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.measurement.errors import ModelFileError
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.doubt import (
+    BEYOND_THE_EDGE,
+    Doubt,
+    deviation_of,
+    parameter_columns,
+    parameter_count,
+)
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
+from flexspline.pipeline.diagnosis.model.model_text import model_text
+from flexspline.pipeline.diagnosis.model.predict import predict_file
+from flexspline.pipeline.diagnosis.model.span import span_of
+
+PLAIN = ExtendedModel(11.0, 70.0, {"": 5.0}, {}, {})
+ORIGIN = Provenance("flexspline", "gear", "m.csv", "0" * 64, "named", 3e4, 4e4, True, {}, {})
+RECORD = sweep()
+COVARIANCE = np.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.0], [0.0, 0.0, 0.16]])
+
+
+def doubt(covariance: np.ndarray = COVARIANCE, **other: float) -> Doubt:
+    return replace(Doubt(0.3, 0.0, covariance, span_of(RECORD)), **other)
+
+
+def std(history: History, of: Doubt | None = None, model: ExtendedModel = PLAIN) -> np.ndarray:
+    return deviation_of(model, of or doubt(), history, ("",)).std_arcsec
+
+
+def test_reading_zero_compliance_and_gap_by_hand() -> None:
+    """var = 0.3² + var z + 2·cov(z, c)·T + var c·T² + var g/4."""
+    T = RECORD.torque_Nm
+    expected = 0.09 + 0.04 + 0.02 * T + 0.09 * T**2 + np.where(T != 0, 0.04, 0.0)
+    np.testing.assert_allclose(std(RECORD) ** 2, expected, rtol=1e-12)
+
+
+def test_torque_noise_counts_near_the_gap_only() -> None:
+    """At T = 0 either side is as likely: the angle is off by the gap every second time, its square halved."""
+    history = replace(
+        RECORD, torque_Nm=np.where(np.abs(RECORD.torque_Nm) < 0.01, 0.0, RECORD.torque_Nm)
+    )
+    noisy = std(history, doubt(np.empty((0, 0)), torque_noise_Nm=0.01))
+    at_zero = history.torque_Nm == 0
+    np.testing.assert_allclose(noisy[at_zero] ** 2, 0.09 + 70.0**2 / 2, rtol=1e-12)
+    np.testing.assert_allclose(noisy[np.abs(history.torque_Nm) > 0.1], 0.3, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("channel", "changed", "growth"),
+    [
+        ("torque_Nm", replace(RECORD, torque_Nm=2 * RECORD.torque_Nm, time_s=2 * RECORD.time_s), 2.0),  # by the largest once more
+        ("temperature_C", replace(RECORD, temperature_C=np.full(len(RECORD), 32.5 + 24.0)), 2.85),
+        ("input_angle_deg", replace(RECORD, input_angle_deg=np.full(len(RECORD), 141.0 + 90.0)), 2.0),
+        ("torque_rate", replace(RECORD, time_s=RECORD.time_s / 4), 1 + 2 - np.log2(1.05)),
+    ],
+)  # fmt: skip
+def test_deviations_grow_outside_what_was_measured(
+    channel: str, changed: History, growth: float
+) -> None:
+    """Temperature: 24 K above 32.5 °C of a range of 13 K. Position: a quarter turn past 0° to 141°."""
+    found = deviation_of(PLAIN, doubt(np.empty((0, 0))), changed, ("",))
+    assert set(found.rows_beyond) == {channel}
+    assert found.std_arcsec.max() == pytest.approx(0.3 * growth, rel=0.01)  # of the range: ± 0.1 K
+    assert deviation_of(PLAIN, doubt(), RECORD, ("",)).rows_beyond == {}
+
+
+def test_half_of_what_a_cause_adds_beyond_the_edge() -> None:
+    """A gap that changes by −0.4 arcsec/K adds 0.2 arcsec on either side for each kelvin beyond 32.5 °C."""
+    model = replace(PLAIN, elements={
+        "thermal_clearance": (Element(shape_of("thermal_clearance"), (-0.4,)),)
+    })  # fmt: skip
+    warm = replace(RECORD, temperature_C=np.full(len(RECORD), 60.0))
+    of = doubt(np.empty((0, 0)), reading_arcsec=0.0)
+    highest = RECORD.temperature_C.max()
+    far = np.abs(RECORD.torque_Nm) > 0.1
+    expected = BEYOND_THE_EDGE * 0.2 * (60.0 - highest)
+    np.testing.assert_allclose(std(warm, of, model)[far], expected, rtol=1e-9)
+
+
+def test_friction_s_state_is_unknown_until_torque_has_turned_far_from_zero() -> None:
+    shape = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=0, loaded=0, held=1, start=1)
+    model = replace(PLAIN, elements={"friction_hysteresis": (Element(shape, (2.0,)),)})
+    wide = std(RECORD, doubt(np.empty((0, 0))), model)
+    turn = int(np.argmax(RECORD.torque_Nm))
+    assert wide[:turn].min() > 1.9  # the half width of the loop
+    np.testing.assert_allclose(wide[turn + 10 :], 0.3, rtol=1e-12)
+
+
+def test_the_file_holds_it_exactly(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(model_text(PLAIN, ORIGIN, doubt=doubt()), encoding="utf-8")
+    back = read_model_file(path).doubt
+    assert back is not None
+    np.testing.assert_array_equal(back.covariance, COVARIANCE)
+    assert replace(back, covariance=COVARIANCE) == doubt()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[0.04],", "", "row 1 of covariance"),
+        ("[0.01, 0.09],", "[0.01, true],", "row 2 of covariance"),
+        ("0.16]", "-0.16]", "negative variance"),
+        ("  [0.0, 0.0, 0.16],\n", "", "of 2 parameters; the model has 3"),
+        ("reading_arcsec = 0.3", "reading_arcsec = -0.3", "must not be negative"),
+        ("torque_Nm = [-2.0, 2.0]", "torque_Nm = [2.0, -2.0]", "the smaller first"),
+        ("[doubt.measured]", "[doubt.other]", "measured is missing"),
+    ],
+)
+def test_what_is_wrong_in_the_file_is_said(old: str, new: str, said: str, tmp_path: Path) -> None:
+    text = model_text(PLAIN, ORIGIN, doubt=doubt())
+    assert old in text
+    path = tmp_path / "model.toml"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(ModelFileError, match=said):
+        read_model_file(path)
+
+
+def test_a_prediction_says_which_rows_extrapolate(tmp_path: Path) -> None:
+    path, csv = tmp_path / "model.toml", tmp_path / "t.csv"
+    path.write_text(model_text(PLAIN, ORIGIN, doubt=doubt()), encoding="utf-8")
+    csv.write_text("torque_Nm\n" + "".join(f"{t / 10}\n" for t in range(31)))
+    found = predict_file(read_model_file(path), csv)
+    (warning,) = found.warnings
+    assert "rows extrapolate: torque 0 to 3 N·m; the model's record torque -2 to 2 N·m" in warning
+    assert found.angle_std_arcsec is not None
+    assert found.angle_std_arcsec[-1] > 1.4 * found.angle_std_arcsec[20]
+
+
+def test_columns_are_as_many_as_counted() -> None:
+    model = ExtendedModel(
+        11.0, 70.0, {"a": 1.0, "b": 2.0},
+        {"kinematic_error": (Element(shape_of("kinematic_error"), (1.0, 2.0)),),
+         "torque_offset": (Element({}, (0.01,)),)},
+        {"a": (0.0, 0.0), "b": (0.0, 0.0)},
+    )  # fmt: skip
+    columns = parameter_columns(model, sweep(units=2), ("a", "b"))
+    assert columns.shape[1] == parameter_count(model) == 2 + 2 + 4 + 2 + 1
