@@ -18,7 +18,9 @@ Ends = tuple[float, float]
 MOST_TRAVEL = 0.95
 """Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
 SLACK = 0.05
-"""Of a channel's range, or of the rate: noise and rounding are no extrapolation."""
+"""Of a channel's range: noise and rounding are no extrapolation."""
+RATE_SLACK = 0.5
+"""Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
 LEAST_RANGE_K = 10.0
 """Temperatures that differ by less are one: beyond it, distances are told in this."""
 QUARTER_DEG = 90.0
@@ -61,7 +63,7 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     room = SLACK * largest + 3 * torque_noise_Nm(history)
     found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
     if span.rate_Nm_per_s is not None and history.time_s is not None:
-        found["torque_rate"] = _doublings(history, span.rate_Nm_per_s * (1 + SLACK))
+        found["torque_rate"] = _doublings(history, span.rate_Nm_per_s * (1 + RATE_SLACK))
     if span.temperature_C is not None and history.temperature_C is not None:
         wide = max(float(np.ptp(span.temperature_C)), LEAST_RANGE_K)
         out = _outside(history.temperature_C, span.temperature_C, SLACK * wide)

@@ -63,7 +63,7 @@ def test_torque_noise_counts_near_the_gap_only() -> None:
         ("torque_Nm", replace(RECORD, torque_Nm=2 * RECORD.torque_Nm, time_s=2 * RECORD.time_s), 2.0),
         ("temperature_C", replace(RECORD, temperature_C=np.full(len(RECORD), 32.5 + 24.0)), 2.85),
         ("input_angle_deg", replace(RECORD, input_angle_deg=np.full(len(RECORD), 141.0 + 90.0)), 2.0),
-        ("torque_rate", replace(RECORD, time_s=RECORD.time_s / 4), 1 + 2 - np.log2(1.05)),
+        ("torque_rate", replace(RECORD, time_s=RECORD.time_s / 4), 1 + 2 - np.log2(1.5)),
     ],
 )  # fmt: skip
 def test_deviations_grow_outside_what_was_measured(
