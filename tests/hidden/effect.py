@@ -25,6 +25,7 @@ class Hidden:
     magnitude : in the unit of docs/contract.md; nan for what is in no vocabulary.
     law : one line on the law and its parameters.
     angle : arcsec added on the program's grid. reading_Nm : added to the torque reading.
+    crosses : whether `angle` says itself where the gap is crossed, at once.
     """
 
     cause: str
@@ -32,6 +33,7 @@ class Hidden:
     law: str
     angle: Callable[[Program, Gear], np.ndarray]
     reading_Nm: float = 0.0
+    crosses: bool = False
 
 
 @dataclass(frozen=True)

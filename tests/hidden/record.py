@@ -53,7 +53,8 @@ def measure(
     rows, torque = program.rows, program.torque
     effects = [h.angle(program, gear)[rows] for h in hidden]
     offset = sum(h.reading_Nm for h in hidden)
-    gap = gear.gap * sign(torque, noise.crossing)[rows] / 2
+    width = 0.0 if any(h.crosses for h in hidden) else noise.crossing
+    gap = gear.gap * sign(torque, width)[rows] / 2
     true = gear.zero + gear.compliance * torque[rows] + gap + sum(effects)
     shaking, outlier, on_torque = sample(noise, program, rng)
     for k, h in enumerate(hidden):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from hidden.ahead import Bearing, Bristles, MaxwellSlip, loop_width, output
 from hidden.cases import CAUSES, draw_case
 from hidden.clearance import lagged, per_cycle
 from hidden.elastic import chord_asymmetry, hardening_ratio
@@ -198,3 +199,23 @@ def test_programmes_keep_their_promises() -> None:
         assert 250 <= len(p.rows) <= 3000
         noise = draw_noise(100.0, p, np.random.default_rng(seed))
         assert noise.by_sample or noise.memory <= p.quickest / 15
+
+
+def test_friction_ahead_of_the_gap_is_a_play_and_moves_the_crossing() -> None:
+    """Rigid until it slips: elasticity feels T − F, F = ± share; the gap is crossed at T = ± share."""
+    share, gap = 0.1, 0.5
+    up = np.linspace(-1, 1, 401)
+    load = np.concatenate([np.linspace(0, 1, 201)[1:], up[::-1], up])
+    x = output(MaxwellSlip(np.array([1e-6]), np.ones(1)), share, load, gap)
+    falling, rising = x[200:601], x[601:]
+    assert (
+        falling[up[::-1] > -share + 1e-9].min() >= gap / 2 - 2e-6
+    )  # slip takes 1e-6 of the wind-up
+    assert rising[up < share - 1e-9].max() <= -gap / 2 + 2e-6
+    assert rising[up > 0.5] == pytest.approx(up[up > 0.5] - share + gap / 2, abs=1e-5)
+
+
+@pytest.mark.parametrize("bearing", [Bristles(0.005), MaxwellSlip(np.array([0.01]), np.ones(1))])
+def test_width_of_friction_ahead_of_the_gap(bearing: Bearing) -> None:
+    # far from its reach the bearing holds all its friction: twist 2·share at wind-up 1
+    assert loop_width(bearing, 0.06) == pytest.approx(0.12, rel=1e-4)
