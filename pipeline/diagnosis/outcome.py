@@ -26,6 +26,8 @@ class NamedCause:
     rms_arcsec: float
     own_units: tuple[str, ...] = ()
     """Units under test that alone show it; empty: all do."""
+    ahead_Nm: float = 0.0
+    """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
 
     @property
     def is_surplus(self) -> bool:

@@ -54,6 +54,8 @@ def _cause(cause: NamedCause) -> Record:
     }
     if cause.own_units:
         record["units"] = list(cause.own_units)
+    if cause.ahead_Nm:
+        record["ahead_of_gap_Nm"] = cause.ahead_Nm
     return record
 
 

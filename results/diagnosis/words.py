@@ -93,7 +93,10 @@ def title_of(cause_id: str, magnitude: float = 0.0) -> str:
 
 def cause_title(cause: NamedCause) -> str:
     """What a person reads of a cause found."""
-    return title_of(cause.id, cause.magnitude)
+    title = title_of(cause.id, cause.magnitude)
+    if cause.ahead_Nm:
+        return f"{title} (of it {figures_text(cause.ahead_Nm)} N·m ahead of the gap)"
+    return title
 
 
 def capital(text: str) -> str:

@@ -69,6 +69,7 @@ def _cause(entry: Told) -> Told:
     cause = NamedCause(
         alternatives=tuple(entry["alternatives"]),
         own_units=tuple(entry.get("units", ())),
+        ahead_Nm=float(entry.get("ahead_of_gap_Nm", 0.0)),
         **{key: entry[key] for key in keys},
     )
     return {

@@ -108,6 +108,8 @@ class Cause(ABC):
     tunable: ClassVar[tuple[str, ...]] = ()
     """Continuous shape parameters, which are refined around the best of `shapes` by steps of up to a factor
     e^½ (`sweep/shape_tuning.py`): in a grid of them, neighbours need be no nearer than a factor of e."""
+    searched_apart: ClassVar[tuple[Shape, ...]] = ()
+    """Shapes, one of each set of parameters, that change what other causes see: not among `shapes`."""
     reveals: ClassVar[str]
     """The measurement that shows this cause most plainly."""
 
@@ -153,4 +155,8 @@ class Cause(ABC):
 
     def corrected(self, elements: Sequence[Element], history: History) -> History:
         """The true history, where the cause is an error of the reading."""
+        return history
+
+    def at_teeth(self, elements: Sequence[Element], history: History) -> History:
+        """The history with the torque that reaches the teeth, where the cause lies ahead of them."""
         return history

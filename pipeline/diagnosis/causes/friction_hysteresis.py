@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
+from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 
@@ -38,6 +40,9 @@ VARIANTS = (
     (EVEN, CLOSING, 1, 0),
 )  # fmt: skip
 """Spread, loaded, held, start of the shapes tried."""
+AHEAD = "stiffness_ratio"
+"""The parameter of an element ahead of the teeth, and of no other: its stiffness before it slips, over the
+gear's."""
 
 
 class FrictionHysteresis(Cause):
@@ -48,6 +53,10 @@ class FrictionHysteresis(Cause):
     rounded loop), or Dahl's exponential approach; width the same everywhere, growing with |T| or
     closing (`loaded`); and whether the friction also takes torque at the loop's ends (`held` = 1) or
     leaves the chord as it is (`held` = 0).
+
+    Friction ahead of the teeth (output bearing, seals) is an element of another kind: its amplitude is a
+    torque F [N·m], and gap and elasticity act on T − F·z (`sliding.py`). It adds nothing to the angle by
+    itself; with no gap it looks like a single threshold at F, of amplitude F times the compliance.
     """
 
     id = "friction_hysteresis"
@@ -59,6 +68,7 @@ class FrictionHysteresis(Cause):
     """Of 12 made-up records one and two deviations cover 58 and 83 %; without it, 42 and 67."""
     vary = "torque_rate"
     reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
+    searched_apart = ({AHEAD: 30.0, "deadband_Nm": 0.0},)
 
     def shapes(self, rig: Rig) -> list[Shape]:
         largest = rig.torque_Nm
@@ -90,6 +100,9 @@ class FrictionHysteresis(Cause):
         return self.columns_of_all([shape], history)[0]
 
     def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        if any(AHEAD in s for s in shapes):
+            behind = iter(self.columns_of_all([s for s in shapes if AHEAD not in s], history))
+            return [np.zeros((len(history), 1)) if AHEAD in s else next(behind) for s in shapes]
         stopped = [s for s in shapes if s["spread"] != DAHL]
         sloped = [s for s in shapes if s["spread"] == DAHL]
         states = dict(zip(map(id, sloped), self._dahls(sloped, history), strict=True))
@@ -147,11 +160,26 @@ class FrictionHysteresis(Cause):
     def spread(self, shape: Shape, rig: Rig) -> float:
         return 0.2 * rig.scale_arcsec
 
+    def at_teeth(self, elements: Sequence[Element], history: History) -> History:
+        carried = np.zeros(len(history))
+        for e in elements:
+            if AHEAD in e.shape:
+                share = carried_share(
+                    history, e.amplitudes[0], e.shape[AHEAD], e.shape["deadband_Nm"]
+                )
+                carried += e.amplitudes[0] * share
+        return replace(history, torque_Nm=history.torque_Nm - carried) if carried.any() else history
+
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        """Full width at T = 0 of the closed loop at the largest amplitude."""
-        up = np.linspace(-rig.torque_Nm, rig.torque_Nm, LOOP_ROWS)
+        """Full width at T = 0 of the closed loop at the largest amplitude.
+
+        Of torque carried ahead of the teeth it is what elasticity makes of it.
+        """
+        largest = rig.torque_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
+        up = np.linspace(-largest, largest, LOOP_ROWS)
         loop = np.concatenate([up, up[::-1], up, up[::-1]])
         none = np.zeros(len(loop), int)
-        angle = self.angle_arcsec(elements, History(loop, none, none))
+        teeth = self.at_teeth(elements, History(loop, none, none))
+        angle = rig.compliance * (teeth.torque_Nm - loop) + self.angle_arcsec(elements, teeth)
         rising, falling = 2 * LOOP_ROWS + LOOP_ROWS // 2, 3 * LOOP_ROWS + LOOP_ROWS // 2
         return float(angle[falling] - angle[rising])

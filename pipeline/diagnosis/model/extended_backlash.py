@@ -50,13 +50,16 @@ def extended_backlash(
     Each cause is evaluated on the history 0 → +T_L → −T_L → +T_L → −T_L → +T_L, ten minutes a ramp,
     at 20 °C, first cycle, wave generator at 0°. What it adds is the angle at +T_L, the mean of the
     last two visits, less the angle at −T_L between them: a steady drift of the reading cancels. A
-    shifted torque reading adds nothing, as T_L is the true torque. Units' own deviations enter by
-    their mean.
+    shifted torque reading adds nothing, as T_L is the true torque; what friction ahead of the teeth
+    carries of it takes its share of the wind-up away. Units' own deviations enter by their mean.
     """
     history, low, high = _there_and_back(torque_Nm)
+    teeth = model.at_teeth(history)
     added = {}
     for cause_id, elements in model.elements.items():
-        angle = known_causes()[cause_id].angle_arcsec(elements, history)
+        cause = known_causes()[cause_id]
+        carried = history.torque_Nm - cause.at_teeth(elements, history).torque_Nm
+        angle = cause.angle_arcsec(elements, teeth) - model.compliance * carried
         added[cause_id] = float(angle[high].mean() - angle[low])
     own = np.array(list(model.own.values()) or [(0.0, 0.0)]).mean(axis=0)
     twist = 2 * torque_Nm * (model.compliance + own[0])

@@ -19,7 +19,7 @@ Channel = Sequence[float] | np.ndarray
 
 @dataclass(frozen=True)
 class ExtendedModel:
-    """θ = θ0 + T·compliance + sign(T)·gap/2 + what each cause adds; T is the true torque.
+    """θ = θ0 + T·compliance + sign(T)·gap/2 + what each cause adds; T is the true torque at the teeth.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class ExtendedModel:
         ------
         ValueError : the history lacks a channel that a cause needs.
         """
-        true = self.true_history(history)
+        true = self.at_teeth(self.true_history(history))
         angle = true.torque_Nm * self.compliance + true.sign * self.gap_arcsec / 2
         for cause_id, elements in self.elements.items():
             angle += known_causes()[cause_id].angle_arcsec(elements, true)
@@ -95,6 +95,12 @@ class ExtendedModel:
         """The true history: the reading less what the causes find wrong in it."""
         for cause_id, elements in self.elements.items():
             history = known_causes()[cause_id].corrected(elements, history)
+        return history
+
+    def at_teeth(self, history: History) -> History:
+        """A true history with the torque that is left for the teeth."""
+        for cause_id, elements in self.elements.items():
+            history = known_causes()[cause_id].at_teeth(elements, history)
         return history
 
 

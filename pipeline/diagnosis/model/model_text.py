@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.model.model_file import FORMAT, Provenance
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 
 ABOUT = """\
-# angle [arcsec] = zero + T·compliance + sign(T)·gap/2 + what each cause below adds; T in N·m.
+# angle [arcsec] = zero + T·compliance + sign(T)·gap/2 + what each cause below adds; T in N·m, at the teeth.
 # Each number is written in full: read back, it gives the same angles.
 #   flexspline predict DESIGN.toml --model extended_model.toml TORQUE.csv
 #   flexspline run DESIGN.toml --model extended_model.toml
@@ -111,10 +111,12 @@ def _cause(cause_id: str, elements: Sequence[Element], found: NamedCause | None)
             f"unit = {quoted(found.unit)}" + ("   # a ratio" if found.unit == "1" else ""),
             f"alternatives = [{', '.join(map(quoted, found.alternatives))}]",
         ]
+    apart = [frozenset(s) for s in cause.searched_apart]
     for element in elements:
+        ahead = "   # N·m, taken off T ahead of the teeth" * (frozenset(element.shape) in apart)
         lines += [
             "[[cause.element]]",
-            f"amplitudes = [{', '.join(map(number, element.amplitudes))}]",
+            f"amplitudes = [{', '.join(map(number, element.amplitudes))}]{ahead}",
             f"shape = {_inline(element.shape)}",
         ]
     return [*lines, ""]

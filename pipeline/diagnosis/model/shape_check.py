@@ -52,9 +52,10 @@ def fault_of(cause: Cause, shape: Shape, amplitudes: int) -> str | None:
     with np.errstate(all="ignore"):
         try:
             columns = cause.columns(shape, history)
+            teeth = cause.at_teeth([Element(shape, (1.0,) * amplitudes)], history).torque_Nm
         except (ArithmeticError, LookupError, OverflowError, ValueError, MemoryError) as error:
             return f"cannot be evaluated ({type(error).__name__})"
-    if not np.isfinite(columns).all():
+    if not (np.isfinite(columns).all() and np.isfinite(teeth).all()):
         return "gives no finite angle"
     if columns.shape[1] != amplitudes:
         return f"has {amplitudes} amplitudes; it takes {columns.shape[1]}"
@@ -81,12 +82,13 @@ def _known(cause: Cause) -> tuple[frozenset[frozenset[str]], dict[str, frozenset
     prediction = Prediction(10.0, 0.3, 60.0, 10.0)
     records = (example_history(), example_history(7.0, 200.0, 9))
     tried = [cause.shapes(Rig(prediction, h)) for h in records]
+    apart = frozenset(frozenset(shape) for shape in cause.searched_apart)
     if not any(tried):
-        return frozenset({frozenset()}), {}
+        return apart or frozenset({frozenset()}), {}
     names = frozenset(frozenset(shape) for shapes in tried for shape in shapes)
     fixed = {}
     for name in set().union(*names) - set(cause.tunable):
         one, other = ({shape[name] for shape in shapes if name in shape} for shapes in tried)
         if one == other and all(float(v).is_integer() for v in one):
             fixed[name] = frozenset(one)
-    return names, fixed
+    return names | apart, fixed

@@ -10,7 +10,8 @@
 | evidence of any set of them | `evidence.py` |
 | race: search sets, tune shapes, estimate the noise again | `race.py`, `search.py`, `shape_tuning.py` |
 | identify causes and rivals | `identification.py`, rules in `../decision.py` |
-| the same with a shifted torque reading | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
+| the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
+| or with a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
@@ -33,6 +34,7 @@ from flexspline.pipeline.diagnosis.model.doubt import Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
@@ -77,7 +79,7 @@ def diagnose_sweep(
         prepared = prepare(thinned(sweep), prediction)
     except TooFewRowsError as error:
         return _insufficient(str(error)), None
-    explained = with_torque_offset(run_race(prepared))
+    explained = with_friction_ahead(prepared) or with_torque_offset(run_race(prepared))
     identified = explained.identified
     if hidden := drowned(explained):
         return _insufficient(hidden), None

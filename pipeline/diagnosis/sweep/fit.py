@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, Posterior, posterior_of
-from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, NOISE_WINDOWS
 
 ALLOWED = 2.0
 """Standard deviations by which a calibration may move without being a finding."""
@@ -44,7 +44,8 @@ class SweepFit:
     def elements(self, mean: np.ndarray | None = None) -> dict[str, tuple[Element, ...]]:
         """Elements of each cause, by id."""
         posterior = self.posterior if mean is None else replace(self.posterior, mean=mean)
-        found: dict[str, tuple[Element, ...]] = {}
+        ahead = self.evidence.columns.ahead
+        found: dict[str, tuple[Element, ...]] = {FRICTION: (ahead.element,)} if ahead else {}
         for i, amplitudes in zip(posterior.terms, posterior.amplitudes(self.evidence), strict=True):
             term = self.evidence.terms[i]
             if term.cause is not None:
@@ -96,8 +97,13 @@ class SweepFit:
         return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slope.items()}
 
     def added(self, owner: str) -> np.ndarray:
-        """(n,) angle [arcsec] that all terms of an owner add."""
-        total = np.zeros(len(self.rig.history))
+        """(n,) angle [arcsec] that all terms of an owner add, and what friction ahead of the teeth does."""
+        history, ahead = self.rig.history, self.evidence.columns.ahead
+        total = np.zeros(len(history))
+        if ahead is not None and owner == FRICTION:
+            rig = self.measured_rig()
+            side = np.sign(history.torque_Nm + ahead.carried_Nm)
+            total += rig.gap_arcsec / 2 * (history.sign - side) - rig.compliance * ahead.carried_Nm
         for i, amplitudes in zip(
             self.posterior.terms, self.posterior.amplitudes(self.evidence), strict=True
         ):
@@ -177,6 +183,8 @@ def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float
     """The fitted model, with the elements of the named causes."""
     mean, k, p = fit.posterior.mean, fit.units, fit.rig.prediction
     elements = {c: e for c, e in fit.elements().items() if c in named}
+    if fit.evidence.columns.ahead and FRICTION not in elements:
+        elements[FRICTION] = (fit.evidence.columns.ahead.element,)
     if offset_Nm:
         elements["torque_offset"] = (Element({}, (offset_Nm,)),)
     own = {}

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
-from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
@@ -55,6 +55,7 @@ class Identification:
 
 def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification:
     """Run the race and decide it; `beside`: another cause is already known."""
+    beside |= evidence.columns.ahead is not None
     search = Search(evidence)
     best = _plausible(evidence, search, search.run())
     nats: dict[str, float] = {}
@@ -67,16 +68,19 @@ def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification
             break
         best = without[min(weak, key=lambda c: nats[c])]
     fit = fit_regressors(evidence, best.terms)
-    rms = owner_rms(fit, sorted(best.owners(evidence)))
-    largest = max(
-        (rms[c] for c in best.named(evidence) if not known_causes()[c].exact), default=0.0
-    )
+    ahead = {FRICTION} if evidence.columns.ahead else set()
+    rms = owner_rms(fit, sorted(best.owners(evidence) | ahead))
+    held = best.named(evidence) | ahead
+    largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
     named = sorted(
-        (c for c in best.named(evidence) if rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
+        (c for c in held if c in ahead or rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
     )
     rivals: dict[str, tuple[str, ...]] = {}
     rival_sets: dict[str, Candidate] = {}
     for cause in named:
+        if cause in ahead:  # no other cause changes where the gap is crossed each way
+            rivals[cause] = ()
+            continue
         rivals[cause], found = _rivals(evidence, best, cause)
         if found is not None:
             rival_sets[cause] = found
@@ -121,6 +125,8 @@ def _rivals(
     start = tuple(i for i in best.terms if evidence.terms[i].owner != cause)
     present = {evidence.terms[i].owner for i in best.terms}
     others = {t.cause.id for t in evidence.terms if t.cause} - present
+    if evidence.columns.ahead:
+        others -= {FRICTION}
     mine = penalised(evidence, best.terms)
     found: list[tuple[float, str, Candidate]] = []
     for other in sorted(others):

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
@@ -26,22 +27,26 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     sets = [(c.named(evidence), c.score) for c in identified.search.best.values()]
     magnitude, std = magnitudes(identified)
     timeless = explained.prepared.sweep.history.time_s is None
+    ahead = explained.ahead
     found = []
     for c in identified.named:
         rivals = identified.rivals[c]
         if timeless and c in ("friction_hysteresis", "rate_dependence"):
             other = {"friction_hysteresis": "rate_dependence"}.get(c, "friction_hysteresis")
             rivals = tuple(dict.fromkeys((*rivals, other)))
+        chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
+        if c == FRICTION and ahead is not None:
+            chance, nats = _probability(ahead.nats), ahead.nats
+            std[c] = hypot(std[c], _std_ahead_arcsec(explained))
         found.append(NamedCause(
-            c, probability(c, sets), rivals, magnitude[c], std[c],
-            known_causes()[c].unit, identified.evidence_nats.get(c, 0.0), identified.rms[c],
-            _own_units(explained, c),
+            c, chance, rivals, magnitude[c], std[c], known_causes()[c].unit, nats,
+            identified.rms[c], _own_units(explained, c), _ahead_Nm(explained, c),
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()["torque_offset"]
         slope = identified.fit.measured_rig().compliance
         found.append(NamedCause(
-            offset.id, _offset_probability(explained), (),
+            offset.id, _probability(explained.offset_nats), (),
             explained.offset_Nm,
             hypot(explained.crossing.std_Nm, offset.shape_doubt * explained.offset_Nm),
             offset.unit, explained.offset_nats,
@@ -50,15 +55,32 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     return tuple(found)
 
 
-def _offset_probability(explained: ExplainedSweep) -> float:
-    """Of a shifted torque reading: RIVAL_EVIDENCE nats count as even odds."""
-    return float(1 / (1 + np.exp(-explained.offset_nats + RIVAL_EVIDENCE)))
+def _probability(nats: float) -> float:
+    """Of a shifted torque reading, or friction ahead of the teeth: RIVAL_EVIDENCE nats count as even odds."""
+    return float(1 / (1 + np.exp(-nats + RIVAL_EVIDENCE)))
+
+
+def _std_ahead_arcsec(explained: ExplainedSweep) -> float:
+    """What the doubt of the torque carried ahead of the teeth makes of the loop's width.
+
+    Nothing where friction elements behind the gap are fitted beside it: they take up what it leaves.
+    """
+    fit, ahead = explained.identified.fit, explained.ahead
+    if ahead is None or FRICTION in explained.identified.best.named(fit.evidence):
+        return 0.0
+    return 2 * fit.measured_rig().compliance * ahead.torque_std_Nm
 
 
 def _own_units(explained: ExplainedSweep, cause: str) -> tuple[str, ...]:
     """Names of the units that alone show a cause."""
     share = explained.shares.get(cause)
     return tuple(explained.prepared.sweep.units[u] for u in share.own) if share else ()
+
+
+def _ahead_Nm(explained: ExplainedSweep, cause: str) -> float:
+    """Torque that friction takes ahead of the teeth; 0 of other causes."""
+    ahead = explained.prepared.ahead if explained.ahead and cause == FRICTION else None
+    return ahead.amplitudes[0] if ahead else 0.0
 
 
 def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:

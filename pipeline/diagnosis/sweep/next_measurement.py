@@ -33,7 +33,7 @@ MORE_CYCLES = 40
 def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     """Each plan holds a part like the record so far and a part where one thing is changed."""
     h = prepared.rig.history
-    largest = prepared.rig.torque_Nm
+    largest = float(np.abs(prepared.sweep.history.torque_Nm).max())
     ramp = ramp_s(prepared.sweep.history) or DEFAULT_RAMP_S
     warm = float(np.mean(h.temperature_C)) if h.temperature_C is not None else REFERENCE_C
     last = int(h.cycle.max())

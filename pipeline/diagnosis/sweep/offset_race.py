@@ -40,7 +40,7 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
     if abs(guess) < prepared.band_Nm / 2:
         return plain
     shifted = _raced_with(prepared, guess)
-    return shifted if shifted is not None and _better(shifted, plain) else plain
+    return shifted if shifted is not None and gained(shifted, plain) > NAMED_COST else plain
 
 
 def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
@@ -49,11 +49,17 @@ def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
     return seen.nats > OFFSET_NATS and abs(seen.offset_Nm) > least
 
 
+def offset_of(explained: ExplainedSweep) -> float:
+    """The offset [N·m] at which a race sees the gap crossed; 0 where it is none that counts."""
+    seen = explained.crossing
+    return seen.offset_Nm if seen is not None and _counts(seen, explained.prepared) else 0.0
+
+
 def _raced_with(plain: PreparedSweep, offset_Nm: float) -> ExplainedSweep | None:
     """The race with an offset taken off, and the offset found anew from it; None where it vanishes."""
     for _ in range(OFFSET_ROUNDS):
         try:
-            explained = run_race(prepare(plain.sweep, plain.prediction, offset_Nm))
+            explained = run_race(prepare(plain.sweep, plain.prediction, offset_Nm, plain.ahead))
         except TooFewRowsError:
             return None
         seen, prepared = explained.crossing, explained.prepared
@@ -67,25 +73,25 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> ExplainedSweep | None
     return replace(explained, offset_Nm=offset_Nm)
 
 
-def _better(shifted: ExplainedSweep, plain: ExplainedSweep) -> bool:
-    """Whether the record is better explained with the offset, the cause's cost paid.
+def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
+    """By how many nats a record is better explained by `found`, which takes another torque for the true one.
 
-    Judged on all rows but those whose side of the gap is unsure with it or without.
+    Judged on all rows but those whose side of the gap is unsure with either torque.
     """
-    torque = plain.prepared.rig.history.torque_Nm
-    side = max(
-        BESIDE_STEP * plain.prepared.rig.torque_Nm, 4 * torque_noise_Nm(plain.prepared.rig.history)
-    )
-    common = (np.abs(torque) > side) & (np.abs(torque - shifted.offset_Nm) > side)
-    common &= ~(shifted.prepared.outlier & plain.prepared.outlier)
-    common &= ~(turning(plain.prepared.rig.history) | settling(plain.prepared.rig.history))
-    quieter = min((shifted, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
+    one, other = (e.prepared.rig.history for e in (found, plain))
+    largest = plain.prepared.rig.torque_Nm
+    side = max(BESIDE_STEP * largest, 4 * torque_noise_Nm(plain.prepared.rig.history))
+    common = (np.abs(one.torque_Nm) > side) & (np.abs(other.torque_Nm) > side)
+    common &= ~(found.prepared.outlier & plain.prepared.outlier)
+    for history in (one, other):
+        common &= ~(turning(history) | settling(history))
+    quieter = min((found, plain), key=lambda e: e.prepared.noise.std_arcsec).prepared.noise
 
     def total(e: ExplainedSweep) -> float:
         p = e.prepared
         again = gaussian_evidence(p.columns, p.target, common, quieter)
-        found = Search(again).candidate(e.identified.best.terms)
+        best = Search(again).candidate(e.identified.best.terms)
         gain = float(again.base_right @ np.linalg.solve(again.base_gram, again.base_right))
-        return found.score + gain / 2 - again.total / 2 - np.linalg.slogdet(again.base_gram)[1] / 2
+        return best.score + gain / 2 - again.total / 2 - np.linalg.slogdet(again.base_gram)[1] / 2
 
-    return total(shifted) - NAMED_COST > total(plain)
+    return total(found) - total(plain)

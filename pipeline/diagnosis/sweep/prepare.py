@@ -8,7 +8,8 @@ import numpy as np
 
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Rig
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
+from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import (
     Noise,
     crossing_band_Nm,
@@ -20,7 +21,12 @@ from flexspline.pipeline.diagnosis.measurement.noise import (
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
-from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, design_matrix
+from flexspline.pipeline.diagnosis.sweep.regressors import (
+    FRICTION,
+    DesignMatrix,
+    FrictionAhead,
+    design_matrix,
+)
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
 
 ROWS_PER_PARAMETER = 6
@@ -63,21 +69,38 @@ class PreparedSweep:
     offset_Nm: float = 0.0
 
     @property
+    def ahead(self) -> Element | None:
+        """Friction ahead of the teeth, taken off the torque."""
+        return self.columns.ahead.element if self.columns.ahead else None
+
+    @property
     def row_counts(self) -> RowCounts:
         """How many rows identify causes, and why the others do not."""
         return row_counts(self.rig.history, self.band_Nm, self.outlier)
 
 
-def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> PreparedSweep:
-    """Sort the rows out and evaluate every term.
+def true_history(sweep: Sweep, offset_Nm: float = 0.0) -> History:
+    """What the rig did, a shifted torque reading put right; rows are seconds where time was not recorded."""
+    history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
+    if history.time_s is None:
+        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    return history
+
+
+def prepare(
+    sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0, ahead: Element | None = None
+) -> PreparedSweep:
+    """Sort the rows out and evaluate every term, on the torque that friction `ahead` leaves for the teeth.
 
     Raises
     ------
     TooFewRowsError
     """
-    history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
-    if history.time_s is None:
-        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    true = history = true_history(sweep, offset_Nm)
+    carried = None
+    if ahead is not None:
+        history = known_causes()[FRICTION].at_teeth((ahead,), true)
+        carried = FrictionAhead(ahead, true.torque_Nm - history.torque_Nm)
     rig = Rig(prediction, history)
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
@@ -100,7 +123,7 @@ def prepare(sweep: Sweep, prediction: Prediction, offset_Nm: float = 0.0) -> Pre
         sweep,
         prediction,
         rig,
-        design_matrix(rig, _knowable(sweep)),
+        design_matrix(rig, _knowable(sweep), carried),
         target,
         kept,
         outlier,

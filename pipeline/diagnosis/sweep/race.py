@@ -26,6 +26,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification, identify
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
@@ -43,6 +44,14 @@ WORTH_TUNING = 1.0
 
 
 @dataclass(frozen=True)
+class FoundAhead:
+    """Friction ahead of the teeth: its torque's standard deviation, and nats over none."""
+
+    torque_std_Nm: float
+    nats: float
+
+
+@dataclass(frozen=True)
 class ExplainedSweep:
     """A prepared sweep and what its race identified.
 
@@ -50,12 +59,14 @@ class ExplainedSweep:
     ----------
     crossing : how the gap's crossing fits the reading's zero, None where it cannot be seen.
     offset_Nm : by which the torque reading is shifted; 0 where no offset is identified.
+    ahead : friction ahead of the teeth, None where none is identified.
     """
 
     prepared: PreparedSweep
     identified: Identification
     crossing: Crossing | None
     offset_Nm: float
+    ahead: FoundAhead | None = None
 
     @property
     def offset_nats(self) -> float:
@@ -67,7 +78,10 @@ class ExplainedSweep:
         """How much of each named cause each unit shows, by cause id; none for a single unit."""
         if len(self.prepared.sweep.units) < 2:
             return {}
-        return {c: unit_amplitudes(self.identified, c) for c in self.identified.named}
+        apart = {FRICTION} if self.ahead else set()
+        return {
+            c: unit_amplitudes(self.identified, c) for c in self.identified.named if c not in apart
+        }
 
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:

@@ -8,11 +8,13 @@ from math import log
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.cause import Cause, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
+FRICTION = "friction_hysteresis"
+"""The cause that may lie ahead of the teeth."""
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""
 NUISANCE_SPREAD = 0.15
@@ -44,8 +46,27 @@ class Regressor:
 
 
 @dataclass(frozen=True)
+class FrictionAhead:
+    """Friction ahead of the teeth: it is in the history that all terms see, and no term itself.
+
+    `element` : of `friction_hysteresis`. `carried_Nm` (n,) : what it takes of the torque.
+    """
+
+    element: Element
+    carried_Nm: np.ndarray
+
+    @property
+    def torque_Nm(self) -> float:
+        """The largest that it can carry."""
+        return self.element.amplitudes[0]
+
+
+@dataclass(frozen=True)
 class DesignMatrix:
-    """All columns of a record before whitening; float32 keeps 100 000 rows in memory."""
+    """All columns of a record before whitening; float32 keeps 100 000 rows in memory.
+
+    `rig` has the torque at the teeth, where friction lies `ahead` of them.
+    """
 
     rig: Rig
     base: np.ndarray
@@ -53,9 +74,12 @@ class DesignMatrix:
     """(b,) standard deviations; the columns are zeros, compliance and gap, common and per unit."""
     all: np.ndarray
     terms: tuple[Regressor, ...]
+    ahead: FrictionAhead | None = None
 
 
-def design_matrix(rig: Rig, known: dict[str, Cause]) -> DesignMatrix:
+def design_matrix(
+    rig: Rig, known: dict[str, Cause], ahead: FrictionAhead | None = None
+) -> DesignMatrix:
     """Evaluate every shape of every cause, and every nuisance term, on a rig's record."""
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
@@ -78,7 +102,7 @@ def design_matrix(rig: Rig, known: dict[str, Cause]) -> DesignMatrix:
         terms.append(_nuisance_regressor(rival, rivals, width, rig))
         blocks.append(rival.columns.astype(np.float32))
         width += rival.columns.shape[1]
-    return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms))
+    return DesignMatrix(rig, base, prior, np.hstack(blocks), tuple(terms), ahead)
 
 
 def _nuisance_regressor(
@@ -123,10 +147,11 @@ def jitter(history: History, width: int) -> np.ndarray:
     return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
 
 
-def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
+def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """(n, b) columns of the calibration and their prior standard deviations (b,).
 
-    Zero of each unit; deviation of compliance and gap, common, and per unit if several; torque noise.
+    Zero of each unit; deviation of compliance and gap, common, and per unit if several; torque noise, which
+    may be known already: (n, len(NOISE_WINDOWS)).
     """
     h, p = rig.history, rig.prediction
     units = [np.isin(np.arange(len(h)), rows).astype(float) for rows in h.unit_slices]
@@ -136,7 +161,6 @@ def base_columns(rig: Rig) -> tuple[np.ndarray, np.ndarray]:
         for own in units:
             columns += [own * h.torque_Nm, own * h.sign / 2]
             prior += [p.compliance_std, p.gap_std_arcsec]
-    for width in NOISE_WINDOWS:
-        columns.append(jitter(h, width))
-        prior.append(p.compliance)
+    columns += [jitter(h, w) for w in NOISE_WINDOWS] if noise is None else list(noise.T)
+    prior += [p.compliance] * len(NOISE_WINDOWS)
     return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
 from flexspline.pipeline.diagnosis.sweep.evidence_gains import RegressorGroup
-from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and odds of 1 to 7 that one acts at all (1.9)."""
@@ -82,6 +82,11 @@ class Search:
             top = beam[0].score
         return max(self.best.values(), key=lambda c: c.score)
 
+    @property
+    def named_apart(self) -> set[str]:
+        """Causes that act already: friction behind the gap, beside that ahead of it, is a further element."""
+        return {FRICTION} if self.evidence.columns.ahead else set()
+
     def candidate(self, terms: Sequence[int]) -> Candidate:
         """Evidence and score of one set."""
         at = column_indices(self.evidence, terms)
@@ -95,7 +100,7 @@ class Search:
 
     def prior(self, terms: Sequence[int]) -> float:
         """Log prior of a set: costs of its owners and of its shapes."""
-        total, seen = 0.0, set[str]()
+        total, seen = 0.0, set(self.named_apart)
         for i in terms:
             term = self.evidence.terms[i]
             total += term.log_share
@@ -125,7 +130,9 @@ class Search:
         cross = evidence.gram[at]
         pull = inverse @ cross
         found: list[Candidate] = []
-        present = {evidence.terms[i].owner for i in c.terms if evidence.terms[i].cause}
+        present = self.named_apart | {
+            evidence.terms[i].owner for i in c.terms if evidence.terms[i].cause
+        }
         shut = frozenset[str]().union(*(evidence.terms[i].against for i in c.terms))
         for group in self._groups:
             gain, valid = group.gains(evidence, cross, pull, mean, held)

@@ -18,6 +18,7 @@ from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 
 FRICTION = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=2, loaded=0, held=1, start=0)
+AHEAD = {"stiffness_ratio": 12.3, "deadband_Nm": 0.003}
 ORIGIN = Provenance(
     "flexspline 0.1.0",
     'a "gear"',
@@ -35,7 +36,7 @@ MODEL = ExtendedModel(
     70.1 / 3,
     {"a": 0.1 + 0.2, "b": -1e-17},
     {
-        "friction_hysteresis": (Element(FRICTION, (2.4630052653391297,)),),
+        "friction_hysteresis": (Element(AHEAD, (0.21,)), Element(FRICTION, (2.4630052653391297,))),
         "thermal_clearance": (Element(shape_of("thermal_clearance"), (-0.4237122462383699,)),),
         "kinematic_error": (Element(shape_of("kinematic_error"), (1 / 3, -2 / 7)),),
         "torque_offset": (Element({}, (0.01,)),),

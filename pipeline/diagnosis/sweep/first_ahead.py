@@ -1,0 +1,91 @@
+"""A first guess of friction ahead of the teeth, before anything is fitted.
+
+It crosses the gap late both ways, and would pass for hardening and a negative gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.operators import (
+    direction_of_loading,
+    steadied,
+    stops,
+)
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
+from flexspline.pipeline.diagnosis.sweep.step_place import (
+    LEAST_STEP,
+    nats_over,
+    step_misfit,
+    zeros_of_cycles,
+)
+from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
+
+LARGEST = 0.45
+"""Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
+COARSE, FINE = 16, 9
+"""Places tried: 2.8 % of the largest torque apart, less than the band's whole width (7 %), then between."""
+OFFSETS = 33
+"""Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
+OFFSET_NATS = 3.0
+"""Over the best of them, odds of 20 to 1: a race with either decides what is as near as that."""
+BESIDE = (0.04, 0.12, 0.3)
+"""Thresholds of ordinary friction that may act at every place tried: only the step decides."""
+
+
+@dataclass(frozen=True)
+class AheadGuess:
+    """A friction torque, and the nats of the step's place over the best one without it."""
+
+    friction_Nm: float
+    nats: float
+
+
+def first_ahead(
+    history: History, angle_arcsec: np.ndarray, gap_arcsec: float, band_Nm: float
+) -> AheadGuess | None:
+    """The guess; None where there is none to see.
+
+    The angle is fitted by smooth functions of torque, friction elements and one step of free height, crossed
+    where the torque beyond a play operator changes sign; the play's width is the guess, if it is clearly
+    better than none, and than a shifted torque reading.
+    """
+    largest = float(np.abs(history.torque_Nm).max())
+    if not both_ways(history.torque_Nm):
+        return None
+    x = history.torque_Nm / largest
+    torque = steadied(history, deadband_Nm(history))
+    coarse = np.linspace(0, LARGEST, COARSE + 1)[1:] * largest
+    tried = np.r_[np.array(BESIDE) * largest, coarse]
+    states = stops(history, torque, tried, np.zeros(len(tried)))
+    beside, carried = states[:, : len(BESIDE)] / tried[: len(BESIDE)], states[:, len(BESIDE) :]
+    direction = direction_of_loading(history)
+    smooth = np.column_stack(
+        [*zeros_of_cycles(history), x, np.abs(x), x * np.abs(x), x**3, direction, beside]
+    )
+
+    def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
+        beyond = history.torque_Nm - carried_Nm
+        return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, least)
+
+    table = [misfit(carried[:, k]) for k in range(COARSE)]
+    best = int(np.argmin(table))
+    if not np.isfinite(table[best]) or table[best] <= 0:
+        return None
+    step = coarse[0]
+    fine = coarse[best] + step * np.linspace(-1, 1, FINE + 2)[1:-1]
+    finer = stops(history, torque, fine, np.zeros(FINE))
+    again = [misfit(finer[:, k]) for k in range(FINE)]
+    k = int(np.argmin(again))
+    least, rows = min(again[k], table[best]), len(x)
+    nats = nats_over(misfit(0.0, -np.inf), least, rows)
+    if nats < FIRST_NATS:
+        return None
+    shifted = min(misfit(p) for p in np.linspace(-REACH, REACH, OFFSETS) * largest)
+    nats = min(nats, nats_over(shifted, least, rows))
+    friction = fine[k] if again[k] <= table[best] else coarse[best]
+    return AheadGuess(float(friction), nats) if nats >= OFFSET_NATS else None

@@ -1,0 +1,114 @@
+"""Friction ahead of the gap: the torque it carries, where the gap is crossed, its width, and the race."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden.cases import draw_case
+from histories import PREDICTION, sweep
+
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.sliding import carried_share
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+
+FRICTION = 0.3
+"""N·m."""
+STIFF = {"stiffness_ratio": 1e4, "deadband_Nm": 0.0}
+"""It slips within 1e-4 of the gear's wind-up under that torque: a play operator."""
+AHEAD = Element(STIFF, (FRICTION,))
+MODEL = ExtendedModel(10.0, 60.0, {"": 0.0}, {"friction_hysteresis": (AHEAD,)}, {})
+UP = np.linspace(-2, 2, 401)
+LOOP = np.concatenate([UP[201:], UP[::-1], UP])
+
+
+def along(torque: np.ndarray) -> History:
+    none = np.zeros(len(torque), int)
+    return History(torque, none, none)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 3.0, 40.0])
+def test_torque_is_shared_as_the_stiffnesses_are(ratio: float) -> None:
+    """dT = K dx + dF with dF = κK(1 − z·sgn dx) dx, by many small steps; K = 1."""
+    torque = np.concatenate([np.linspace(0, 1, 20001), np.linspace(1, -0.4, 28001)])
+    z, out = 0.0, np.zeros(len(torque))
+    for k, step in enumerate(np.diff(torque), 1):
+        part = ratio * (1 - z * np.sign(step))
+        z += step / FRICTION * part / (1 + part)
+        out[k] = z
+    # Euler steps of 5e-5 of the torque, 1.7e-4 of the friction: first order
+    np.testing.assert_allclose(carried_share(along(torque), FRICTION, ratio, 0.0), out, atol=2e-3)
+
+
+def test_the_gap_is_crossed_at_the_friction_torque_each_way() -> None:
+    angle = MODEL.angle_of(along(LOOP))
+    falling, rising = angle[200:601], angle[601:]
+    assert (
+        falling[UP[::-1] > -FRICTION + 0.01] > 29.9
+    ).all()  # still on the upper flank, 30 arcsec
+    assert (rising[UP < FRICTION - 0.01] < -29.9).all()
+    beyond = UP > FRICTION + 0.01
+    expected = 10.0 * (UP[beyond] - FRICTION) + 30.0
+    # the play's corner is round over 1e-4 of the friction
+    np.testing.assert_allclose(rising[beyond], expected, atol=0.01)
+
+
+def test_the_loop_s_width_is_what_elasticity_makes_of_it() -> None:
+    friction = known_causes()["friction_hysteresis"]
+    rig = replace(Rig(PREDICTION, sweep()), measured=(12.0, 0.0))
+    width = friction.magnitude([AHEAD], rig)
+    assert width == pytest.approx(2 * FRICTION * 12.0, rel=1e-3)  # the round corner
+
+
+def test_wind_up_at_the_ends_lacks_what_friction_carries() -> None:
+    nominal = Backlash(5.0, 6.0, 30.0, 40.0, 81.0, 12.0, {}, 0.0, None)
+    found = extended_backlash(nominal, MODEL, 0.5)
+    assert found.causes_arcsec["friction_hysteresis"] == pytest.approx(
+        -2 * 10.0 * FRICTION, rel=1e-3
+    )
+    ends = MODEL.angle_of(along(np.concatenate([LOOP, UP[::-1], UP]) / 4))
+    whole = 81.0 + found.calibration_arcsec + found.causes_arcsec["friction_hysteresis"]
+    assert np.ptp(ends[200:]) == pytest.approx(whole, rel=1e-3)
+
+
+def diagnosed(number: int, folder: Path) -> tuple[Diagnosis, float, float]:
+    """Of a hidden record: the diagnosis, the true width, the true gap [arcsec]."""
+    case = draw_case(2024, number, "single", "friction_ahead")
+    path = folder / "rig.csv"
+    path.write_text(case.csv, encoding="utf-8")
+    found = diagnose_file(design_from(tomllib.loads(case.design)), path, case.K_b, case.K_e)
+    return found, case.truth[0][1], case.units[0].gear.gap
+
+
+@pytest.mark.parametrize("number", [1, 2, 4, 5])
+def test_named_with_its_size_and_the_gap(number: int, tmp_path: Path) -> None:
+    """The limits asked of a forward model: friction within 14 %, gap within 23 %, and nothing false."""
+    found, width, gap = diagnosed(number, tmp_path)
+    assert (found.verdict, [c.id for c in found.causes]) == ("named", ["friction_hysteresis"])
+    assert found.causes[0].magnitude == pytest.approx(width, rel=0.14)
+    assert found.model is not None
+    assert found.model.gap_arcsec == pytest.approx(gap, rel=0.23)
+
+
+def test_the_written_model_predicts_the_record(tmp_path: Path) -> None:
+    """All through the gap's crossing but for what the torque's noise hides there."""
+    found, _, _ = diagnosed(1, tmp_path)
+    assert found.sweep is not None
+    assert found.model is not None
+    prepared = found.sweep.explained.prepared
+    assert prepared.ahead is not None
+    left = prepared.sweep.angle_arcsec - found.model.angle_of(
+        prepared.sweep.history, prepared.sweep.units
+    )
+    # the fit's own residual, as the model is its fit; the noise columns are in the fit alone
+    expected = found.sweep.explained.identified.fit.residual_as_read()
+    np.testing.assert_allclose(left, expected, atol=1e-3)  # the fit's columns are float32
