@@ -11,7 +11,7 @@
 | race: search sets, tune shapes, estimate the noise again | `race.py`, `search.py`, `shape_tuning.py` |
 | identify causes and rivals | `identification.py`, rules in `../decision.py` |
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
-| or with a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
+| or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
