@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import hypot
+
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.sizing import Grading, refuse_beyond
 from flexspline.geometry.part import Part
@@ -28,6 +30,10 @@ ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
 FINEST_SHARE = 20
 """The largest edge is at least this share of the outer radius: a wall of a hundredth of it needs one
 layer of long elements, not a part full of short ones."""
+
+LARGEST_BEND = 0.5
+"""How far the middle of a keyway's floor may move against its corners, of the material below it: on a shaft
+of 16 mm with a bore of 6 slots up to there keep the volume to 1e-4, beyond they are off by 0.1 to 0.9 %."""
 
 
 def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
@@ -61,8 +67,18 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         envelope=envelope,
         snap_limit=5 * envelope,
         # half the outer radius: elements twice as long around the tube, fair ones at the bolts
-        unrolled_radius=0.0 if on_axis else outer / 2,
+        unrolled_radius=0.0 if on_axis or _bends(part) else outer / 2,
     )
+
+
+def _bends(part: Part) -> bool:
+    """Whether a keyway's floor leaves its place in unrolled space, where its plane is r = floor/cos φ."""
+    slot, shape = part.keyway, part.shape
+    if slot is None or not isinstance(shape, Shaft):
+        return False
+    bend = hypot(slot.floor, slot.half_width) - slot.floor
+    below = slot.floor - shape.segment[-1].inner_diameter_mm / 2
+    return bend > LARGEST_BEND * below
 
 
 def surface_to_mesh(

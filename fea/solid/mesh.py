@@ -23,8 +23,7 @@ ASTRAY_SHARE = 0.002
 ENVELOPES_PER_EDGE = 6
 """The envelope stays this much below the smallest edge: above it the mesher's surface has cracked."""
 RETRIES = ((1.0, True), (0.95, True), (0.9, False))
-"""Edge lengths of the attempts at a mesh, and whether they may be in unrolled space: a keyway's planes are
-bent there."""
+"""Edge lengths of the attempts at a mesh, and whether they may be in unrolled space."""
 
 
 @dataclass(frozen=True)

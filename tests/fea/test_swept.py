@@ -164,8 +164,8 @@ def test_volume_is_pappus_less_the_holes(made: tuple[Design, str, TetMesh]) -> N
         section, _ = quad(lambda y: sqrt(radius**2 - y**2) - slot.floor, 0, slot.half_width)
         volume -= section * slot.length
     # parabolas for arcs of at most 15°: (15°)⁴/720 of a fillet's or hole's area, a part of the whole; where
-    # a keyway bends the mesh, arcs have up to 16° and middle nodes off their middles
-    within = 2e-5 if slot is None else 3e-5
+    # a keyway bends the mesh, arcs have up to 21°, (21°)⁴/720, and middle nodes off their middles
+    within = 2e-5 if slot is None else 4e-5
     assert element_volumes(mesh.nodes, mesh.cells).sum() == pytest.approx(volume, rel=within)
     assert jacobian_ratio(mesh.nodes, mesh.cells).min() > 0.3
 
@@ -357,10 +357,10 @@ def test_a_keyed_shaft_lies_between_two_bodies_of_revolution(name: str) -> None:
 def test_a_keyed_shaft_is_as_stiff_as_on_the_meshers_mesh() -> None:
     design = design_of("keyed-shaft.toml", "shaft", {})
     part = design.part("shaft")
-    material, first = Elastic.of(part.material), first_spec(part)
-    surface = surface_to_mesh(part, first, 180.0, edge_spacing=0.1)
+    material, coarse = Elastic.of(part.material), first_spec(part).scaled(2.0)
+    surface = surface_to_mesh(part, coarse, 180.0, edge_spacing=0.1)
     bounds = []
-    for mesh in (swept(design, "shaft"), mesh_surface(surface, first)):
+    for mesh in (swept(design, "shaft"), mesh_surface(surface, coarse)):
         solved = torsion(Model.of(mesh, material), "grip")
         error = energy_error(mesh, solved.displacement, material).relative
         # K_h is above K; the estimate times 4 is the lower end that solid_stiffness states for one mesh
