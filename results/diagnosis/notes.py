@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.reading import heads, reading_notes
+from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped
 
@@ -33,8 +34,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
 def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
-    if prepared.sweep.history.time_s is None:
-        found.append("no time was recorded: friction cannot be told from rate dependence")
+    found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")

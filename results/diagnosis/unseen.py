@@ -1,0 +1,40 @@
+"""What a record cannot show, whatever the gear does: one line each."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.results.diagnosis.words import channel_words
+
+BOTH_WAYS = 0.05
+"""Of the rows: fewer on one side, or in one direction, are an approach or a turn."""
+WITHOUT = {
+    "time_s": "friction cannot be told from rate dependence, nor drift from wear",
+    "temperature_C": "a gap that changes with it looks like wear or drift",
+    "input_angle_deg": "a zero or a stiffness that changes with it looks like scatter between cycles",
+}
+"""What a channel that was not recorded leaves open."""
+
+
+def unseen_notes(history: History, band_Nm: float) -> list[str]:
+    """Sides, directions and channels that the record lacks; `band_Nm` is the gap's crossing."""
+    found = []
+    torque = history.torque_Nm
+    if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < BOTH_WAYS:
+        found.append(
+            "torque acts one way only: the record does not show the gap, a shifted torque reading, or a "
+            "stiffness that differs between directions; sweep to −T as well"
+        )
+    direction = direction_of_loading(history)
+    if min(np.mean(direction > 0), np.mean(direction < 0)) < BOTH_WAYS:
+        found.append(
+            "torque never returns: the record does not show friction; sweep back to zero as well"
+        )
+    found += [
+        f"{channel_words(channel)} was not recorded: {leaves_open}"
+        for channel, leaves_open in WITHOUT.items()
+        if getattr(history, channel) is None
+    ]
+    return found

@@ -1,0 +1,34 @@
+"""A record that cannot show an effect says so."""
+
+from dataclasses import replace
+
+import numpy as np
+from histories import sweep
+
+from flexspline.results.diagnosis.unseen import unseen_notes
+
+WHOLE = sweep()
+
+
+def said(history, band: float = 0.05) -> str:
+    return "; ".join(unseen_notes(history, band))
+
+
+def test_a_whole_record_with_every_channel_has_nothing_to_say() -> None:
+    assert unseen_notes(WHOLE, 0.05) == []
+
+
+def test_half_a_cycle_shows_neither_gap_nor_direction() -> None:
+    assert "one way only" in said(replace(WHOLE, torque_Nm=np.abs(WHOLE.torque_Nm)))
+    assert "one way only" in said(replace(WHOLE, torque_Nm=-np.abs(WHOLE.torque_Nm)))
+
+
+def test_a_single_ramp_shows_no_friction() -> None:
+    ramp = replace(WHOLE, torque_Nm=np.linspace(-2, 2, len(WHOLE)))
+    assert said(ramp).startswith("torque never returns")
+
+
+def test_channels_that_were_not_recorded_are_named() -> None:
+    bare = replace(WHOLE, time_s=None, temperature_C=None, input_angle_deg=None)
+    for name in ("time", "temperature", "wave generator angle"):
+        assert f"{name} was not recorded" in said(bare)
