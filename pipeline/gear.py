@@ -72,6 +72,11 @@ class GearCurve:
     ball_force_N: tuple[float, ...]
 
 
+def chords(torques_Nm: Sequence[float], angles_rad: np.ndarray) -> tuple[float, ...]:
+    """Stiffness [N·m/rad] between each torque and the next."""
+    return tuple((np.diff(torques_Nm) / np.diff(angles_rad)).tolist())
+
+
 @dataclass(frozen=True)
 class Chain:
     """The contact model with what stands behind it in series.
@@ -161,7 +166,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     states = chain.along(loop.tolist())
     angles = np.array([chain.angle(s) for s in states])
     marks = [LOADING.index(share) for share in (LOADING[0], T1_SHARE, T2_SHARE, 1.0)]
-    K1, K2, K3 = np.diff(loop[marks]) / np.diff(angles[marks])
+    K1, K2, K3 = chords(loop[marks], angles[marks])
     one_way = LOADING.index(LOST_MOTION_SHARE)
     other_way = 2 * len(up) - 1 + one_way
     full = states[len(up) - 1]
@@ -170,9 +175,9 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     teeth = full.forces[:t] - full.forces[t : 2 * t]
     carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
     return GearCurve(
-        K1_Nm_per_rad=float(K1),
-        K2_Nm_per_rad=float(K2),
-        K3_Nm_per_rad=float(K3),
+        K1_Nm_per_rad=K1,
+        K2_Nm_per_rad=K2,
+        K3_Nm_per_rad=K3,
         T1_Nm=T1_SHARE * rated,
         T2_Nm=T2_SHARE * rated,
         rated_torque_Nm=rated,

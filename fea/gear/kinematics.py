@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, pi, sin
+from typing import Literal
 
 import numpy as np
 
 LARGEST_WITHDRAWAL = 1.34
 """Of the stroke: y = w0 (1 − cos 2φ) at 55°, where plain flanks of 20° begin to cut into each other."""
+Flanks = Literal["plain", "relieved", "conjugate"]
 STEPS = 1000
 """Of the search for a gap's largest value: a parabola's is met to 1e-6 of it."""
 
@@ -30,6 +32,9 @@ class Mesh:
     clearance : j_bn0, of both flanks together, along their normal.
     pressure_angle : of the flanks.
     height : of the pitch circle over the rim's middle line, over the radius of that line.
+    flanks : "plain": straight; "relieved": straight, but no gap of the unloaded gear is smaller than one that
+        is nearer to the major axis; "conjugate": shaped so that all gaps of the front flanks within reach are alike.
+    depth : largest withdrawal at which teeth touch, of the stroke.
     """
 
     pitch_radius: float
@@ -38,6 +43,8 @@ class Mesh:
     clearance: float
     pressure_angle: float
     height: float
+    flanks: Flanks = "relieved"
+    depth: float = LARGEST_WITHDRAWAL
 
     def offset(self, phi: np.ndarray) -> np.ndarray:
         """x [mm], along the pitch circle, of the tooth at φ in its space, before the rim moves."""
@@ -66,17 +73,22 @@ class Mesh:
     @property
     def reach(self) -> float:
         """φ [rad] at which teeth leave the working depth."""
-        return float(np.arccos(1 - LARGEST_WITHDRAWAL) / 2)
+        return float(np.arccos(1 - self.depth) / 2)
 
     def relief(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What is taken off the front and the back flanks at φ [mm], for the ideal rim.
+        """What is taken off the front and the back flanks at φ [mm], for the ideal rim; less than 0: added.
 
         Plain flanks come closer again far from the major axis. Teeth that should run are relieved there: as
         much as it takes that no gap is smaller than one nearer to the axis.
         """
+        if self.flanks == "plain":
+            return np.zeros_like(phi), np.zeros_like(phi)
         grid = np.linspace(0, self.reach, STEPS)
         front, back = self.free_gaps(grid, self.stroke)
-        off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
+        if self.flanks == "conjugate":
+            off = [front[0] - front, np.zeros_like(back)]
+        else:
+            off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
         ahead, behind = (np.interp(np.abs(phi), grid, each) for each in off)
         # the mirror of a front flank is the back flank on the other side
         return np.where(phi >= 0, ahead, behind), np.where(phi >= 0, behind, ahead)

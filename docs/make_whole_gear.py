@@ -1,0 +1,58 @@
+"""Writes the tables of docs/whole-gear.md; its words are written by hand. Under a minute.
+
+python3 docs/make_whole_gear.py
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import whole_gear_figures as figures
+
+PAGE = Path(__file__).with_name("whole-gear.md")
+MARK = "<!-- made by docs/make_whole_gear.py: {} -->\n"
+SIZE, TORQUES = 25, (14.0, 48.0, 96.0)
+"""Of the sensitivities: a size in the middle, with its T1, T2 and twice T2 [N·m]."""
+AIM_K3, AIM_RATIO = 0.30, 0.25
+"""What K3, and K3/K1, were hoped to be within, in three rows of four."""
+
+
+def tables() -> dict[str, str]:
+    """What stands below each mark."""
+    found = list(figures.rows())
+    of_examples, terms = figures.examples()
+    return {
+        "examples": of_examples,
+        "terms": terms,
+        "published cup": figures.published_table(),
+        "classes": figures.by_class(found),
+        "aims": aims(found),
+        "rows": figures.catalogue_table(found),
+        "ratio 100": figures.sensitivity(SIZE, 100, TORQUES),
+        "ratio 30": figures.sensitivity(SIZE, 30, TORQUES),
+    }
+
+
+def aims(found: list[figures.Row]) -> str:
+    """In how many rows the aims are met."""
+    lines = []
+    for words, index, aim in (("K3", 2, AIM_K3), ("K3/K1", 3, AIM_RATIO)):
+        alone, with_shaft = (figures.within(found, index, aim, shaft) for shaft in (False, True))
+        lines.append(f"| {words} within ± {aim:.0%} | {alone} | {with_shaft} |")
+    return "\n".join(lines)
+
+
+def written(text: str, made: dict[str, str]) -> str:
+    """The page with these tables: a header's two lines stay, the rows below them are new."""
+    for name, rows in made.items():
+        mark = re.escape(MARK.format(name))
+        block = re.compile(rf"({mark}\n\|[^\n]*\n\|[-|]*\n)(?:\|[^\n]*\n)*")
+        text, count = block.subn(lambda m, rows=rows: f"{m[1]}{rows}\n", text)
+        if count != 1:
+            raise ValueError(f"{PAGE.name} has {count} tables marked {name!r}")
+    return text
+
+
+if __name__ == "__main__":
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), tables()), encoding="utf-8")

@@ -1,0 +1,78 @@
+"""docs/whole-gear.md against the program: some rows at every run, the whole page in the long one."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[1] / "docs"
+sys.path.insert(0, str(DOCS))
+
+import make_whole_gear as maker  # noqa: E402
+import whole_gear_figures as figures  # noqa: E402
+
+TEXT = maker.PAGE.read_text(encoding="utf-8")
+ROUNDING = 0.006
+"""Of a ratio printed with two decimals, and of another machine's linear algebra."""
+
+
+def rows_below(name: str) -> list[list[str]]:
+    """Cells of a table of the page."""
+    block = TEXT.split(maker.MARK.format(name))[1].lstrip("\n").split("\n\n")[0]
+    return [[c.strip() for c in line.strip("|").split("|")] for line in block.splitlines()[2:]]
+
+
+@pytest.mark.parametrize("ratio", ["30", "50", ">50"])
+def test_size_25_of_the_catalogue_is_what_the_page_says(ratio: str) -> None:
+    """Every size is the same gear but for its torques: one stands for all."""
+    printed = next(r for r in rows_below("rows") if r[1] == "25" and r[2] == ratio)
+    model, shaft = figures.sized(25, 100 if ratio == ">50" else int(ratio))
+    given = {"30": (1.0, 1.3, 2.1), "50": (2.5, 3.4, 4.4), ">50": (3.1, 5.0, 5.7)}[ratio]  # 1e4
+    for compliance, cells in ((0.0, printed[3:6]), (shaft, printed[7:10])):
+        found = figures.slopes(figures.Chain(model, compliance, 0.0), (14.0, 48.0, 96.0))
+        for K, catalogue, cell in zip(found, given, cells, strict=True):
+            assert K / (1e4 * catalogue) == pytest.approx(float(cell), abs=ROUNDING)
+
+
+def test_every_row_of_the_catalogues_is_there() -> None:
+    """23 with three K each and 4 with two, as the data files have them."""
+    rows = rows_below("rows")
+    assert len(rows) == 27
+    assert sum(row[0] == "RT1-H" for row in rows) == 4
+    met = sum(abs(float(row[9]) - 1) <= maker.AIM_K3 for row in rows)
+    assert rows_below("aims")[0][2] == f"{met} of 27"
+
+
+def test_the_words_beside_the_tables_hold() -> None:
+    """Where the text draws a conclusion from a table."""
+    by = {row[0]: [float(x) for x in row[2:]] for row in rows_below("classes")}
+    assert 1.7 < by["30"][6] < 2.1  # "about twice too stiff, even with a shaft"
+    others = [float(row[9]) for row in rows_below("rows") if row[2] != "30"]
+    assert max(abs(x - 1) for x in others) < 0.3  # "within ± 30 % in every row, with the shaft"
+    terms = {(row[0], row[1].split(",")[0]): row[2:] for row in rows_below("terms")}
+    for name in ("xb1-40", "hat-25"):
+        of_sum, of_model = map(float, terms[name, "flexspline"])
+        assert 3 < of_model / of_sum < 4.5  # "by a factor of 3 to 4"
+        flank = [float(x) for x in terms[name, "flank clearance"]]
+        assert flank[0] == pytest.approx(flank[1], abs=0.2)  # "agree"
+    shares = {row[0]: row[-1] for row in rows_below("published cup")}["20"]
+    structure, bearing, _ = (float(x) for x in re.findall(r"\d+", shares))
+    assert structure == pytest.approx(73, abs=5)  # "the published ones near 20 N·m"
+    assert bearing == pytest.approx(25, abs=5)
+
+
+def test_a_page_without_its_tables_is_refused() -> None:
+    with pytest.raises(ValueError, match="0 tables"):
+        maker.written("nothing", {"rows": "| |"})
+    again = maker.written(
+        TEXT, {"aims": "\n".join(f"| {' | '.join(r)} |" for r in rows_below("aims"))}
+    )
+    assert again == TEXT
+
+
+@pytest.mark.long
+def test_the_whole_page_is_what_the_program_finds() -> None:
+    assert maker.written(TEXT, maker.tables()) == TEXT
