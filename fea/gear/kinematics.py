@@ -33,7 +33,7 @@ class Mesh:
     pressure_angle : of the flanks.
     height : of the pitch circle over the rim's middle line, over the radius of that line.
     flanks : "plain": straight; "relieved": straight, but no gap of the unloaded gear is smaller than one that
-        is nearer to the major axis; "conjugate": shaped so that all gaps of the front flanks within reach are alike.
+        is nearer to the major axis; "conjugate": shaped so that all gaps of the front flanks are alike.
     depth : largest withdrawal at which teeth touch, of the stroke.
     """
 
