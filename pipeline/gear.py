@@ -72,7 +72,7 @@ class GearCurve:
     ball_force_N: tuple[float, ...]
 
 
-def chords(torques_Nm: Sequence[float], angles_rad: np.ndarray) -> tuple[float, ...]:
+def chords(torques_Nm: Sequence[float] | np.ndarray, angles_rad: np.ndarray) -> tuple[float, ...]:
     """Stiffness [N·m/rad] between each torque and the next."""
     return tuple((np.diff(torques_Nm) / np.diff(angles_rad)).tolist())
 
