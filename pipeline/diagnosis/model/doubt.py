@@ -51,9 +51,10 @@ def parameter_columns(model: ExtendedModel, history: History, units: tuple[str, 
     """(n, p) what one of each parameter adds to the angle.
 
     In this order: the zeros; compliance; gap; each unit's own compliance and gap; the amplitudes of each
-    cause's elements.
+    cause's elements. Of one ahead of the teeth, what it takes of the wind-up.
     """
-    true = model.true_history(history)
+    read = model.true_history(history)
+    true = model.at_teeth(read)
     of_unit = [
         np.isin(true.unit, [u for u, given in enumerate(units) if given == name]).astype(float)
         for name in model.zeros_arcsec
@@ -63,7 +64,12 @@ def parameter_columns(model: ExtendedModel, history: History, units: tuple[str, 
     columns = [*of_unit, torque, side, *(own if model.own else [])]
     blocks = [np.column_stack(columns)]
     for cause_id, elements in model.elements.items():
-        blocks += [known_causes()[cause_id].columns(e.shape, true) for e in elements]
+        for e in elements:
+            column = known_causes()[cause_id].columns(e.shape, true)
+            carried = known_causes()[cause_id].at_teeth((e,), read).torque_Nm - read.torque_Nm
+            if carried.any():
+                column = model.compliance * carried[:, None] / e.amplitudes[0]
+            blocks.append(column)
     return np.hstack(blocks)
 
 
@@ -91,13 +97,15 @@ def deviation_of(
     if len(doubt.covariance):
         columns = parameter_columns(model, history, units)
         variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
-    true = model.true_history(history)
+    read = model.true_history(history)
+    true = model.at_teeth(read)
     if doubt.torque_noise_Nm > 0:
         wrong = ndtr(-np.abs(true.torque_Nm) / doubt.torque_noise_Nm)
         variance += model.gap_arcsec**2 * wrong
     if FRICTION in model.elements:
         width = known_causes()[FRICTION].angle_arcsec(model.elements[FRICTION], true)
-        variance += before_far_turn(true) * np.abs(width).max() ** 2
+        width = width + model.compliance * (true.torque_Nm - read.torque_Nm)
+        variance += before_far_turn(read) * np.abs(width).max() ** 2
     outside = beyond(doubt.span, history)
     growth = 1 + sum(outside.values())
     std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * _over(model, doubt.span, true)) ** 2)

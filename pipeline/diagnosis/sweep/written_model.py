@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead
 
 
 @dataclass(frozen=True)
@@ -43,16 +43,17 @@ def written_model(
     doubt = Doubt(
         max(floor, gain.rmse_after) if gain else floor,
         torque_noise_Nm(sweep.history),
-        _covariance(fit, model),
+        _covariance(fit, model, explained.ahead),
         span_of(sweep.history),
     )
     return WrittenModel(model, doubt)
 
 
-def _covariance(fit: SweepFit, model: ExtendedModel) -> np.ndarray:
+def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -> np.ndarray:
     """(p, p) of the model's parameters in the order of `model.doubt.parameter_columns`.
 
-    An element that the fit did not estimate has zeros. (0, 0) where there are too many.
+    An element that the fit did not estimate has zeros, but for the deviation of friction ahead of the teeth,
+    which was found apart. (0, 0) where there are too many.
     """
     k = fit.units
     at = list(range(k + 2 + (2 * k if k > 1 else 0)))
@@ -72,4 +73,8 @@ def _covariance(fit: SweepFit, model: ExtendedModel) -> np.ndarray:
     if len(at) > MOST_PARAMETERS:
         return np.empty((0, 0))
     chosen, known = np.array(at), np.array(at) >= 0
-    return np.where(np.outer(known, known), fit.posterior.covariance[np.ix_(chosen, chosen)], 0.0)
+    found = np.where(np.outer(known, known), fit.posterior.covariance[np.ix_(chosen, chosen)], 0.0)
+    if ahead is not None:  # the first of the friction's elements, and the only one not fitted
+        place = int(np.flatnonzero(~known)[0])
+        found[place, place] = ahead.torque_std_Nm**2
+    return found

@@ -18,8 +18,10 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.doubt import Doubt, deviation_of
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.span import span_of
 
 FRICTION = 0.3
 """N·m."""
@@ -112,3 +114,21 @@ def test_the_written_model_predicts_the_record(tmp_path: Path) -> None:
     # the fit's own residual, as the model is its fit; the noise columns are in the fit alone
     expected = found.sweep.explained.identified.fit.residual_as_read()
     np.testing.assert_allclose(left, expected, atol=1e-3)  # the fit's columns are float32
+
+
+def test_deviation_of_a_prediction() -> None:
+    """Doubt of the friction counts as wind-up; the gap's side is unsure where the teeth feel no torque."""
+    still = np.zeros((4, 4))
+    still[3, 3] = 0.02**2  # of the friction torque; zero, compliance and gap are known
+    span = span_of(along(LOOP))
+    plain = Doubt(0.5, 0.0, np.zeros((4, 4)), span)
+    read = along(LOOP)
+    far = slice(260, None)  # after the first turn, where the friction's state is known
+    std = deviation_of(MODEL, replace(plain, covariance=still), read, ("",)).std_arcsec
+    slips = np.abs(np.diff(MODEL.at_teeth(read).torque_Nm, prepend=0.0)) > 0.009
+    # all of it carried: 10 arcsec per N·m times 0.02 N·m
+    np.testing.assert_allclose(std[far][slips[far]], np.hypot(0.5, 0.2), rtol=1e-3)
+    noisy = deviation_of(MODEL, replace(plain, torque_noise_Nm=0.01), read, ("",)).std_arcsec
+    teeth = MODEL.at_teeth(read).torque_Nm
+    assert noisy[far][np.abs(teeth[far]) < 0.005].min() > 20.0  # of a gap of 60, one half is unsure
+    assert noisy[far][np.abs(teeth[far]) > 0.1].max() == pytest.approx(0.5)
