@@ -7,7 +7,6 @@ from collections.abc import Collection
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import calibrated_residual, fit_regressors, less_zero
@@ -18,8 +17,6 @@ from flexspline.pipeline.diagnosis.sweep.search import Search
 
 FEWEST_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
-CROSSING_SIGMAS, CROSSING_LEAST = 3.0, 0.15
-"""|T| within this of zero, in units of the torque noise, is the gap's crossing."""
 
 
 def held_out(
@@ -54,7 +51,8 @@ def held_out(
 def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
     """Fit the named causes anew on the rest of the record, and predict what was held out.
 
-    The shapes are searched anew as well, on the training rows alone.
+    The shapes are searched anew as well, on the training rows alone. Rows in the gap's crossing are judged no
+    more than they are fitted: their side of the gap is not known.
     """
     prepared = explained.prepared
     sweep, history = prepared.sweep, prepared.rig.history
@@ -63,7 +61,7 @@ def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
         return None
     label, out = split
     train = prepared.kept & ~out
-    test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > _crossing(explained))
+    test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > prepared.band_Nm)
     test &= ~turning(history)  # what a row there shows is a matter of sampling
     if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
         return None
@@ -82,14 +80,6 @@ def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
         left=left,
     )
-
-
-def _crossing(explained: ExplainedSweep) -> float:
-    """|T| [N·m] within which a held-out row is in the gap's crossing."""
-    prepared = explained.prepared
-    noise = CROSSING_SIGMAS * torque_noise_Nm(prepared.rig.history)
-    # means of blocks hide the noise of the single rows that are kept near zero
-    return min(max(noise, CROSSING_LEAST * prepared.band_Nm), prepared.band_Nm)
 
 
 def _fitting(prepared: PreparedSweep, train: np.ndarray) -> GaussianEvidence:
