@@ -38,9 +38,10 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         if cause.alternatives:
             lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
-        lines.append(
-            f"  left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
+        left = (
+            f"left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
         )
+        lines += _wrapped(left, "  ", "    ")
     if diagnosis.calibration is not None:
         lines += _wrapped(
             calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome.verdict)

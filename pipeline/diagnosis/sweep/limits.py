@@ -9,6 +9,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.size import simulated_twist_arcsec, sweep_size
+from flexspline.pipeline.diagnosis.sweep.slip import OUTER, slip_of
 
 MOST = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
@@ -23,9 +24,17 @@ def broken_limit(
 ) -> Unexplained | None:
     """A limit that the best explanation breaks, with its channel; None where it keeps all.
 
-    A gear is not ten times softer or stiffer than drawn, and no gap is negative.
+    What springs comes back, a gear is not ten times softer or stiffer than drawn, and no gap is negative.
     """
     prepared, fit = explained.prepared, explained.identified.fit
+    slip = slip_of(prepared.rig.history, prepared.sweep.angle_arcsec)
+    if slip is not None:
+        what = (
+            f"the output slips: each time torque passes {OUTER:.0%} of its largest value and comes back, "
+            f"the angle has gone on by {slip.way_arcsec:.0f} arcsec, {slip.times:.0f} times what springs "
+            "there; a lock, a clamp or a friction joint gives way"
+        )
+        return Unexplained("torque_Nm", slip.way_arcsec, 0.0, what, limit=True)
     size = sweep_size(prepared.rig.history, prepared.sweep.angle_arcsec, prepared.prediction)
     if size is not None and slope_beyond(size, MOST):
         return Unexplained(
