@@ -61,12 +61,14 @@ def _at_pitch_point(surface: Condensed, lift: float) -> Condensed:
 
 
 def fine_enough(outline: Meridian, patch: str, places: int) -> MeridianMesh:
-    """The first mesh refined once, then on until the patch has two edges for each place.
+    """The first mesh refined once, then along the patch until that has two edges for each place.
 
     A further refinement moves K1 to K3 of xb1-40 by 0.2 to 0.3 %.
     """
     mesh = triangulate(outline)
     mesh = refined(mesh, np.ones(mesh.elements, bool))
-    while np.isin(mesh.edge_segment, mesh.segments_of(patch)).sum() < 2 * places:
-        mesh = refined(mesh, np.ones(mesh.elements, bool))
-    return mesh
+    while True:
+        ends = mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))]
+        if len(ends) >= 2 * places:
+            return mesh
+        mesh = refined(mesh, np.isin(mesh.triangles, ends).sum(axis=1) > 1)
