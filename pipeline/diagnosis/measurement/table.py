@@ -12,32 +12,17 @@ import numpy as np
 from flexspline.geometry.ranges import SMALLEST_NUMBER
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
+from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import Grid, read_grid
-from flexspline.pipeline.diagnosis.measurement.number_text import (
-    Mark,
-    evidence_of,
-    number_of,
-    numbers_of,
-)
+from flexspline.pipeline.diagnosis.measurement.number_text import Mark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
-from flexspline.pipeline.diagnosis.measurement.time_stamps import (
-    counted_seconds,
-    form_said,
-    form_shown,
-    is_day,
-    is_short,
-    is_slashed,
-    seconds_of,
-)
-from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
+from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
 
 LARGEST_NUMBER = 1e12
 """Beyond this no rig reads; a slipped column or exponent does."""
 OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
 """Columns that may be empty in every row: nothing was recorded then."""
-SHOWN = 40
-"""Letters of a cell in a message."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +72,7 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
     cells = {c.at: [t.strip() for t in across[c.at]] for c in columns}
     empty = [c for c in columns if c.name in OPTIONAL and not any(map(_holds, cells[c.at]))]
     columns = tuple(c for c in columns if c not in empty)
-    mark = _decimal_mark(grid, [c for c in columns if _is_number(c)], cells)
+    mark = decimal_mark(grid, [c for c in columns if _is_number(c)], cells)
     numbers: dict[str, np.ndarray] = {}
     labels: dict[str, tuple[str, ...]] = {}
     began = ""
@@ -101,7 +86,7 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
                     f"{d.strip()} {t}" for d, t in zip(across[column.day_at], texts, strict=True)
                 ]
             began = texts[0]
-            numbers[column.name] = _seconds(grid, column, texts)
+            numbers[column.name] = seconds_from(grid, column, texts)
         else:
             numbers[column.name] = _values(grid, column, texts, mark)
     used = {c.at for c in columns} | {c.day_at for c in columns}
@@ -136,113 +121,11 @@ def _is_number(column: ReadColumn) -> bool:
     return column.name not in LABELS and column.unit != STAMP
 
 
-def _decimal_mark(
-    grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]
-) -> Mark:
-    """The decimal mark of all the file's numbers.
-
-    Raises
-    ------
-    MeasurementError : some have a point and some a comma, or all may be read either way.
-    """
-    seen = [(c, evidence_of(cells[c.at])) for c in columns]
-    points = [(c, e.point) for c, e in seen if e.point is not None]
-    commas = [(c, e.comma) for c, e in seen if e.comma is not None]
-    either = [(c, e.either) for c, e in seen if e.either is not None]
-
-    def said(column: ReadColumn, row: int) -> str:
-        return f'{column.head} = "{cells[column.at][row][:SHOWN]}"'
-
-    if points and commas:
-        point, comma = min(points, key=lambda p: p[1]), min(commas, key=lambda p: p[1])
-        first, later = sorted(((point, "point"), (comma, "comma")), key=lambda p: p[0][1])
-        reason = (
-            f"{said(*later[0])} has a decimal {later[1]}, {said(*first[0])} in line "
-            f"{grid.line[first[0][1]]} a decimal {first[1]}: write all numbers one way"
-        )
-        raise MeasurementError(grid.path, grid.line[later[0][1]], reason)
-    if grid.encoding == WORKBOOK:
-        _refuse_text(grid, columns, cells)
-    if points or commas:
-        mark: Mark = "." if points else ","
-        other = "," if points else "."
-        proven = {c.at for c, _ in points or commas}
-        for column, row in either:
-            text = cells[column.at][row]
-            if column.at not in proven and other in text:
-                whole, part = text.replace(other, ""), text.replace(other, mark)
-                reason = (
-                    f"{said(column, row)} may be {whole} or {part}, and another column has a decimal "
-                    f'"{mark}": write all numbers one way'
-                )
-                raise MeasurementError(grid.path, grid.line[row], reason)
-        return mark
-    if either and (grid.separator != "," or "," in cells[either[0][0].at][either[0][1]]):
-        column, row = either[0]
-        text = cells[column.at][row]
-        if grid.encoding != WORKBOOK:
-            whole, part = text.replace(",", "").replace(".", ""), text.replace(",", ".")
-            reason = f"{said(column, row)} may be {whole} or {part}: write {whole} or {part}0"
-            raise MeasurementError(grid.path, grid.line[row], reason)
-    return "."
-
-
-def _refuse_text(grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]) -> None:
-    """Refuse text of a workbook that may be a thousand: a cell that holds a number has no comma."""
-    for column in columns:
-        for line, text in zip(grid.line, cells[column.at], strict=True):
-            if "," in text and number_of(text, ".") is not None:
-                whole, part = text.replace(",", ""), text.replace(",", ".")
-                reason = (
-                    f'{column.head} = "{text[:SHOWN]}" is text, and may be {whole} or {part}: make the '
-                    "cell a number"
-                )
-                raise MeasurementError(grid.path, line, reason)
-
-
 def _labels(grid: Grid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
     empty = next((i for i, t in enumerate(texts) if not t), None)
     if empty is not None:
         raise MeasurementError(grid.path, grid.line[empty], f"{column.head} is empty")
     return tuple(texts)
-
-
-def _seconds(grid: Grid, column: ReadColumn, texts: list[str]) -> np.ndarray:
-    if is_slashed(texts[0]):
-        said = f'{column.head} = "{texts[0][:SHOWN]}"'
-        reason = f"{said} may begin with the day or the month; write 2024-12-31 12:30:00"
-        raise MeasurementError(grid.path, grid.line[0], reason)
-    if is_day(texts[0]):
-        said = f'{column.head} = "{texts[0][:SHOWN]}"'
-        reason = f"{said} is a day without a time of day; write both in one column, or time_s"
-        raise MeasurementError(grid.path, grid.line[0], reason)
-    found, bad = counted_seconds(texts) if _in_minutes(grid, column, texts) else seconds_of(texts)
-    if bad is not None:
-        reason = (
-            f'{column.head} = "{texts[bad][:SHOWN]}" is no date and time as "{texts[0][:SHOWN]}" is'
-        )
-        raise MeasurementError(grid.path, grid.line[bad], reason)
-    return np.array(found)
-
-
-def _in_minutes(grid: Grid, column: ReadColumn, texts: list[str]) -> bool:
-    """Whether texts of two numbers are minutes and seconds.
-
-    Raises
-    ------
-    MeasurementError : they may be hours and minutes as well.
-    """
-    if column.day_at is not None or not is_short(texts[0]):
-        return False
-    head = f"{column.head} {grid.unit_row[column.at] if grid.unit_row else ''}"
-    form = form_said(head) or form_shown(texts)
-    if form is None:
-        reason = (
-            f'{column.head} = "{texts[0]}" may be hours and minutes or minutes and seconds: write '
-            f'00:{texts[0]} or {texts[0]}:00, or "mm:ss" or "hh:mm" into the head'
-        )
-        raise MeasurementError(grid.path, grid.line[0], reason)
-    return form == "mm:ss"
 
 
 def _values(grid: Grid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:
