@@ -18,6 +18,9 @@ from flexspline.pipeline.parts import PartModel
 
 COARSER, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
+ANOTHER = 0.8
+"""Edges of the second try where a sweep fails a check: elements beside a keyway may be bent too far in one
+mesh and not in the next, and fTetWild takes minutes where a sweep takes a second."""
 EDGE_POINTS = 8
 """Of sharp edges, within the stress rule's distance from them."""
 
@@ -91,7 +94,7 @@ class PartMeshes:
         model, progress = self.model, self.model.context.progress
         if model.is_swept:
             with progress.stage(f"mesh of the {model.name}"):
-                swept = self.swept(spec)
+                swept = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
             if swept is not None:
                 return swept
             if model.mesher == "swept":

@@ -12,7 +12,13 @@ from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import Sector, sector_of
 from flexspline.pipeline.part_meshes import PartMeshes
-from flexspline.pipeline.part_stiffness import SOLID_SECONDS, twisted_part
+from flexspline.pipeline.part_stiffness import (
+    RIM_ELEMENTS,
+    SOLID_SECONDS,
+    copies_in_rim,
+    rim_mesh,
+    twisted_part,
+)
 from flexspline.pipeline.parts import PartModel, is_lasting
 
 MOST_ELEMENTS = 100_000
@@ -79,14 +85,17 @@ def _meshes(
 def _of_torsion(flexspline: PartModel, sector: Sector, supported: bool) -> tuple[TetMesh, float]:
     twisted = twisted_part(flexspline)
     scale = twisted.stiffness.error_scale if supported else COARSE_SCALE
-    return unfolded(twisted.rim.mesh, sector.degrees), scale
+    return unfolded(rim_mesh(flexspline).mesh, sector.degrees), scale
 
 
 def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
     design = flexspline.context.design
     f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
     finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
-    swept = PartMeshes(flexspline).swept(flexspline.first_spec, finer)
+    meshes, spec = PartMeshes(flexspline), flexspline.first_spec
+    if number == 0:
+        spec = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
+    swept = meshes.swept(spec, finer)
     if swept is None:
         raise SolidError("the swept mesh fails a check")
     size = round(len(swept.mesh.cells) * sector.degrees / swept.mesh.sector_deg)

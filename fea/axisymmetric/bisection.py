@@ -12,6 +12,17 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
 
     New nodes of fillets are put on the exact arc.
     """
+    return _refined(mesh, marked)[0]
+
+
+def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:
+    """As `refined` with the mask `once` (m,), then the pieces of the triangles `again` (m,) once more."""
+    finer, parent = _refined(mesh, once)
+    return refined(finer, again[parent])
+
+
+def _refined(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
+    """As `refined`, and of which triangle of `mesh` each of its triangles is a piece."""
     tri = _longest_first(mesh.points, mesh.triangles)
     pairs = np.sort(tri[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     n = len(mesh.points)
@@ -32,13 +43,9 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
     rim = np.searchsorted(keys, low * n + high)
     middle[rim] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment)
     edges, segment = _halved(mesh, new[rim])
-    return MeridianMesh(
-        mesh.outline,
-        np.concatenate([mesh.points, middle[cut]]),
-        _children(tri, new[of]),
-        edges,
-        segment,
-    )
+    children, parent = _children(tri, new[of])
+    points = np.concatenate([mesh.points, middle[cut]])
+    return MeridianMesh(mesh.outline, points, children, edges, segment), parent
 
 
 def _longest_first(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -58,8 +65,8 @@ def _halved(mesh: MeridianMesh, new: np.ndarray) -> tuple[np.ndarray, np.ndarray
     )
 
 
-def _children(tri: np.ndarray, new: np.ndarray) -> np.ndarray:
-    """Triangles after the split; `new` (m, 3) holds each edge's middle node, or -1."""
+def _children(tri: np.ndarray, new: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles after the split and their parents; `new` (m, 3) holds each edge's middle node, or -1."""
     has = new >= 0
     a, b, c = tri.T
     m, p, q = new.T
@@ -70,8 +77,9 @@ def _children(tri: np.ndarray, new: np.ndarray) -> np.ndarray:
         (True, False, True): [(b, c, m), (m, c, q), (m, q, a)],
         (True, True, True): [(a, m, q), (m, b, p), (q, p, c), (m, p, q)],
     }
-    parts = []
+    parts, parents = [], []
     for kind, children in kinds.items():
-        mine = (has == kind).all(axis=1)
+        mine = np.flatnonzero((has == kind).all(axis=1))
         parts += [np.column_stack(child)[mine] for child in children]
-    return np.concatenate(parts)
+        parents += [mine] * len(children)
+    return np.concatenate(parts), np.concatenate(parents)

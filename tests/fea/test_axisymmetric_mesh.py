@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from example_cup import CUP
 
-from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.bisection import refined, refined_twice
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, signed_areas
 from flexspline.fea.axisymmetric.triangulate import SMALLEST_ANGLE, triangulate
 from flexspline.geometry.meridian import cup_meridian
@@ -51,6 +51,25 @@ def test_refinement_stays_conforming_and_well_shaped():
     # longest-edge bisection keeps at least half the first mesh's smallest angle (Rosenberg and
     # Stenger 1975); arcs move nodes a little, hence the 5 %
     assert angles(mesh.points, mesh.triangles).min() > 0.95 * SMALLEST_ANGLE / 2
+
+
+def test_what_is_refined_twice_is_cut_in_sixteen():
+    """Of a square's even mesh the middle, and nothing else."""
+    square = [(1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)]
+    ends = [*square[1:], square[0]]
+    mesh = triangulate(Meridian(tuple(map(Segment, square, ends))))
+    for _ in range(3):
+        mesh = refined(mesh, np.ones(mesh.elements, bool))
+    centre = mesh.points[mesh.triangles].mean(axis=1)
+    again = np.abs(centre - (1.5, 0.5)).max(axis=1) < 0.2
+    once = np.abs(centre - (1.5, 0.5)).max(axis=1) < 0.3
+    finer = refined_twice(mesh, once, again)
+    area = signed_areas(mesh.points, mesh.triangles).max()
+    pieces = signed_areas(finer.points, finer.triangles)
+    inside = np.abs(finer.points[finer.triangles].mean(axis=1) - (1.5, 0.5)).max(axis=1)
+    assert pieces[inside < 0.1].max() == pytest.approx(area / 16)
+    assert pieces[inside > 0.45].max() == pytest.approx(area)
+    assert pieces.sum() == pytest.approx(1.0)
 
 
 def test_volumes_enclose_pappus_and_close_up():

@@ -1,4 +1,5 @@
-"""A first solid mesh of too many elements is made coarser, unless the user says how long its edges are."""
+"""A solid mesh of too many elements is made coarser, unless the user says how long its edges are; and what
+becomes of a sweep that fails a check."""
 
 from __future__ import annotations
 
@@ -6,11 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.swept_sizing import Finer
+from flexspline.fea.types import TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import part_stiffness
+from flexspline.geometry.part import Part
+from flexspline.pipeline import part_meshes, part_stiffness
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
@@ -35,3 +41,35 @@ def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.Monkey
     stated = first_elements(STATED, tmp_path / "stated")
     monkeypatch.setattr(part_stiffness, "FIRST_ELEMENTS", 0)
     assert first_elements(STATED, tmp_path / "again") == stated
+
+
+def test_the_rims_mesh_keeps_within_its_elements(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cup = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
+    usual = part_stiffness.rim_mesh(cup).mesh.elements
+    copies = 3  # wedges of 30° in the ellipse's quarter
+    assert part_stiffness.copies_in_rim(cup) == copies
+    monkeypatch.setattr(part_stiffness, "RIM_ELEMENTS", copies * usual - 1)
+    assert part_stiffness.rim_mesh(cup).mesh.elements < usual
+
+
+def test_a_sweep_that_fails_a_check_is_tried_once_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress(said.append))
+    meshes = PartMeshes(context.part("shaft"))
+    spec = meshes.model.first_spec
+    finer = meshes.swept(spec.scaled(part_meshes.ANOTHER))
+    assert finer is not None
+    sweep = part_meshes.swept_mesh
+
+    def fails_at_first(
+        part: Part, degrees: float, asked: MeshSpec, more: Finer | None
+    ) -> TetMesh | None:
+        return None if asked == spec else sweep(part, degrees, asked, more)
+
+    monkeypatch.setattr(part_meshes, "swept_mesh", fails_at_first)
+    assert meshes.meshed(spec).mesh.elements == finer.mesh.elements
+    assert not any("fTetWild" in line for line in said)
