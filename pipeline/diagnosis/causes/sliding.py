@@ -2,14 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.special import wrightomega
 
 from flexspline.pipeline.diagnosis.causes.operators import steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 
+
+def _held_still(history: History) -> History:
+    """The history with each hold's torque at its mean.
+
+    The largest reading of a hold is its noise's, and a stuck bearing would remember it.
+    """
+    torque = history.torque_Nm.copy()
+    for hold in holds(history):
+        torque[hold] = torque[hold].mean()
+    return replace(history, torque_Nm=torque)
+
+
+WAY, STRAIGHT = 5, 0.02
+"""Rows of a way on one side of a turn; of the torque along it, its rms off a line beyond the noise. From the
+top of a sine on it is three times that."""
 LEAST = 1e-300
 """Under a logarithm: a bearing that holds all it can has 0 left."""
+CLEAR = 4.0
+"""Of the deadband, which is two deviations of the torque's noise: what a way must be longer than."""
 
 
 def carried_share(
@@ -24,25 +44,62 @@ def carried_share(
     makes the play operator of width F (Krasnosel'skii, Pokrovskii, Systems with Hysteresis (1989),
     section 2.2). Rate-independent; source of the law: Dahl, Aerospace Corporation TOR-158(3107-18) (1968).
     """
-    torque = steadied(history, deadband_Nm)
+    torque = steadied(_held_still(history), deadband_Nm)
     out = np.empty(len(torque))
     friction, kappa = max(friction_Nm, 1e-12), max(stiffness_ratio, 1e-6)
+
+    def to_come(left: float, travel_Nm: np.ndarray) -> np.ndarray:
+        """y after a travel, from y₀ = `left`."""
+        start = kappa * left + np.log(max(kappa * left, LEAST))
+        return np.asarray(wrightomega(start - kappa * travel_Nm / friction)) / kappa
+
     for rows in history.unit_slices:
         moved = np.r_[0.0, torque[rows]]
         step = np.sign(np.diff(moved))
         last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
         way = step[last]
         starts = np.flatnonzero(np.diff(way, prepend=np.nan) != 0)
-        share, z = np.zeros(len(rows)), 0.0
+        time = None if history.time_s is None else history.time_s[rows]
+        left, turn = 1.0, 0.0
+        share = np.zeros(len(rows))
         for a, b in zip(starts, [*starts[1:], len(rows)], strict=True):
-            left = max(1 - way[a] * z, LEAST)
-            travel = np.abs(moved[a + 1 : b + 1] - moved[a])
-            omega = wrightomega(
-                kappa * left + np.log(max(kappa * left, LEAST)) - kappa * travel / friction
-            )
-            share[a:b] = way[a] * (1 - omega / kappa)
-            if way[a] == 0:
-                share[a:b] = 0.0
-            z = float(share[b - 1])
+            if a > 0:
+                where = _turned_at(history.torque_Nm[rows], time, int(a), deadband_Nm)
+                before, (turn, earlier) = turn, where or (float(moved[a]), False)
+                y = float(to_come(left, np.abs(np.array(turn - before)))) if way[a - 1] else 1.0
+                left = max(1 - way[a] * way[a - 1] * (1 - y), LEAST)
+                a -= earlier
+            if way[b - 1] != 0:
+                share[a:b] = way[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))
         out[rows] = share
     return out
+
+
+def _turned_at(
+    torque: np.ndarray, time: np.ndarray | None, a: int, deadband_Nm: float
+) -> tuple[float, bool] | None:
+    """Where torque turned before row a, and whether before row a − 1 already.
+
+    Row a − 1 may lie on either side: the straight ways through the rows before it, and from a on, meet at the
+    turn. None where the ways are short against the noise, or bent, or meet elsewhere: then a − 1 is the turn.
+    """
+    if time is None or a < WAY + 1 or a + WAY > len(torque):
+        return None
+    last, lines = a - 2, []
+    for rows in (np.arange(a - 1 - WAY, a - 1), np.arange(a, a + WAY)):
+        t = time[rows] - time[last]
+        if np.diff(t).min() <= 0:
+            return None
+        slope, level = np.polyfit(t, torque[rows], 1)
+        span = abs(torque[rows[-1]] - torque[rows[0]])
+        off = float(np.sqrt(np.mean((torque[rows] - level - slope * t) ** 2)))
+        if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT * span:
+            return None
+        lines.append((slope, level))
+    (before, level), (after, later) = lines
+    if before * after >= 0:
+        return None
+    at = (later - level) / (before - after)
+    if not 0 <= at <= time[a] - time[last]:
+        return None
+    return float(level + before * at), bool(time[last] + at < time[a - 1])

@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.ahead_tuning import TunedAhead, ahead_element, tuned_ahead
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
@@ -75,6 +76,8 @@ def _raced_with(plain: PreparedSweep, element: Element) -> tuple[ExplainedSweep,
             now, identified.search.evidence, identified.best.terms, _crossing(explained)
         )
         shifted = offset_of(explained)
+        if abs(shifted) < _step_across(now.rig.history):
+            shifted = 0.0
         moved = abs(found.element.amplitudes[0] - element.amplitudes[0])
         bent = abs(float(np.log(found.element.shape[AHEAD] / element.shape[AHEAD])))
         settled = SETTLED_SHARE * plain.rig.torque_Nm
@@ -107,5 +110,11 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     )  # fmt: skip
     if found is None:
         return None
-    step = float(np.median(np.abs(np.diff(history.torque_Nm))))
-    return replace(found, std_Nm=max(found.std_Nm, BETWEEN_ROWS * step))
+    return replace(found, std_Nm=max(found.std_Nm, BETWEEN_ROWS * _step_across(history)))
+
+
+def _step_across(history: History) -> float:
+    """Torque [N·m] between the two rows of a crossing, typically: its place is somewhere between them."""
+    crossed = (np.diff(history.sign) != 0) & (np.diff(history.unit) == 0)
+    steps = np.abs(np.diff(history.torque_Nm))[crossed]
+    return float(np.median(steps)) if len(steps) else 0.0
