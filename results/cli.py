@@ -169,7 +169,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     with answered(design):
         job = begin(design, out)
         from flexspline.pipeline.gear import gear_curve
-        from flexspline.results.gear import assumed_lines, gear_record, write_gear
+        from flexspline.results.gear import RECORD, assumed_lines, gear_record, write_gear
 
         curve = gear_curve(job.context)
         tell_all(curve.warnings)
@@ -177,7 +177,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
             tell(line)
         record = gear_record(job.design, curve, job.wall_s)
         write_gear(job.folder, curve)
-        deliver(job.folder, record, json)
+        deliver(job.folder, record, json, RECORD)
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""`flexspline gear`: result.json, torque_angle.csv and the two charts of the whole gear."""
+"""`flexspline gear`: gear.json, torque_angle.csv and the two charts of the whole gear."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
     "lost_motion_arcsec", "teeth_in_contact",
 )  # fmt: skip
-"""Of result.json, by their names in `GearCurve`."""
+"""Of the record, by their names in `GearCurve`."""
+RECORD = "gear.json"
+"""The folder may hold the result.json of a run of the same design."""
 CSV, CURVE_CHART, LOAD_CHART = "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png"
 
 

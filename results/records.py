@@ -188,6 +188,10 @@ def as_json(record: Record) -> str:
     return readable(json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def write_record(folder: Path, record: Record) -> None:
-    """`result.json` in `folder`, whole or not at all."""
-    write_bytes(folder / "result.json", (as_json(record) + "\n").encode())
+RESULT = "result.json"
+"""Of `run`, `stiffness` and `backlash`."""
+
+
+def write_record(folder: Path, record: Record, name: str = RESULT) -> None:
+    """A record as JSON in `folder`, whole or not at all."""
+    write_bytes(folder / name, (as_json(record) + "\n").encode())

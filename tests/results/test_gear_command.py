@@ -6,10 +6,12 @@ import csv
 import json
 from pathlib import Path
 
+import in_process
 import numpy as np
 import pytest
 
 import flexspline
+from flexspline.geometry.template import design_text
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear import GearCurve
 from flexspline.results.gear import gear_record, write_gear
@@ -109,3 +111,15 @@ def test_play_beyond_the_stroke_is_refused() -> None:
     )
     with pytest.raises(flexspline.FlexsplineError, match="must be below 400 µm"):
         flexspline.gear(loose)
+
+
+def test_the_command_leaves_a_run_s_result_alone(curve: GearCurve, tmp_path: Path) -> None:
+    path, out = tmp_path / "cup.toml", tmp_path / "out"
+    path.write_text(design_text(DESIGN), encoding="utf-8")
+    out.mkdir()
+    (out / "result.json").write_text("of a run")
+    done = in_process.flexspline("gear", path, "--out", out, "--json", folder=tmp_path)
+    assert done.status == 0, done.stderr
+    assert (out / "result.json").read_text() == "of a run"
+    assert json.loads(done.stdout) == json.loads((out / "gear.json").read_text())
+    assert json.loads(done.stdout)["K2_Nm_per_rad"] == pytest.approx(curve.K2_Nm_per_rad)
