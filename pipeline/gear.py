@@ -15,6 +15,7 @@ from math import degrees
 import numpy as np
 
 from flexspline.fea.gear.equilibrium import Equilibrium
+from flexspline.fea.gear.kinematics import LARGEST_WITHDRAWAL
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import NMM_PER_NM
@@ -24,7 +25,7 @@ from flexspline.geometry.wave_generator import Assumed, flexible_bearing
 from flexspline.pipeline import revolved
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.enclosed_part import tolerance_of
-from flexspline.pipeline.gear_model import even, gear_model
+from flexspline.pipeline.gear_model import CONFORMITY, even, gear_model
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
@@ -34,6 +35,13 @@ LOST_MOTION_SHARE = 0.04
 """Of rated torque, each way (GB/T 35089-2018; Hrcek et al., Materials 14 (2021) 5057)."""
 LOADING = (0.001, LOST_MOTION_SHARE, 0.09, T1_SHARE, 0.25, 0.37, T2_SHARE, 0.66, 0.83, 1.0)
 """Torques of a quarter of the loop, of rated torque; a chord "from 0" begins at the first."""
+LAWS = (
+    Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),
+    Assumed("T2 over rated torque", T2_SHARE, "makers': 0.39 to 0.69"),
+    Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
+    Assumed("working depth over m(z2 - z1)/2", LARGEST_WITHDRAWAL, "teeth of full height"),
+)
+"""What no key of the design file states."""
 CARRIES = 1e-3
 """Of the largest force: a tooth below it is not counted as in contact."""
 
@@ -186,7 +194,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         compliance_shares=chain.shares(full),
         torque_Nm=tuple(loop.tolist()),
         angle_arcsec=tuple((angles * ARCSEC_PER_RAD).tolist()),
-        assumed=(*assumed, *flexible_bearing(design).assumed),
+        assumed=(*assumed, *flexible_bearing(design).assumed, *LAWS),
         warnings=tuple(_warnings(design, model, states)),
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
         tooth_force_N=tuple((teeth / model.teeth_per_station).tolist()),

@@ -169,12 +169,10 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     with answered(design):
         job = begin(design, out)
         from flexspline.pipeline.gear import gear_curve
-        from flexspline.results.gear import RECORD, assumed_lines, gear_record, write_gear
+        from flexspline.results.gear import RECORD, gear_record, write_gear
 
         curve = gear_curve(job.context)
         tell_all(curve.warnings)
-        for line in assumed_lines(curve):
-            tell(line)
         record = gear_record(job.design, curve, job.wall_s)
         write_gear(job.folder, curve)
         deliver(job.folder, record, json, RECORD)

@@ -13,7 +13,7 @@ SPREAD = "backlash_arcsec.std"
 
 
 def table(record: dict[str, Any], folder: Path) -> str:
-    """One line per figure of the record that stands in the table of quantities."""
+    """One line per figure of the record that stands in the table of quantities, then what was assumed."""
     lines = [f"{record['design']}"]
     for entry in QUANTITIES:
         value: Any = record
@@ -32,5 +32,8 @@ def table(record: dict[str, Any], folder: Path) -> str:
             mark = marked(record, entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines.append(f"  {entry.name:<64} {shown}".rstrip())
+    lines += [
+        f"  assumed: {a['key']} = {a['value']:.4g}, {a['why']}" for a in record.get("assumed", ())
+    ]
     lines.append(f"files in {folder}")
     return "\n".join(lines)

@@ -51,8 +51,3 @@ def write_gear(folder: Path, curve: GearCurve) -> None:
     write_bytes(folder / CSV, text.getvalue().encode())
     write_gear_angle(folder / CURVE_CHART, curve)
     write_gear_loads(folder / LOAD_CHART, curve)
-
-
-def assumed_lines(curve: GearCurve) -> list[str]:
-    """One line for each value that the design file does not state."""
-    return [f"assumed: {a.key} = {a.value:.4g} ({a.why})" for a in curve.assumed]

@@ -13,7 +13,8 @@ import pytest
 import flexspline
 from flexspline.geometry.template import design_text
 from flexspline.geometry.wave_generator import flexible_bearing
-from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.gear import LAWS, GearCurve
+from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -62,12 +63,14 @@ def test_lost_motion_holds_the_clearance_of_the_flanks(curve: GearCurve) -> None
 
 
 def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
-    keys = [a.key for a in curve.assumed]
-    assert keys == [f"wave_generator.{key}" for key in (
+    of_the_file = [a for a in curve.assumed if "." in a.key]
+    assert [a.key for a in of_the_file] == [f"wave_generator.{key}" for key in (
         "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")]  # fmt: skip
-    stated = DESIGN.changed({a.key: a.value for a in curve.assumed})
+    stated = DESIGN.changed({a.key: a.value for a in of_the_file})
     assert flexible_bearing(stated).assumed == ()
-    assert flexspline.gear(stated).K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
+    same = flexspline.gear(stated)
+    assert same.K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
+    assert same.assumed == LAWS  # what no key states
 
 
 def test_files(curve: GearCurve, tmp_path: Path) -> None:
@@ -79,6 +82,30 @@ def test_files(curve: GearCurve, tmp_path: Path) -> None:
     assert float(rows[9]["angle_arcsec"]) == pytest.approx(curve.angle_arcsec[9])
     assert {p.name for p in tmp_path.iterdir()} == {
         "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png"}  # fmt: skip
+
+
+def test_the_command_prints_the_figures_and_what_it_assumed(tmp_path: Path) -> None:
+    path = tmp_path / "cup.toml"
+    path.write_text(design_text(DESIGN), encoding="utf-8")
+    ended = in_process.flexspline("gear", path, "--json", folder=tmp_path)
+    assert ended.status == 0
+    record = json.loads(ended.stdout)
+    assert record == json.loads((tmp_path / "cup.out" / "gear.json").read_text(encoding="utf-8"))
+    assert record["rated_torque_Nm"] == 20.0
+    shown = table(record, tmp_path)
+    assert "Whole gear, stiffness from 0 to T1" in shown
+    assert "assumed: wave_generator.ball_count = 23" in shown
+
+
+def test_a_wrong_file_is_refused_with_status_2(tmp_path: Path) -> None:
+    path = tmp_path / "cup.toml"
+    text = design_text(DESIGN).replace("[load]", "[wave_generator]\nball_count = 2\n[load]")
+    path.write_text(text, encoding="utf-8")
+    ended = in_process.flexspline("gear", path, folder=tmp_path)
+    assert ended.status == 2
+    assert len(ended.stderr.splitlines()) == 1
+    assert "wave_generator.ball_count" in ended.stderr
+    assert ended.written == frozenset()
 
 
 @pytest.mark.parametrize(
