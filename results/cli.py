@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from flexspline.results.job import (
+    Against,
     CountsPerTurn,
     DesignFile,
     Job,
@@ -217,18 +218,31 @@ def diagnose(
     kb: Kb = None,
     ke: Ke = None,
     counts_per_turn: CountsPerTurn = None,
+    against: Annotated[
+        Against,
+        typer.Option(
+            "--against",
+            help="Compare a sweep with the backlash sum's straight line, or with the"
+            " torque-angle curve of the whole gear.",
+        ),
+    ] = Against.SUM,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     with answered(design):
+        from flexspline.geometry.errors import DesignError
         from flexspline.results.diagnosis.command import diagnose_and_write
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
+        if against is Against.GEAR and given != (None, None):
+            reason = "takes no --Kb and no --Ke: the gear's curve comes from the drawing"
+            raise DesignError("--against", "gear", reason)
         said = diagnose_and_write(
-            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn
-        )
+            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
+            against is Against.GEAR,
+        )  # fmt: skip
         show(said, json)
 
 

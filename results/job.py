@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -62,6 +63,15 @@ CountsPerTurn = Annotated[
         help="Counts of a turn of the encoder, where an angle is in counts",
     ),
 ]
+
+
+class Against(StrEnum):
+    """What `diagnose` compares a sweep with."""
+
+    SUM = "sum"
+    GEAR = "gear"
+
+
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 LONGEST_LINE = 2000
 """Letters of a message: a path may take most of them."""

@@ -17,11 +17,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from flexspline.geometry.design import Design
 from flexspline.pipeline.analysis import analysis_context
+from flexspline.pipeline.diagnosis.against_gear import against_gear
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import (
     EndPoints,
     Specimens,
@@ -39,6 +43,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
+from flexspline.pipeline.gear import Chain
 from flexspline.pipeline.parts import AnalysisContext
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]
@@ -97,21 +102,32 @@ def diagnose_file(
     K_error: float = 0.0,
     context: AnalysisContext | None = None,
     counts_per_turn: float | None = None,
+    chain: Chain | None = None,
 ) -> Diagnosis:
     """Read a measurement and diagnose it.
 
     Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
     they came from FE: specimens are then solved like the design; without it, given stiffnesses are
     scaled from specimen to specimen by the hole-free model. `counts_per_turn` of the encoder, where a
-    column is in counts.
+    column is in counts. A torque sweep is compared with the curve of the whole gear's `chain`, where it is
+    given, in place of the straight line.
 
     Raises
     ------
-    MeasurementError : the file cannot be accepted.
+    MeasurementError : the file cannot be accepted, or is no sweep, which `chain` needs.
+    EquilibriumError : the gear has no equilibrium at the sweep's largest torque.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
     measurement = read_measurement(csv, counts_per_turn)
     prediction = prediction_of(design, K_b, K_e, K_error)
+    if chain is not None:
+        if not isinstance(measurement, Sweep):
+            raise MeasurementError(
+                csv, None, "is no torque sweep; only that is held against the gear"
+            )
+        largest = float(np.abs(measurement.history.torque_Nm).max())
+        if largest > 0:
+            prediction = against_gear(prediction, chain, largest)
     refuse_absurd(measurement, prediction, K_b, K_e)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)

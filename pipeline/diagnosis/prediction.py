@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
+from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.measurement.history import History
 
 REFERENCE_C = 20.0
@@ -23,16 +24,19 @@ class Prediction:
     ----------
     compliance, compliance_std : [arcsec per N·m], 1/K_e + 1/K_b.
     gap_arcsec, gap_std_arcsec : the whole angular gap at 20 °C.
+    bend : how the curve leaves the line, where the whole gear is computed; None: it is straight.
     """
 
     compliance: float
     compliance_std: float
     gap_arcsec: float
     gap_std_arcsec: float
+    bend: Bend | None = None
 
     def angle_arcsec(self, history: History) -> np.ndarray:
         """(n,) predicted angle, with zero θ0."""
-        return history.torque_Nm * self.compliance + history.sign * self.gap_arcsec / 2
+        angle = history.torque_Nm * self.compliance + history.sign * self.gap_arcsec / 2
+        return angle if self.bend is None else angle + self.bend.at(history.torque_Nm)
 
     def scale_arcsec(self, torque_Nm: float) -> float:
         """Size of the predicted angle at a torque: a natural unit for effects of unknown size."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.gear import chain_of
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -23,10 +24,12 @@ def diagnose_and_write(
     json: bool,
     attached: tuple[Attachment, ...] = (),
     counts_per_turn: float | None = None,
+    gear: bool = False,
 ) -> str:
     """Diagnose, write all files, and return what is printed; `given` are K_b and K_e, None: FEA.
 
-    `counts_per_turn` of the encoder, where a column is in counts.
+    `counts_per_turn` of the encoder, where a column is in counts. `gear`: compare with the curve of the whole
+    gear, not with the straight line.
 
     Raises
     ------
@@ -34,10 +37,11 @@ def diagnose_and_write(
     """
     read_measurement(measured, counts_per_turn)  # refuse a bad file before the long work
     used = stiffness_pair(context, *given)
+    chain = chain_of(context) if gear else None
     with context.progress.stage("diagnosis"):
         found = diagnose_file(
             context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            context if given == (None, None) else None, counts_per_turn,
+            context if given == (None, None) else None, counts_per_turn, chain,
         )  # fmt: skip
     record = diagnosis_record(found)
     with context.progress.stage("figures and report"):

@@ -17,7 +17,12 @@ from flexspline.results.numbers import grouped
 
 def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     """How the file was read, and notes of the kind that was measured."""
-    return (*reading_notes(diagnosis.measurement.read_as), *_of_kind(diagnosis))
+    bend = diagnosis.prediction.bend
+    against = () if bend is None else (
+        "compared with the simulated curve of the whole gear, which leaves its chord by up to "
+        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec",
+    )  # fmt: skip
+    return (*reading_notes(diagnosis.measurement.read_as), *against, *_of_kind(diagnosis))
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:

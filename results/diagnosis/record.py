@@ -23,6 +23,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         **heading(diagnosis.design),
         "verdict": outcome.verdict,
         "summary": summary(diagnosis),
+        "against": "sum" if diagnosis.prediction.bend is None else "gear",
         **data_record(diagnosis),
         "causes": [_cause(c) for c in outcome.causes],
         "unexplained": [

@@ -70,11 +70,19 @@ def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     p = diagnosis.prediction
     if isinstance(diagnosis.measurement, Specimens):
         return _compared_specimens(diagnosis, used)
+    gap = f"a gap of {_with_std(grouped(p.gap_arcsec, 1), p.gap_std_arcsec, 1)} arcsec"
+    if p.bend is not None:
+        most = max(map(abs, p.bend.angle_arcsec))
+        return (
+            "Compared with the simulated torque-angle curve of the whole gear (contact of teeth, rim, race "
+            f"and balls): {gap}, a chord of {_twist(p)} arcsec for each N·m up to "
+            f"{p.bend.torque_Nm[-1]:.4g} N·m, and up to {most:.3g} arcsec beside that chord. "
+            f"{_what_counts(p)}"
+        )
     source = "as given" if used.given else f"computed, ±{100 * used.error:.2g} %"
     return (
         f"Compared with the simulation: K_b = {grouped(used.K_b_Nm_per_rad, 0)} and "
-        f"K_e = {grouped(used.K_e_Nm_per_rad, 0)} N·m/rad ({source}), a gap of "
-        f"{_with_std(grouped(p.gap_arcsec, 1), p.gap_std_arcsec, 1)} arcsec, and an elastic twist of "
+        f"K_e = {grouped(used.K_e_Nm_per_rad, 0)} N·m/rad ({source}), {gap}, and an elastic twist of "
         f"{_twist(p)} arcsec for each N·m. {_what_counts(p)}"
     )
 

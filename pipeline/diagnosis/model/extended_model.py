@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.measurement.errors import ChannelError
@@ -27,6 +28,7 @@ class ExtendedModel:
     zeros_arcsec : zero of each unit, by its name.
     own : of each unit, by its name, deviation of compliance and gap from the common ones.
     elements : of each cause, by its id.
+    bend : of the simulated curve, None where it is a straight line.
     """
 
     compliance: float
@@ -34,6 +36,7 @@ class ExtendedModel:
     zeros_arcsec: Mapping[str, float]
     elements: Mapping[str, tuple[Element, ...]]
     own: Mapping[str, tuple[float, float]]
+    bend: Bend | None = None
 
     def angle_arcsec(
         self,
@@ -82,6 +85,8 @@ class ExtendedModel:
         """
         true = self.at_teeth(self.true_history(history))
         angle = true.torque_Nm * self.compliance + true.sign * self.gap_arcsec / 2
+        if self.bend is not None:
+            angle += self.bend.at(true.torque_Nm)
         for cause_id, elements in self.elements.items():
             angle += known_causes()[cause_id].angle_arcsec(elements, true)
         for code, name in enumerate(units):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.geometry.toml_read import TomlError, toml_tables
+from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Shape
 from flexspline.pipeline.diagnosis.measurement.errors import ModelFileError
@@ -17,6 +19,7 @@ from flexspline.pipeline.diagnosis.model.doubt import Doubt
 from flexspline.pipeline.diagnosis.model.doubt_file import read_doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
+    BEND,
     CALIBRATED,
     CAUSE,
     CAUSE_OPTIONAL,
@@ -122,12 +125,23 @@ def read_model_file(path: Path) -> ModelFile:
         {name: float(u["zero_arcsec"]) for name, u in units.items()},
         elements,
         own,
+        _bend(data["bend"], refuse) if "bend" in data else None,
     )
     given = {key: origin[key] for key in PROVENANCE}
     cycle, time = ({name: float(u[key]) for name, u in units.items() if key in u} for key in ORIGIN)
     provenance = Provenance(**given, first_cycle=cycle, first_time_s=time)
     doubt = read_doubt(data["doubt"], model, refuse) if "doubt" in data else None
     return ModelFile(path, model, provenance, doubt)
+
+
+def _bend(table: Mapping[str, Any], refuse: Refuse) -> Bend:
+    check(table, BEND, {}, "[bend]", refuse)
+    torque, angle = table["torque_Nm"], table["angle_arcsec"]
+    if not all(map(is_number, (*torque, *angle))) or len(torque) != len(angle) or len(torque) < 2:
+        raise refuse("torque_Nm and angle_arcsec in [bend] must be as many numbers, two or more")
+    if torque[0] != 0 or any(b <= a for a, b in pairwise(torque)):
+        raise refuse("torque_Nm in [bend] must rise from 0")
+    return Bend(tuple(map(float, torque)), tuple(map(float, angle)))
 
 
 def _toml(path: Path) -> dict[str, Any]:

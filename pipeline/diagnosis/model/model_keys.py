@@ -12,7 +12,8 @@ Refuse = Callable[[str], ModelFileError]
 Keys = dict[str, tuple[type, ...]]
 NUMBER = (int, float)
 TOP: Keys = {"format": (int,), "provenance": (dict,), "calibrated": (dict,), "unit": (list,)}
-TOP_OPTIONAL: Keys = {"cause": (list,), "doubt": (dict,)}
+TOP_OPTIONAL: Keys = {"cause": (list,), "doubt": (dict,), "bend": (dict,)}
+BEND: Keys = {"torque_Nm": (list,), "angle_arcsec": (list,)}
 PROVENANCE: Keys = {
     "program": (str,), "design": (str,), "measurement": (str,), "measurement_sha256": (str,),
     "verdict": (str,), "K_b_Nm_per_rad": NUMBER, "K_e_Nm_per_rad": NUMBER,

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from flexspline.geometry.errors import one_line
 from flexspline.geometry.toml_text import quoted
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.model.doubt import Doubt
@@ -33,7 +34,13 @@ def model_text(
     """The file's text; `found` and `gain` are told beside the numbers that predict."""
     name = one_line(provenance.design)
     lines = [f"# Extended model of {name}, written by {provenance.program}.", ABOUT]
-    lines += [f"format = {FORMAT}", "", *_provenance(provenance, gain), *_calibrated(model)]
+    lines += [
+        f"format = {FORMAT}",
+        "",
+        *_provenance(provenance, gain),
+        *_calibrated(model),
+        *_bend(model.bend),
+    ]
     lines += doubt_lines(doubt) if doubt is not None else []
     for unit, zero in model.zeros_arcsec.items():
         lines += _unit(unit, zero, provenance, model.own.get(unit))
@@ -77,6 +84,18 @@ def _calibrated(model: ExtendedModel) -> list[str]:
         "[calibrated]   # the simulation, within the design's stated uncertainty",
         f"compliance_arcsec_per_Nm = {number(model.compliance)}   # {stiffness:.0f} N·m/rad",
         f"gap_arcsec = {number(model.gap_arcsec)}   # the whole gap, at 20 °C",
+        "",
+    ]
+
+
+def _bend(bend: Bend | None) -> list[str]:
+    if bend is None:
+        return []
+    torque, angle = (", ".join(map(number, of)) for of in (bend.torque_Nm, bend.angle_arcsec))
+    return [
+        "[bend]   # of the whole gear's simulated curve: what it adds to the line, with the sign of T",
+        f"torque_Nm = [{torque}]",
+        f"angle_arcsec = [{angle}]",
         "",
     ]
 

@@ -26,6 +26,8 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         for sign in (-1.0, 1.0):
             t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)
             line = prediction.compliance * t + sign * prediction.gap_arcsec / 2
+            if prediction.bend is not None:
+                line += prediction.bend.at(t)
             spread = np.hypot(prediction.gap_std_arcsec / 2, prediction.compliance_std * t)
             first = sign > 0
             above.fill_between(

@@ -1,0 +1,41 @@
+"""The curve of the whole gear (`pipeline.gear`) as what a sweep is compared with."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.bend import Bend
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.gear import LOADING, Chain
+
+SMALLEST = LOADING[0]
+"""Of the largest torque: there the teeth have just met, and twice the angle is the gap."""
+PLACES = np.concatenate([np.linspace(SMALLEST, 0.1, 6), np.linspace(0.15, 1.0, 12)])
+"""Torques of the curve, of the largest: teeth come into mesh mostly at small torque."""
+
+
+def against_gear(straight: Prediction, chain: Chain, largest_Nm: float) -> Prediction:
+    """The gear's curve up to a torque [N·m] in place of the straight line.
+
+    Its chord, its free angle and its bend; the relative deviations stay those that the design states.
+
+    Raises
+    ------
+    EquilibriumError
+    """
+    torque = largest_Nm * PLACES
+    angle = chain.angles(torque.tolist()) * ARCSEC_PER_RAD
+    slope = (angle[1] - angle[0]) / (torque[1] - torque[0])
+    half_gap = float(angle[0] - slope * torque[0])
+    compliance = float((angle[-1] - half_gap) / largest_Nm)
+    bend = angle - half_gap - compliance * torque
+    return replace(
+        straight,
+        compliance=compliance,
+        compliance_std=compliance * straight.compliance_std / straight.compliance,
+        gap_arcsec=2 * half_gap,
+        bend=Bend((0.0, *torque.tolist()), (0.0, *bend.tolist())),
+    )
