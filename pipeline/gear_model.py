@@ -23,7 +23,7 @@ LAST_HARMONIC = 48
 PLACES = 5
 """Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %."""
 MOST_STATIONS = 128
-"""Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K1 by 2.5 %."""
+"""Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K by 0.6 %."""
 BEARING_STEEL = Elastic(208e3, 0.3)
 """100Cr6, of races and balls: E = 208 GPa (maker's data sheets)."""
 CONFORMITY = 0.52

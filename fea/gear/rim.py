@@ -63,7 +63,7 @@ def _at_pitch_point(surface: Condensed, lift: float) -> Condensed:
 def fine_enough(outline: Meridian, patch: str, places: int) -> MeridianMesh:
     """The first mesh refined once, then along the patch until that has two edges for each place.
 
-    A further refinement moves K1 to K3 of xb1-40 by 0.2 to 0.3 %.
+    A further refinement moves K1 to K3 of xb1-40 by 0.1 to 0.3 %.
     """
     mesh = triangulate(outline)
     mesh = refined(mesh, np.ones(mesh.elements, bool))
