@@ -49,14 +49,30 @@ def finer_mesh(
     wanted = MERIDIAN_SHARE * tolerance * NEXT_SHARE**number
 
     def adapted(mesh: MeridianMesh) -> MeridianMesh:
-        while True:
-            model = HarmonicModel(mesh, material)
-            found = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
-            if found.estimate < wanted or len(mesh.triangles) > MOST_ELEMENTS:
-                return mesh
-            mesh = refined(mesh, bulk(found.error, BULK))
+        meridian = _FreeRim(material, wanted)
+        refine(meridian, mesh, most_elements=MOST_ELEMENTS)
+        return meridian.mesh
 
     return Finer(step, adapted=adapted, even=True)
+
+
+class _FreeRim:
+    """The finest meridian mesh on which the harmonics of a rim without support were solved."""
+
+    def __init__(self, material: Elastic, wanted: float) -> None:
+        self._material, self._wanted = material, wanted
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        model = HarmonicModel(mesh, self._material)
+        self._found = solve_lobes(model, False, TAIL, held=("mount", INTERFACE))
+        self.mesh = mesh
+
+    @property
+    def met(self) -> bool:
+        return self._found.estimate < self._wanted
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh:
+        return refined(mesh, bulk(self._found.error, BULK))
 
 
 def lobe_stiffness(

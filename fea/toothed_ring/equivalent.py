@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
+from flexspline.fea.refinement import refine
 from flexspline.fea.toothed_ring import plain
 from flexspline.fea.toothed_ring.cell import CellModel, ToothedRingError
 from flexspline.geometry.tooth import ToothCell
@@ -63,25 +64,48 @@ def equivalent_ring(cell: ToothCell, poissons_ratio: float) -> EquivalentRing:
     ------
     MeshingError, ToothedRingError
     """
-    mesh = triangulate(cell.outline)
-    width = cell.unroll * cell.half_pitch
-    found, change, part = np.full(3, np.inf), np.inf, 1.0
-    while change >= SMALLEST_CHANGE:
-        finer = _finer(mesh, cell, part * width, part**GRADING * width)
-        if len(finer.triangles) > MOST_TRIANGLES:
-            break
-        mesh, before = finer, found
-        found = np.array(_thicknesses(CellModel(cell, mesh), poissons_ratio))
-        change, part = float((before / found - 1).max()), part / 2
-    if not change < LARGEST_CHANGE:
+    rings = _Rings(cell, poissons_ratio)
+    refine(rings, rings.first_mesh())
+    if not rings.change < LARGEST_CHANGE:
         raise ToothedRingError(
-            f"the equivalent ring still changes by {change:.1e} on {len(mesh.triangles)} "
+            f"the equivalent ring still changes by {rings.change:.1e} on {rings.elements} "
             f"triangles, wanted {LARGEST_CHANGE:.0e}: ring_thickness_mm may be too small a part of "
             'module_mm; teeth = "none" works'
         )
-    bending, membrane, torsion = found.tolist()
+    bending, membrane, torsion = rings.found.tolist()
     rim = cell.root - cell.inner
-    return EquivalentRing(rim, bending, membrane, torsion, change, len(mesh.triangles))
+    return EquivalentRing(rim, bending, membrane, torsion, rings.change, rings.elements)
+
+
+class _Rings:
+    """The three thicknesses by the finest mesh so far, and how much the last refinement changed them."""
+
+    def __init__(self, cell: ToothCell, poissons_ratio: float) -> None:
+        self._cell, self._nu = cell, poissons_ratio
+        self._share = 1.0
+        self.found, self.change, self.elements = np.full(3, np.inf), np.inf, 0
+
+    def first_mesh(self) -> MeridianMesh:
+        """No edge longer than the tooth's half pitch."""
+        return self._sized(triangulate(self._cell.outline))
+
+    def solve(self, mesh: MeridianMesh) -> None:
+        found = np.array(_thicknesses(CellModel(self._cell, mesh), self._nu))
+        self.change = float((self.found / found - 1).max())
+        self.found, self.elements = found, mesh.elements
+
+    @property
+    def met(self) -> bool:
+        return self.change < SMALLEST_CHANGE
+
+    def finer(self, mesh: MeridianMesh) -> MeridianMesh | None:
+        self._share /= 2
+        finer = self._sized(mesh)
+        return finer if finer.elements <= MOST_TRIANGLES else None
+
+    def _sized(self, mesh: MeridianMesh) -> MeridianMesh:
+        width = self._cell.unroll * self._cell.half_pitch
+        return _finer(mesh, self._cell, self._share * width, self._share**GRADING * width)
 
 
 def _thicknesses(model: CellModel, nu: float) -> tuple[float, float, float]:

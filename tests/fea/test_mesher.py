@@ -180,7 +180,7 @@ def test_a_wide_keyway_keeps_its_planes() -> None:
     part = keyed.changed({"shaft.keyway.width_mm": 8.0, "shaft.keyway.depth_mm": 4.0}).part("shaft")
     slot = part.keyway
     assert slot is not None
-    spec = first_spec(part).scaled(2.0)
+    spec = first_spec(part).scaled(3.0)
     mesh = mesh_surface(surface_to_mesh(part, spec, 180.0, edge_spacing=0.1), spec)
     outer = keyed.shaft.segment[-1].outer_diameter_mm / 2
     section, _ = quad(lambda y: sqrt(outer**2 - y**2) - slot.floor, 0, slot.half_width)
