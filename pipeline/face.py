@@ -15,12 +15,13 @@ from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import analysis_context, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
+from flexspline.pipeline.diagnosis.against_gear import refuse_given
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
 from flexspline.pipeline.ellipse_peak import ellipse_field
-from flexspline.pipeline.gear import GearCurve, gear_curve
+from flexspline.pipeline.gear import GearCurve, chain_of, gear_curve
 from flexspline.pipeline.load_cases import (
     RIM_CASES,
     RimCase,
@@ -213,12 +214,14 @@ def diagnose(
     K_e: float | None = None,
     *,
     counts_per_turn: float | None = None,
+    against: Literal["sum", "gear"] = "sum",
 ) -> Diagnosis:
     """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
 
     Parameters
     ----------
     counts_per_turn : of the encoder, where the file's angle is in counts.
+    against : the straight line of the backlash sum, or the curve of the whole gear (`gear`), without K.
 
     Returns
     -------
@@ -246,10 +249,14 @@ def diagnose(
     """
     read_measurement(Path(path), counts_per_turn)  # a bad file is refused before the long work
     context = analysis_context(design)
-    used = stiffness_pair(context, K_b, K_e)
     solved = context if K_b is None and K_e is None else None
+    if against == "gear":
+        refuse_given(K_b, K_e)
+    used = stiffness_pair(context, K_b, K_e)
+    chain = chain_of(context) if against == "gear" else None
     return diagnose_file(
-        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved, counts_per_turn
+        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved, counts_per_turn,
+        chain,
     )  # fmt: skip
 
 

@@ -231,14 +231,13 @@ def diagnose(
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     with answered(design):
-        from flexspline.geometry.errors import DesignError
+        from flexspline.pipeline.diagnosis.against_gear import refuse_given
         from flexspline.results.diagnosis.command import diagnose_and_write
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        if against is Against.GEAR and given != (None, None):
-            reason = "takes no --Kb and no --Ke: the gear's curve comes from the drawing"
-            raise DesignError("--against", "gear", reason)
+        if against is Against.GEAR:
+            refuse_given(kb, ke)
         said = diagnose_and_write(
             job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
             against is Against.GEAR,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -15,6 +16,19 @@ SMALLEST = LOADING[0]
 """Of the largest torque: there the teeth have just met, and twice the angle is the gap."""
 PLACES = np.concatenate([np.linspace(SMALLEST, 0.1, 6), np.linspace(0.15, 1.0, 12)])
 """Torques of the curve, of the largest: teeth come into mesh mostly at small torque."""
+
+
+def refuse_given(K_b: float | None, K_e: float | None) -> None:
+    """Refuse stiffnesses [N·m/rad] beside the gear's curve.
+
+    Raises
+    ------
+    DesignError
+    """
+    if K_b is not None or K_e is not None:
+        raise DesignError(
+            "against", "gear", "takes no K_b and no K_e: the curve comes from the drawing"
+        )
 
 
 def against_gear(straight: Prediction, chain: Chain, largest_Nm: float) -> Prediction:

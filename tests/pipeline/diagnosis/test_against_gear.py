@@ -107,4 +107,6 @@ def test_a_stiffness_given_is_refused_beside_it(record: Path, tmp_path: Path) ->
     words = ("diagnose", cup, record, "--against", "gear", "--Kb", 3e4)
     done = in_process.flexspline(*words, folder=tmp_path)
     assert done.status == 2
-    assert "takes no --Kb" in done.stderr
+    assert "takes no K_b" in done.stderr
+    with pytest.raises(flexspline.FlexsplineError, match="takes no K_b"):
+        flexspline.diagnose(DESIGN, record, K_b=K_b, against="gear")
