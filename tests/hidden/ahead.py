@@ -76,15 +76,22 @@ def draw_friction_ahead(s: Setting, rng: np.random.Generator) -> Hidden:
     width = s.windup * loop_width(_bearing(seed)[0], share)
     beside = draw_friction(replace(s, level=0), rng) if rng.random() < 0.25 else None
 
+    def at_output(p: Program, g: Gear) -> np.ndarray:
+        return s.windup * output(_bearing(seed)[0], share, p.torque / peak, g.gap / s.windup)
+
+    def teeth(p: Program, g: Gear) -> np.ndarray:
+        x = at_output(p, g)
+        return np.sign(x) * np.maximum(np.abs(x) - g.gap / 2, 0.0) / s.windup * peak
+
     def angle(p: Program, g: Gear) -> np.ndarray:
-        x = s.windup * output(_bearing(seed)[0], share, p.torque / peak, g.gap / s.windup)
+        x = at_output(p, g)
         more = x - g.compliance * p.torque - g.gap * np.sign(p.torque) / 2
         return more + (0.0 if beside is None else beside.angle(p, g))
 
     said = f"friction {100 * share:.1f} % of the torque ahead of a gap of {gear.gap:.1f}″, {law}"
     if beside is not None:
         width, said = width + beside.magnitude, f"{said}, and {beside.law}"
-    return Hidden("friction_hysteresis", width, said, angle, crosses=True)
+    return Hidden("friction_hysteresis", width, said, angle, crosses=True, teeth=teeth)
 
 
 def output(bearing: Bearing, share: float, load: np.ndarray, gap: float) -> np.ndarray:

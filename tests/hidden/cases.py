@@ -117,22 +117,34 @@ def _single(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case
 
 
 def _pair(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:
-    one, two = cause, str(rng.choice([c for c in CAUSES if c != cause]))
+    one, draw = FORMS.get(cause) or (cause, CAUSES[cause])
+    two = str(rng.choice([c for c in CAUSES if c != one]))
     plan = _both(FOR_CAUSE[one], FOR_CAUSE[two])
     if plan is None:
         return None
     level = int(rng.integers(3))
     bench = Bench(plan, rng)
     try:
-        hidden = tuple(CAUSES[c](bench.setting(level), rng) for c in (one, two))
+        hidden = tuple(make(bench.setting(level), rng) for make in (draw, CAUSES[two]))
     except CannotShowError:
         return None
     units = bench.measured(hidden)
     found = standing(units, bench.rig, (one, two))
+    hidden = (widened(hidden[0], hidden[1], bench), hidden[1])
     left = (found.in_company(0, one, two, 1), found.in_company(1, two, one, 0))
     if min(left) < DECIDABLE:
         return None
     return bench.case("pair", hidden, units, severity=LEVELS[level], standing=left, seed=seed)
+
+
+def widened(friction: Hidden, other: Hidden, bench: Bench) -> Hidden:
+    """Friction ahead of the teeth beside an elastic effect, which at T = 0 feels ± the friction torque."""
+    if friction.teeth is None or other.cause not in ("series_compliance", "stiffness_hardening"):
+        return friction
+    gear, program = bench.gears[0], bench.program
+    carried = np.abs(program.torque - friction.teeth(program, gear)).max()
+    twist = other.angle(replace(program, torque=carried * np.array([-1.0, 1.0])), gear)
+    return replace(friction, magnitude=friction.magnitude + float(twist[1] - twist[0]))
 
 
 def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:

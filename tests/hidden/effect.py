@@ -26,6 +26,7 @@ class Hidden:
     law : one line on the law and its parameters.
     angle : arcsec added on the program's grid. reading_Nm : added to the torque reading.
     crosses : whether `angle` says itself where the gap is crossed, at once.
+    teeth : torque [N·m] that reaches the teeth, where the effect lies ahead of them: others act on that.
     """
 
     cause: str
@@ -34,6 +35,7 @@ class Hidden:
     angle: Callable[[Program, Gear], np.ndarray]
     reading_Nm: float = 0.0
     crosses: bool = False
+    teeth: Callable[[Program, Gear], np.ndarray] | None = None
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,7 +51,9 @@ def measure(
 ) -> Unit:
     """Simulate the unit on the grid, read it at the samples."""
     rows, torque = program.rows, program.torque
-    effects = [h.angle(program, gear)[rows] for h in hidden]
+    ahead = next((h.teeth for h in hidden if h.teeth), None)
+    teeth = replace(program, torque=ahead(program, gear)) if ahead else program
+    effects = [h.angle(program if h.teeth else teeth, gear)[rows] for h in hidden]
     offset = sum(h.reading_Nm for h in hidden)
     width = 0.0 if any(h.crosses for h in hidden) else noise.crossing
     gap = gear.gap * sign(torque, width)[rows] / 2

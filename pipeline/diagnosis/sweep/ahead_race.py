@@ -14,6 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import torque_nois
 from flexspline.pipeline.diagnosis.sweep.ahead_tuning import TunedAhead, ahead_element, tuned_ahead
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.first_ahead import first_ahead
+from flexspline.pipeline.diagnosis.sweep.fit import LINEAR
 from flexspline.pipeline.diagnosis.sweep.offset_race import (
     gained,
     offset_of,
@@ -67,7 +68,7 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
 def _raced_with(plain: PreparedSweep, element: Element) -> tuple[ExplainedSweep, float]:
     """The race with friction, and the friction found anew from it; with the deviation of its torque."""
     offset = 0.0
-    element = _without_terms(prepare(plain.sweep, plain.prediction, offset, element)).element
+    element = _alone(prepare(plain.sweep, plain.prediction, offset, element)).element
     for _ in range(ROUNDS):
         explained = run_race(prepare(plain.sweep, plain.prediction, offset, element))
         now = explained.prepared
@@ -87,11 +88,17 @@ def _raced_with(plain: PreparedSweep, element: Element) -> tuple[ExplainedSweep,
     return explained, found.torque_std_Nm
 
 
-def _without_terms(prepared: PreparedSweep) -> TunedAhead:
-    """The friction that explains the record best by itself."""
-    columns = replace(prepared.columns, all=prepared.columns.all[:, :0], terms=())
-    evidence = gaussian_evidence(columns, prepared.target, prepared.kept, prepared.noise)
-    return tuned_ahead(prepared, evidence, ())
+def _alone(prepared: PreparedSweep) -> TunedAhead:
+    """The friction that explains the record best by itself, stiffness and gap free."""
+    columns = prepared.columns
+    free = [t for t in columns.terms if t.owner in LINEAR]
+    few = replace(
+        columns,
+        all=np.hstack([columns.all[:, t.at] for t in free]),
+        terms=tuple(replace(t, at=slice(i, i + 1)) for i, t in enumerate(free)),
+    )
+    evidence = gaussian_evidence(few, prepared.target, prepared.kept, prepared.noise)
+    return tuned_ahead(prepared, evidence, range(len(free)))
 
 
 def _crossing(explained: ExplainedSweep) -> Crossing | None:

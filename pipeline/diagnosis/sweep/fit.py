@@ -18,6 +18,8 @@ from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, NOISE_WINDO
 
 ALLOWED = 2.0
 """Standard deviations by which a calibration may move without being a finding."""
+SOFT = "stiffness_hardening"
+"""The elastic cause that is not in the measured compliance."""
 LINEAR = {"series_compliance": 0, "clearance_offset": 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
@@ -81,8 +83,15 @@ class SweepFit:
 
     def magnitudes(self, mean: np.ndarray | None = None) -> dict[str, float]:
         """The magnitude of each named cause, as docs/contract.md defines it."""
-        rig = self.measured_rig(mean)
-        return {c: known_causes()[c].magnitude(e, rig) for c, e in self.elements(mean).items()}
+        rig, elements = self.measured_rig(mean), self.elements(mean)
+        found = {c: known_causes()[c].magnitude(e, rig) for c, e in elements.items()}
+        ahead = self.evidence.columns.ahead
+        if ahead is not None and SOFT in elements:  # at T = 0 the teeth feel ± its torque
+            ends = ahead.torque_Nm * np.array([-1.0, 1.0])
+            none = np.zeros(2, int)
+            twist = known_causes()[SOFT].angle_arcsec(elements[SOFT], History(ends, none, none))
+            found[FRICTION] += float(twist[1] - twist[0])
+        return found
 
     def magnitude_stds(self) -> dict[str, float]:
         """Their standard deviations by the posterior, to first order."""
