@@ -15,6 +15,7 @@ from flexspline.geometry.check_shaft import shaft_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import TEETH
+from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.tooth import ring_ends, tooth_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
 
@@ -40,6 +41,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from tooth_faults(design)
     yield from _play_faults(design)
     yield from wave_generator_faults(design)
+    yield from rated_faults(design)
     yield from _solver_faults(design)
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from flexspline.geometry.bounds import span
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.wave_generator import Assumed
 
 if TYPE_CHECKING:
@@ -15,6 +18,10 @@ at 17.78, 21.59, 25.40 and 31.75 mm; Schaeffler TPI 275, examples/catalogue/).""
 RATED_WHY = (
     f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes"
 )
+
+
+RATED_SHARES = (1e-3, 1e2)
+"""Of that: plastic gears carry a hundredth. Below, rounding shows in the forces; above, nothing holds."""
 
 
 def rated_in_proportion(pitch_radius_mm: float) -> float:
@@ -29,3 +36,16 @@ def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
         return stated, ()
     value = rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
     return value, (Assumed("gear.rated_torque_Nm", value, RATED_WHY),)
+
+
+def rated_faults(design: Design) -> Iterator[DesignError]:
+    """A rated torque that no gear of that size can have: a slip of the unit."""
+    stated = design.gear.rated_torque_Nm
+    usual = rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
+    low, high = (share * usual for share in RATED_SHARES)
+    if stated is not None and not low <= stated <= high:
+        yield DesignError(
+            "gear.rated_torque_Nm",
+            stated,
+            f"must be {span(low, high, 4)} N·m: a gear of this pitch radius has some {usual:.3g}",
+        )

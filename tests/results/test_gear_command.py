@@ -116,6 +116,7 @@ def test_a_wrong_file_is_refused_with_status_2(tmp_path: Path) -> None:
         ({"wave_generator.ball_count": 40, "wave_generator.ball_diameter_mm": 3.8}, "40 balls"),
         ({"wave_generator.ball_count": 3}, "from 6 to 200"),
         ({"gear.rated_torque_Nm": 0.0}, "rated_torque_Nm"),
+        ({"gear.rated_torque_Nm": 1e-6}, "must be from 0.0232 to 2320 N·m"),
     ],
 )
 def test_what_cannot_be_built_is_refused_in_one_line(changes: dict, says: str) -> None:
@@ -150,3 +151,12 @@ def test_the_command_leaves_a_run_s_result_alone(curve: GearCurve, tmp_path: Pat
     assert (out / "result.json").read_text() == "of a run"
     assert json.loads(done.stdout) == json.loads((out / "gear.json").read_text())
     assert json.loads(done.stdout)["K2_Nm_per_rad"] == pytest.approx(curve.K2_Nm_per_rad)
+
+
+@pytest.mark.parametrize("rated_Nm", [0.0232, 2320.0])
+def test_the_ends_of_rated_torque_still_have_a_curve(rated_Nm: float) -> None:
+    found = flexspline.gear(DESIGN.changed({"gear.rated_torque_Nm": rated_Nm}))
+    assert 0 < found.K1_Nm_per_rad < 1e6
+    assert 0 < found.K3_Nm_per_rad < 1e6
+    up = np.array(found.angle_arcsec[:10])
+    assert np.diff(up).min() > 0
