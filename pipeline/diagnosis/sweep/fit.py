@@ -13,8 +13,18 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, Posterior, posterior_of
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, NOISE_WINDOWS
+from flexspline.pipeline.diagnosis.sweep.evidence import (
+    GaussianEvidence,
+    Posterior,
+    gaussian_evidence,
+    posterior_of,
+)
+from flexspline.pipeline.diagnosis.sweep.regressors import (
+    FRICTION,
+    NOISE_WINDOWS,
+    DesignMatrix,
+    base_columns,
+)
 
 ALLOWED = 2.0
 """Standard deviations by which a calibration may move without being a finding."""
@@ -150,6 +160,8 @@ def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     """
     from scipy.optimize import lsq_linear
 
+    if evidence.columns.ahead is not None:
+        evidence = _of_all_torque(evidence, evidence.columns.ahead.carried_Nm)
     history = evidence.columns.rig.history
     units = len(history.unit_slices)
     limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
@@ -160,6 +172,19 @@ def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     mean = lsq_linear(lower.T, np.linalg.solve(lower, evidence.base_right), (-limit, limit)).x
     seen = evidence.columns.base[:, limited] @ mean[limited]
     return less_zero(evidence.target - seen, evidence.kept, history)
+
+
+def _of_all_torque(evidence: GaussianEvidence, carried_Nm: np.ndarray) -> GaussianEvidence:
+    """The calibration alone, with the torque that friction carries ahead of the teeth as the gear's."""
+    old = evidence.columns
+    teeth, prediction = old.rig.history, old.rig.prediction
+    read = replace(teeth, torque_Nm=teeth.torque_Nm + carried_Nm)
+    rig = replace(old.rig, history=read)
+    base, prior = base_columns(rig, old.base[:, -len(NOISE_WINDOWS) :])
+    target = evidence.target + prediction.angle_arcsec(teeth) - prediction.angle_arcsec(read)
+    return gaussian_evidence(
+        DesignMatrix(rig, base, prior, old.all[:, :0], ()), target, evidence.kept, evidence.noise
+    )
 
 
 def less_zero(values: np.ndarray, rows: np.ndarray, history: History) -> np.ndarray:

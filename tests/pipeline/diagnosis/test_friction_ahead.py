@@ -139,6 +139,10 @@ def test_the_written_model_predicts_the_record(tmp_path: Path) -> None:
     # the fit's own residual, as the model is its fit; the noise columns are in the fit alone
     expected = found.sweep.explained.identified.fit.residual_as_read()
     np.testing.assert_allclose(left, expected, atol=1e-3)  # the fit's columns are float32
+    # the calibrated simulation knows no friction: half the loop's width of it is left at the least
+    assert found.outcome.gain is not None
+    assert found.outcome.gain.rmse_calibrated > found.causes[0].magnitude / 4
+    assert found.outcome.gain.rmse_calibrated > 1.5 * found.outcome.gain.rmse_after
 
 
 def test_deviation_of_a_prediction() -> None:
