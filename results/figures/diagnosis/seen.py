@@ -11,8 +11,9 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, calibrated_residual, less_zero
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 
@@ -62,7 +63,7 @@ class SweepPictureData:
 
     @property
     def history(self) -> History:
-        """The true history: a shifted torque reading is corrected."""
+        """The true history: a shifted torque reading is corrected, its torque that at the teeth."""
         return self.explained.prepared.rig.history
 
     @property
@@ -101,7 +102,9 @@ class SweepPictureData:
     def channels(self) -> list[Channel]:
         """Channels that were recorded and vary."""
         sweep, h = self.explained.prepared.sweep, self.history
-        found = [Channel("torque_Nm", LABELS["torque_Nm"], h.torque_Nm)]
+        ahead = self.fit.evidence.columns.ahead
+        torque = h.torque_Nm + (ahead.carried_Nm if ahead else 0.0)
+        found = [Channel("torque_Nm", LABELS["torque_Nm"], torque)]
         if sweep.history.time_s is not None and h.time_s is not None:
             found.append(_time(h.time_s))
         if h.cycle.max() > 0:

@@ -10,8 +10,8 @@ from histories import sweep as swept
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import ALLOWED, calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 
 SIGMA = 0.5

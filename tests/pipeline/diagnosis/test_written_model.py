@@ -12,8 +12,8 @@ from hidden.cases import draw_case
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
 from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.fit import calibrated_residual
 
 FOREIGN = (
     "unit_gain", "zero_with_temperature", "zero_each_cycle", "position_step", "stiffness_with_cycle",
