@@ -215,9 +215,10 @@ def examples() -> tuple[str, str]:
 
 def _figures(curve: GearCurve) -> str:
     shares = " / ".join(f"{100 * v:.0f}" for v in curve.compliance_shares.values())
+    K = (curve.K1_Nm_per_rad, curve.K2_Nm_per_rad, curve.K3_Nm_per_rad)
+    three_digits = " | ".join(format(float(format(k, ".3g")), ".0f") for k in K)
     return (
-        f"{curve.rated_torque_Nm:.3g} | {curve.K1_Nm_per_rad:.0f} | {curve.K2_Nm_per_rad:.0f} | "
-        f"{curve.K3_Nm_per_rad:.0f} | {curve.K3_Nm_per_rad / curve.K1_Nm_per_rad:.2f} | "
+        f"{curve.rated_torque_Nm:.3g} | {three_digits} | {K[2] / K[0]:.2f} | "
         f"{curve.lost_motion_arcsec:.0f} | {curve.teeth_in_contact} | {shares}"
     )
 
