@@ -109,7 +109,7 @@ RUNS = [pytest.param(n, marks=[pytest.mark.long] if n in SLOW else []) for n in 
 @pytest.mark.parametrize("name", RUNS)
 def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
     monkeypatch.setattr(
-        "flexspline.results.diagnosis.files.reports_of", lambda *_: {}
+        "flexspline.results.diagnosis.files.reports_of", lambda *_, **__: {}
     )  # only figures
     record = RECORDS[name](tmp_path / "m.csv")
     words = ["diagnose", CUP, record, "--Kb", 31329, "--Ke", 43339, "--out", tmp_path / "o"]
