@@ -131,6 +131,12 @@ class Design(Table):
     uncertainty: Uncertainty = Uncertainty()
     solver: Solver = Solver()
 
+    @property
+    def w0_mm(self) -> float:
+        """w0 of the wave generator's ellipse w0 cos 2φ [mm]: as stated, else m(z2 − z1)/2."""
+        stated = self.wave_generator.deflection_mm
+        return self.gear.centre_distance_mm if stated is None else stated
+
     def part(self, name: PartName) -> Part:
         """The flexspline or the shaft."""
         if name == "shaft":

@@ -71,7 +71,7 @@ def half_seat_peak(flexspline: PartModel) -> StressPeak:
 
     How wide the bearing that carries the seat is, no design states: the seat is taken as wide as the ring.
     """
-    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
+    w0, apart = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> StressPeak:
         narrow = with_narrow_seat(outline, NARROW_SEAT)
@@ -112,7 +112,7 @@ def _of_body(
     flexspline: PartModel, body: Part, title: str, bolts: BoltCircle | None = None
 ) -> tuple[StressPeak, float]:
     """Peak of a body of revolution, and the largest stress [MPa] where `bolts` would be, 0 without them."""
-    w0, apart = flexspline.context.design.gear.centre_distance_mm, flexspline.part.exclusion_mm
+    w0, apart = flexspline.context.design.w0_mm, flexspline.part.exclusion_mm
 
     def make(outline: Meridian, deadline: Deadline) -> tuple[StressPeak, float]:
         own = flexspline.material

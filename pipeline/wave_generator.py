@@ -44,7 +44,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
     A swept part is meshed anew, fine where the peak of the part without its holes is; should the peak
     turn up elsewhere, there too. Any other part is solved on the mesh that gave K.
     """
-    w0 = flexspline.context.design.gear.centre_distance_mm
+    w0 = flexspline.context.design.w0_mm
 
     def make() -> SolidField:
         expected = _hole_free_peak(flexspline)
@@ -65,7 +65,7 @@ def solid_ellipse(flexspline: PartModel) -> SolidField:
 
 def coarse_ellipse(flexspline: PartModel) -> SolidField:
     """The same on the mesh that gave K, or on a coarser one, for pictures: another model gives the peak."""
-    w0 = flexspline.context.design.gear.centre_distance_mm
+    w0 = flexspline.context.design.w0_mm
 
     def make() -> SolidField:
         return _solved(flexspline, rim_mesh(flexspline), w0)
@@ -76,7 +76,7 @@ def coarse_ellipse(flexspline: PartModel) -> SolidField:
 
 def _hole_free_peak(flexspline: PartModel) -> tuple[float, float] | None:
     """Where (r, z) the stress is largest without the holes; None where no mesh can use or find it."""
-    part, w0 = flexspline.part, flexspline.context.design.gear.centre_distance_mm
+    part, w0 = flexspline.part, flexspline.context.design.w0_mm
     if not flexspline.is_swept:
         return None
     try:

@@ -168,7 +168,7 @@ def _stress_inputs(context: AnalysisContext, part: PartName) -> Mapping[str, Any
 
 
 def _ellipse_inputs(context: AnalysisContext) -> Mapping[str, Any]:
-    w0 = context.design.gear.centre_distance_mm
+    w0 = context.design.w0_mm
     return {**context.part("flexspline").torsion_key, "w0_mm": w0}
 
 
@@ -184,7 +184,7 @@ def _renders(context: AnalysisContext, result: RunResult, pool: DrawingPool) -> 
         make = partial(pool.draw, write_torque_stress, *shown)
         yield _Drawing(name, _stress_inputs(context, part), make)
     if ELLIPSE in fields:
-        ellipse = fields[ELLIPSE], result.design.gear.centre_distance_mm
+        ellipse = fields[ELLIPSE], result.design.w0_mm
         make = partial(pool.draw, write_ellipse_picture, *ellipse)
         yield _Drawing(ELLIPSE, _ellipse_inputs(context), make)
 
@@ -198,7 +198,7 @@ def _views(
     part_of: dict[str, PartName] = {f"{part}_torque": part for part in TITLES}
     for name in names:
         if name == ELLIPSE:
-            ellipse = name, fields[name], result.design.gear.centre_distance_mm
+            ellipse = name, fields[name], result.design.w0_mm
             make = partial(pool.draw, write_turning_ellipse, *ellipse)
             yield _Drawing(name, {**key, **_ellipse_inputs(context)}, make)
         elif name in part_of:

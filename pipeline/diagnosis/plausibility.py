@@ -79,8 +79,12 @@ def slope_words(size: SweepSize, sweep: Sweep) -> str:
     """How much stiffer or softer the gear would be, and why that may seem so."""
     ratio = size.compliance
     stiff = f"{times(1 / ratio)} stiffer" if 0 < ratio < 1 else f"{times(ratio)} softer"
-    stiff = stiff if ratio > 0 else "stiffer than anything"
-    return f"the gear would be {stiff} than simulated" + suspects(size, sweep)
+    said = (
+        f"the gear would be {stiff} than simulated"
+        if ratio > 0
+        else "the angle does not follow the torque"
+    )
+    return said + suspects(size, sweep)
 
 
 def suspects(size: SweepSize, sweep: Sweep) -> str:

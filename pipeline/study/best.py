@@ -34,4 +34,4 @@ def best_field(result: StudyResult, say: Callable[[str], None]) -> BestField | N
     except OUR_ERRORS as fault:
         say(f"no picture of design {row.slot} on the wave generator: {fault}")
         return None
-    return BestField(row.slot, field, design.gear.centre_distance_mm)
+    return BestField(row.slot, field, design.w0_mm)

@@ -80,7 +80,7 @@ def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None =
     """
     flexspline, shaft = with_equivalent_ring(design).parts
     in_sum, w0, torque = (
-        design.solver.K_b_in_sum, design.gear.centre_distance_mm, design.load.torque_Nm,
+        design.solver.K_b_in_sum, design.w0_mm, design.load.torque_Nm,
     )  # fmt: skip
     asked: dict[str, Callable[[], Stiffness | StressPeak]] = {}
     if "lobes" in solves or in_sum != "K_b":

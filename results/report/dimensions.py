@@ -20,7 +20,7 @@ NBSP = "\N{NO-BREAK SPACE}"
 def dimensions(design: Design) -> Iterable[Block]:
     """Every key of the design file with its value and unit, defaults included, by table."""
     yield Heading("The design in figures", "figures")
-    yield Paragraph("Every key of the design file, defaults included.", small=True)
+    yield Paragraph("Every key of the design file that has a value, defaults included.", small=True)
     yield Facts(tuple((name, _said(name, table)) for name, table in _tables(design)))
 
 

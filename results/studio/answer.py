@@ -59,7 +59,7 @@ def message(design: Design, found: Found) -> Message:
     return {
         "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
-        "w0_mm": design.gear.centre_distance_mm,
+        "w0_mm": design.w0_mm,
         **shown,
     }
 

@@ -27,7 +27,13 @@ def notes(result: StudyResult) -> list[str]:
     ]
     said += _borders(result)
     if not result.verified:
-        said.append("No design was solved again with the solid model (run.verify = 0).")
+        asked = result.study.file.run.verify
+        why = (
+            f"none that keeps to every constraint, of {asked} asked for"
+            if asked
+            else "run.verify = 0"
+        )
+        said.append(f"No design was solved again with the solid model ({why}).")
     return said
 
 

@@ -63,7 +63,8 @@ def misses(result: StudyResult) -> list[str]:
             f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
-    return said
+    at = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items())
+    return [*said, f"Design {row.slot}: {at}."]
 
 
 def limits(result: StudyResult) -> list[str]:

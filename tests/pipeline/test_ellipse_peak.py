@@ -73,3 +73,14 @@ def test_the_solid_model_with_its_holes_has_the_same_peak(tmp_path: Path) -> Non
     part = model(CUP, tmp_path)
     solid = solid_ellipse(part).peak
     assert solid.mises_MPa == pytest.approx(under_test.ellipse_peak(part).mises_MPa, rel=0.015)
+
+
+def test_the_stress_is_of_the_stroke_that_is_stated(tmp_path: Path) -> None:
+    """Linear: a plug that is a quarter larger bends the rim by a quarter more."""
+    plain = CUP.changed({"flexspline.bolt_count": 0, "shaft.bolt_count": 0})
+    usual, larger = (
+        under_test.ellipse_peak(model(design, tmp_path)).mises_MPa
+        for design in (plain, plain.changed({"wave_generator.deflection_mm": 0.25}))
+    )
+    assert CUP.gear.centre_distance_mm == 0.2
+    assert larger == pytest.approx(1.25 * usual, rel=1e-3)  # two refined meshes of the same part

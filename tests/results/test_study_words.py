@@ -46,7 +46,8 @@ def result_of(text: str = STUDY) -> StudyResult:
 
 
 def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
-    stress, total = misses(result_of())
+    stress, total, nearest = misses(result_of())
+    assert nearest == "Design 0: wall thickness 0.3\u202fmm."
     assert "0 of 10 designs keep to at most 300" in stress
     assert "design 0, has 310" in stress
     assert "6 of 10 designs keep to at most 90.0" in total  # 85, 86, …, 90

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
-from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock
+from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_short
 
 LARGEST_CYCLE = 1_000_000
 """A cycle a second for eleven days; a larger number is a slipped column."""
@@ -34,7 +34,11 @@ def history_of(table: MeasuredTable) -> NamedHistory:
     names = tuple(dict.fromkeys(table.labels.get("unit", ("",))))
     code = {name: i for i, name in enumerate(names)}
     unit = np.array([code[u] for u in table.labels.get("unit", ("",) * n)])
-    over = "; past midnight? write the date beside it" if is_clock(table.read_as.began) else ""
+    over = ""
+    if is_short(table.read_as.began):
+        over = "; past the hour? write hours too, or let the minutes go on beyond 59"
+    elif is_clock(table.read_as.began):
+        over = "; past midnight? write the date beside it"
     _refuse_backward(table, "time_s", unit, "time runs backwards", over)
     _refuse_backward(table, "cycle", unit, "cycle numbers run backwards")
     torque = table.numbers["torque_Nm"]

@@ -55,9 +55,10 @@ def _in_minutes(grid: Grid, column: ReadColumn, texts: list[str]) -> bool:
     head = f"{column.head} {grid.unit_row[column.at] if grid.unit_row else ''}"
     form = form_said(head) or form_shown(texts)
     if form is None:
+        row = next((i for i, t in enumerate(texts) if t.strip("0:")), 0)
         reason = (
-            f'{column.head} = "{texts[0]}" may be hours and minutes or minutes and seconds: write '
-            f'00:{texts[0]} or {texts[0]}:00, or "mm:ss" or "hh:mm" into the head'
+            f'{column.head} = "{texts[row]}" may be hours and minutes or minutes and seconds: write '
+            f'{texts[row]}:00 or 00:{texts[row]}, or "hh:mm" or "mm:ss" into the head'
         )
-        raise MeasurementError(grid.path, grid.line[0], reason)
+        raise MeasurementError(grid.path, grid.line[row], reason)
     return form == "mm:ss"

@@ -17,6 +17,8 @@ BEYOND_THE_EDGE = 0.5
 """Of what a cause adds beyond the most that it adds within what was measured: laws that agree inside go apart
 outside. A cubic and a quadratic hardening, each fitted to the other, differ by 0.4 and 0.6 of that at one
 and a half times the record's largest torque."""
+CARRIED_UNSURE = 0.03
+"""Of the torque that friction ahead of the gap carries; by judgement, after made-up records."""
 MOST_PARAMETERS = 120
 """Of a covariance in a file: sixty thousand letters. Many units: a zero, a stiffness and a gap each."""
 
@@ -99,13 +101,20 @@ def deviation_of(
         variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
     read = model.true_history(history)
     true = model.at_teeth(read)
-    if doubt.torque_noise_Nm > 0:
-        wrong = ndtr(-np.abs(true.torque_Nm) / doubt.torque_noise_Nm)
-        variance += model.gap_arcsec**2 * wrong
+    carried = true.torque_Nm - read.torque_Nm
+    unsure = np.hypot(doubt.torque_noise_Nm, CARRIED_UNSURE * np.abs(carried))
+    wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, 1e-12))
+    # in the middle of the gap a reading is half of it off, beyond it all of it on the wrong side
+    variance += model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong)
     if FRICTION in model.elements:
         width = known_causes()[FRICTION].angle_arcsec(model.elements[FRICTION], true)
-        width = width + model.compliance * (true.torque_Nm - read.torque_Nm)
-        variance += before_far_turn(read) * np.abs(width).max() ** 2
+        width = width + model.compliance * carried
+        new = before_far_turn(read)
+        variance += new * np.abs(width).max() ** 2
+        # friction ahead of the gap may hold the output on either side of it
+        variance += (
+            (new & (np.abs(read.torque_Nm) < np.abs(carried).max())) * model.gap_arcsec**2 / 2
+        )
     outside = beyond(doubt.span, history)
     growth = 1 + sum(outside.values())
     std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * _over(model, doubt.span, true)) ** 2)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
 from flexspline.pipeline.diagnosis.model.doubt import Doubt, parameter_count
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_keys import (
@@ -82,12 +83,15 @@ def _covariance(rows: list[Any], refuse: Refuse) -> np.ndarray:
     found = np.zeros((len(rows), len(rows)))
     for i, row in enumerate(rows):
         if not isinstance(row, list) or len(row) != i + 1 or not all(map(is_number, row)):
-            raise refuse(f"row {i + 1} of covariance in [doubt] must be {i + 1} numbers")
+            many = "1 number" if i == 0 else f"{i + 1} numbers"
+            raise refuse(
+                f"row {i + 1} of covariance in [doubt] must be {many}, each within ±{LARGEST_NUMBER:g}"
+            )
         found[i, : i + 1] = row
     found += np.tril(found, -1).T
     if len(found) and np.linalg.eigvalsh(found)[0] < -1e-9 * np.abs(np.diag(found)).max():
         raise refuse(
-            "covariance in [doubt] is none: a combination of parameters has a negative variance"
+            "covariance in [doubt] must give every combination of parameters a variance above 0"
         )
     return found
 

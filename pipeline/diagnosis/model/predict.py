@@ -63,8 +63,8 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
                 )
     angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
-    told = f"unit {', '.join(strange)}: " if any(strange) else ""
-    warnings = [f"{told}not in the model's record, so its zero is taken as 0"] if strange else []
+    told = f"unit {', '.join(strange)}" if any(strange) else "a file without units"
+    warnings = [f"{told}: not in the model's record, so its zero is taken as 0"] if strange else []
     if file.doubt is None:
         return Predicted(angle, tuple(warnings), table.read_as)
     deviation = deviation_of(file.model, file.doubt, history, found.units)
