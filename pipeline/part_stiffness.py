@@ -22,9 +22,9 @@ from flexspline.pipeline.parts import PartModel, is_lasting
 SOLID_SECONDS = 60.0
 """Of all meshes of a part after the first: with that one and the rest of a command, a minute and a half."""
 FIRST_ELEMENTS = 20_000
-"""Of a first mesh: 85 000 unknowns, 3 to 5 s in a compact part; on 12 random keyed shafts mostly half the processor
-time of 30 000, and nine met the tolerance by it, as many as before. One of 57 000 took more than two minutes on a disc with small
-holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds."""
+"""Of a first mesh: 85 000 unknowns, 3 to 5 s in a compact part. On 12 random keyed shafts mostly half the
+processor time of 30 000, and nine met the tolerance by it, as many as before. One of 57 000 took more than
+two minutes on a disc with small holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds."""
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
