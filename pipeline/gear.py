@@ -42,6 +42,8 @@ LAWS = (
     Assumed("working depth over m(z2 - z1)/2", LARGEST_WITHDRAWAL, "teeth of full height"),
 )
 """What no key of the design file states."""
+LOW_RIM = 0.05
+"""Of the stroke: play that lowers the rim by more takes clearance from teeth off the major axis."""
 CARRIES = 1e-3
 """Of the largest force: a tooth below it is not counted as in contact."""
 
@@ -218,7 +220,21 @@ def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -
     t = len(model.tooth_angles)
     if unloaded.loaded[:t].any() and unloaded.loaded[t : 2 * t].any():
         force = float(unloaded.forces[: 2 * t].max()) / model.teeth_per_station
+        play = design.bearing.radial_clearance_um / 2e3
+        lowered = play > LOW_RIM * model.wave_generator.deflection
+        why = (
+            f"half the play, {play:.3g} mm, lowers the rim's stroke of "
+            f"{model.wave_generator.deflection:.3g} mm, and teeth off the major axis no longer clear"
+            if lowered
+            else "there is no clearance"
+        )
+        lines.append(f"teeth press on both flanks without torque, up to {force:.2g} N each: {why}")
+    full = states[len(LOADING) - 1]
+    teeth = full.forces[:t] - full.forces[t : 2 * t]
+    most = int(np.abs(teeth).argmax())
+    if most in (0, t - 1):
         lines.append(
-            f"teeth press on both flanks without torque, up to {force:.2g} N each: there is no clearance"
+            f"the pair of teeth that carries most stands {abs(degrees(model.tooth_angles[most])):.0f}° from "
+            "the major axis, at the end of the working depth that is assumed: its force hangs on that end"
         )
     return lines

@@ -150,7 +150,8 @@ def _which(load_case: str) -> Words:
         *plain(" is nearest to a mounted gear. The uniform case is the stiffest; it compares parts. "),
         *free,
         *plain(" shows how much the wave generator carries. No case holds the compliance of teeth, "
-               "wave-generator bearing and bolts, which make a gear softer. The backlash sum uses the case "
+               "wave-generator bearing and bolts, which make a gear softer; flexspline gear computes it with "
+               "teeth and bearing. The backlash sum uses the case "
                f"“{load_case}” (solver.load_case)."),
     )  # fmt: skip
 

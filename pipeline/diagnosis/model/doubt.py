@@ -9,7 +9,12 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, beyond, clipped
+from flexspline.pipeline.diagnosis.model.span import (
+    MeasuredSpan,
+    beyond,
+    clipped,
+    smaller_loops,
+)
 from flexspline.pipeline.diagnosis.sweep.row_selection import before_far_turn
 
 FRICTION = "friction_hysteresis"
@@ -88,10 +93,11 @@ def deviation_of(
     """How far readings of a history may be from the model's angles: one standard deviation.
 
     Independent parts: the error on rows that were held out; the parameters' posterior covariance; until
-    torque first turns far from zero half the width of the friction's loop, whose state is not known; near
-    T = 0 the torque's noise, which puts a row on the wrong side of the gap g with the probability
-    Φ(−|T|/σ_T), a square of g²Φ on average; beyond what was measured a share of what the causes add there.
-    Outside, all but the last grow in proportion to the distance.
+    torque first turns far from zero, and in cycles smaller than any of the record, half the width of the
+    friction's loop, whose state there is not known; near T = 0 the torque's noise, which puts a row on the
+    wrong side of the gap g with the probability Φ(−|T|/σ_T), a square of g²Φ on average; beyond what was
+    measured a share of what the causes add there. Outside, all but the last grow in proportion to the
+    distance.
     """
     from scipy.special import ndtr
 
@@ -106,19 +112,22 @@ def deviation_of(
     wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, 1e-12))
     # in the middle of the gap a reading is half of it off, beyond it all of it on the wrong side
     variance += model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong)
+    smaller = np.zeros(len(history), bool)
     if FRICTION in model.elements:
         width = known_causes()[FRICTION].angle_arcsec(model.elements[FRICTION], true)
         width = width + model.compliance * carried
         new = before_far_turn(read)
-        variance += new * np.abs(width).max() ** 2
+        smaller = smaller_loops(doubt.span, history)
+        variance += (new | smaller) * np.abs(width).max() ** 2
         # friction ahead of the gap may hold the output on either side of it
         variance += (
             (new & (np.abs(read.torque_Nm) < np.abs(carried).max())) * model.gap_arcsec**2 / 2
         )
     outside = beyond(doubt.span, history)
+    counts = {channel: int((far > 0).sum()) for channel, far in outside.items()}
+    counts["torque_amplitude"] = int(smaller.sum())
     growth = 1 + sum(outside.values())
     std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * _over(model, doubt.span, true)) ** 2)
-    counts = {channel: int((far > 0).sum()) for channel, far in outside.items()}
     return Deviation(std, {channel: n for channel, n in counts.items() if n})
 
 

@@ -28,6 +28,9 @@ torque_noise_Nm = {noise}
 # order of this file; lower triangle
 covariance = ["""
 
+POSITIVE = ("smallest_loop_Nm", "rate_Nm_per_s")
+"""Numbers of [doubt.measured] that may be absent."""
+
 
 def doubt_lines(doubt: Doubt) -> list[str]:
     """Lines of the table [doubt]."""
@@ -39,8 +42,10 @@ def doubt_lines(doubt: Doubt) -> list[str]:
     lines += ["]", "[doubt.measured]   # beyond these, predictions extrapolate"]
     span = doubt.span
     lines.append(f"torque_Nm = {_pair(span.torque_Nm)}")
-    if span.rate_Nm_per_s is not None:
-        lines.append(f"rate_Nm_per_s = {span.rate_Nm_per_s!r}")
+    for name in POSITIVE:
+        value = getattr(span, name)
+        if value is not None:
+            lines.append(f"{name} = {value!r}")
     for name in ("temperature_C", "input_angle_deg"):
         ends = getattr(span, name)
         if ends is not None:
@@ -72,10 +77,11 @@ def read_doubt(table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse) -
         for key in ("torque_Nm", "temperature_C", "input_angle_deg")
         if key in measured
     }
-    rate = measured.get("rate_Nm_per_s")
-    if rate is not None and rate <= 0:
-        raise refuse("rate_Nm_per_s in [doubt.measured] must be above 0")
-    span = MeasuredSpan(**ends, rate_Nm_per_s=None if rate is None else float(rate))
+    for key in POSITIVE:
+        if key in measured and measured[key] <= 0:
+            raise refuse(f"{key} in [doubt.measured] must be above 0")
+    smallest, rate = (float(measured[k]) if k in measured else None for k in POSITIVE)
+    span = MeasuredSpan(**ends, smallest_loop_Nm=smallest, rate_Nm_per_s=rate)
     return Doubt(float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span)
 
 

@@ -20,6 +20,8 @@ def extrapolated(deviation: Deviation, span: MeasuredSpan, history: History) -> 
 
 
 def _reach(channel: str, span: MeasuredSpan) -> str:
+    if channel == "torque_amplitude":
+        return f"has a cycle that reaches only {span.smallest_loop_Nm or 0.0:.4g} N·m"
     if channel == "torque_rate":
         return f"torque moves by {span.rate_Nm_per_s or 0.0:.3g} N·m/s"
     names = {

@@ -19,6 +19,8 @@ MOST_TRAVEL = 0.95
 """Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
 SLACK = 0.05
 """Of a channel's range: noise and rounding are no extrapolation."""
+SMALLER = 0.8
+"""Of the smallest cycle's torque: what friction does in smaller loops was not seen."""
 RATE_SLACK = 0.5
 """Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
 LEAST_RANGE_K = 10.0
@@ -31,10 +33,12 @@ QUARTER_DEG = 90.0
 class MeasuredSpan:
     """Ends of what was measured; None where the channel was not recorded.
 
-    `rate_Nm_per_s` is the fastest at which torque moved for more than an instant.
+    `rate_Nm_per_s` is the fastest at which torque moved for more than an instant, `smallest_loop_Nm` the
+    largest torque of the smallest cycle.
     """
 
     torque_Nm: Ends
+    smallest_loop_Nm: float | None = None
     rate_Nm_per_s: float | None = None
     temperature_C: Ends | None = None
     input_angle_deg: Ends | None = None
@@ -46,6 +50,7 @@ def span_of(history: History) -> MeasuredSpan:
     fastest = [by_travel(rate, travel, MOST_TRAVEL) for rate, travel in rates]
     return MeasuredSpan(
         _ends(history.torque_Nm),
+        float(_loops_Nm(history).min()),
         max(fastest) if fastest and max(fastest) > 0 else None,
         None if history.temperature_C is None else _ends(history.temperature_C),
         None if history.input_angle_deg is None else _ends(history.input_angle_deg),
@@ -71,6 +76,24 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     if span.input_angle_deg is not None and history.input_angle_deg is not None:
         found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
     return found
+
+
+def smaller_loops(span: MeasuredSpan, history: History) -> np.ndarray:
+    """(n,) rows of cycles that reach much less torque than any of the record."""
+    least = span.smallest_loop_Nm or 0.0
+    return _loops_Nm(history) < SMALLER * least
+
+
+def _loops_Nm(history: History) -> np.ndarray:
+    """(n,) largest |torque| of each row's cycle."""
+    out = np.empty(len(history))
+    for rows in history.unit_slices:
+        cycle, size = history.cycle[rows], np.abs(history.torque_Nm[rows])
+        _, which = np.unique(cycle, return_inverse=True)
+        largest = np.zeros(which.max() + 1)
+        np.maximum.at(largest, which.ravel(), size)
+        out[rows] = largest[which.ravel()]
+    return out
 
 
 def clipped(span: MeasuredSpan, history: History) -> History:

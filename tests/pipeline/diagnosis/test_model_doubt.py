@@ -118,6 +118,7 @@ def test_the_file_holds_it_exactly(tmp_path: Path) -> None:
         ("0.16]", "-0.16]", "a variance above 0"),
         ("  [0.0, 0.0, 0.16],\n", "", "of 2 parameters; the model has 3"),
         ("reading_arcsec = 0.3", "reading_arcsec = -0.3", "must not be negative"),
+        ("smallest_loop_Nm = 2.0", "smallest_loop_Nm = 0.0", "must be above 0"),
         ("torque_Nm = [-2.0, 2.0]", "torque_Nm = [2.0, -2.0]", "the smaller first"),
         ("[doubt.measured]", "[doubt.other]", "measured is missing"),
     ],
@@ -151,3 +152,14 @@ def test_columns_are_as_many_as_counted() -> None:
     )  # fmt: skip
     columns = parameter_columns(model, sweep(units=2), ("a", "b"))
     assert columns.shape[1] == parameter_count(model) == 2 + 2 + 4 + 2 + 1
+
+
+def test_friction_in_smaller_loops_than_any_measured_is_not_known() -> None:
+    shape = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=0, loaded=0, held=1, start=1)
+    model = replace(PLAIN, elements={"friction_hysteresis": (Element(shape, (2.0,)),)})
+    for size, wide in ((0.9, False), (0.5, True)):
+        loops = replace(RECORD, torque_Nm=size * RECORD.torque_Nm)
+        found = deviation_of(model, doubt(np.empty((0, 0))), loops, ("",))
+        settled = (np.arange(len(RECORD)) > 60) & (RECORD.torque_Nm != 0)
+        assert bool(found.std_arcsec[settled].min() > 1.9) is wide
+        assert found.rows_beyond == ({"torque_amplitude": len(RECORD)} if wide else {})
