@@ -24,6 +24,9 @@ OUTLINE = cup_meridian(CUP)
 FINE = 1e-5
 """A tolerance that takes many meshes."""
 SECONDS_A_MESH = 10.0
+LARGE = {("torsion", 3), ("free", 3)}
+"""The third mesh has 1.8 and 2.0 times the second's elements, of 24 and 29 s by 2^1.5; the fourth 1.8 and 2.3
+times the third's, of 23 and 35 s: with 20 s left after three meshes three are made."""
 
 
 class Clock:
@@ -106,7 +109,8 @@ def test_stiffness_of_the_meshes_until_then(
     case: str, meshes: int, clock: Clock, exact: dict[str, Stiffness]
 ) -> None:
     # the next mesh is at least as large: it would take the 10 s that are left, and more
-    deadline = clock.deadline(SECONDS_A_MESH * (meshes + 1))
+    spare = 2.0 if (case, meshes) in LARGE else 1.0
+    deadline = clock.deadline(SECONDS_A_MESH * (meshes + spare))
     found = (
         torsional_stiffness(OUTLINE, STEEL, "mesh", FINE, deadline)
         if case == "torsion"

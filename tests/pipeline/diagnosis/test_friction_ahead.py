@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.model.doubt import Doubt, deviation_of
+from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE, Doubt, deviation_of
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
@@ -156,8 +156,12 @@ def test_deviation_of_a_prediction() -> None:
     std = deviation_of(MODEL, replace(plain, covariance=still), read, ("",)).std_arcsec
     slips = np.abs(np.diff(MODEL.at_teeth(read).torque_Nm, prepend=0.0)) > 0.009
     # all of it carried: 10 arcsec per N·m times 0.02 N·m
-    np.testing.assert_allclose(std[far][slips[far]], np.hypot(0.5, 0.2), rtol=1e-3)
-    noisy = deviation_of(MODEL, replace(plain, torque_noise_Nm=0.01), read, ("",)).std_arcsec
     teeth = MODEL.at_teeth(read).torque_Nm
+    carried = np.abs(teeth - read.torque_Nm).max()
+    beyond = np.abs(teeth) > 5 * CARRIED_UNSURE * carried  # where the gap's side is sure
+    np.testing.assert_allclose(std[far][(slips & beyond)[far]], np.hypot(0.5, 0.2), rtol=1e-3)
+    at_gap = slips[far] & (np.abs(teeth[far]) < CARRIED_UNSURE * carried)
+    assert std[far][at_gap].min() > 0.3 * 60  # Φ(−1) of the gap's square: 0.4 of it
+    noisy = deviation_of(MODEL, replace(plain, torque_noise_Nm=0.01), read, ("",)).std_arcsec
     assert noisy[far][np.abs(teeth[far]) < 0.005].min() > 20.0  # of a gap of 60, one half is unsure
-    assert noisy[far][np.abs(teeth[far]) > 0.1].max() == pytest.approx(0.5)
+    assert noisy[far][np.abs(teeth[far]) > 0.2].max() == pytest.approx(0.5)
