@@ -16,6 +16,9 @@ from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
+CANCELLED_DOUBT = 0.003
+"""Of what cancels between a cause's elements: two lags of opposite sign may stand for a delay. Of nine
+made-up records with one, two deviations hold the truth in five without this, one deviation in all with it."""
 MOST_SHAPES = 24
 """Of these sets at most, the likeliest: each is fitted anew for its deviation."""
 
@@ -106,5 +109,14 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         values = np.array([m[cause] for m in each])
         spread = float(np.sqrt(weight @ (values - best[cause]) ** 2))
         floor = known_causes()[cause].shape_doubt * abs(best[cause])
-        std[cause] = hypot(own[cause], spread, floor)
+        cancelled = CANCELLED_DOUBT * _cancelled(identified, cause, best[cause])
+        std[cause] = hypot(own[cause], spread, floor, cancelled)
     return best, std
+
+
+def _cancelled(identified: Identification, cause: str, magnitude: float) -> float:
+    """How much larger a cause's elements are one by one than together; 0 where they do not add up."""
+    rig, known = identified.fit.measured_rig(), known_causes()[cause]
+    each = [known.magnitude((e,), rig) for e in identified.fit.elements().get(cause, ())]
+    adds_up = abs(sum(each) - magnitude) <= 1e-6 * sum(map(abs, each))
+    return sum(map(abs, each)) - abs(magnitude) if len(each) > 1 and adds_up else 0.0
