@@ -53,6 +53,18 @@ def separations(
     return sorted(found, key=lambda s: -s.separation)
 
 
+def most_telling(
+    plans: Sequence[MeasurementPlan], models: Sequence[ExtendedModel], noise_arcsec: float
+) -> PlanSeparation:
+    """The plan that separates the models most for as many readings; of the longer its own separation.
+
+    Seven positions are not worth more than two for their number alone.
+    """
+    rows = {plan.doing: len(plan.history) for plan in plans}
+    found = separations(plans, models, noise_arcsec)
+    return max(found, key=lambda s: s.separation / rows[s.doing] ** 0.5)
+
+
 def _calibration_columns(
     history: History, largest_arcsec: float, calibration: tuple[float, float] | None
 ) -> np.ndarray:

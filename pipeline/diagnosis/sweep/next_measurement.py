@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Aim, NextMeasurement
-from flexspline.pipeline.diagnosis.plans import MeasurementPlan, separations
+from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -130,7 +130,7 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     if len(models) < 2:
         return NextMeasurement(known_causes()[cause].vary, aim, (cause, *rivals))
     noise = explained.prepared.noise.std_arcsec
-    best = separations(plans(explained.prepared), models, noise)[0]
+    best = most_telling(plans(explained.prepared), models, noise)
     return NextMeasurement(best.vary, aim, (cause, *rivals), best.doing, separation=best.separation)
 
 
