@@ -159,8 +159,24 @@ def folder_of(path: Path, out: Path | None) -> Path:
     folder = out if out is not None else path.parent / f"{path.stem}.out"
     if folder.exists() and not folder.is_dir():
         raise DesignError("--out", str(folder), "is a file; name a folder")
+    _try_to_write(next((p for p in (folder, *folder.absolute().parents) if p.is_dir()), Path.cwd()))
     discard(folder, tell)
     return folder
+
+
+def _try_to_write(folder: Path) -> None:
+    """Find out before the long work that a folder cannot be written to.
+
+    Raises
+    ------
+    OSError
+    """
+    import tempfile
+
+    try:
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as fault:
+        raise OSError(fault.errno, fault.strerror, str(folder)) from None
 
 
 def deliver(folder: Path, record: dict[str, Any], as_json: bool, name: str | None = None) -> None:

@@ -87,6 +87,14 @@ def test_a_backlash_sum(disk: str, tmp_path: Path, request: pytest.FixtureReques
     )
 
 
+def test_a_folder_that_cannot_be_written_to_is_said_before_the_work(
+    read_only: Path, tmp_path: Path
+) -> None:
+    ended = flexspline("gear", CUP, "--out", read_only / "out", folder=tmp_path)
+    failed(ended, "Read-only file system")
+    assert "condensed" not in ended.stderr  # the first stage
+
+
 @pytest.mark.parametrize("disk", WHERE_IT_GOES)
 def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """Its database meets the full disk, in SQLite's words."""
