@@ -159,7 +159,7 @@ def folder_of(path: Path, out: Path | None) -> Path:
     folder = out if out is not None else path.parent / f"{path.stem}.out"
     if folder.exists() and not folder.is_dir():
         raise DesignError("--out", str(folder), "is a file; name a folder")
-    _try_to_write(next((p for p in (folder, *folder.absolute().parents) if p.is_dir()), Path.cwd()))
+    _try_to_write(next(p for p in (folder, *folder.absolute().parents) if p.is_dir()))
     discard(folder, tell)
     return folder
 
