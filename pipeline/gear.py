@@ -181,8 +181,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     other_way = 2 * len(up) - 1 + one_way
     full = states[len(up) - 1]
     model = chain.model
-    t = len(model.tooth_angles)
-    teeth = full.forces[:t] - full.forces[t : 2 * t]
+    teeth = model.pair_forces(full)
     carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
     return GearCurve(
         K1_Nm_per_rad=K1,
@@ -199,7 +198,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         assumed=(*assumed, *flexible_bearing(design).assumed, *LAWS),
         warnings=tuple(_warnings(design, model, states)),
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
-        tooth_force_N=tuple((teeth / model.teeth_per_station).tolist()),
+        tooth_force_N=tuple(teeth.tolist()),
         ball_angle_deg=tuple(np.degrees(model.wave_generator.angles).tolist()),
         ball_force_N=tuple(full.forces[model.balls].tolist()),
     )
@@ -217,9 +216,9 @@ def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -
             f"axis: taken as relieved, by {1e3 * mesh.largest_relief:.2g} µm at {degrees(mesh.reach):.0f}°"
         )
     unloaded = states[0]
-    t = len(model.tooth_angles)
-    if unloaded.loaded[:t].any() and unloaded.loaded[t : 2 * t].any():
-        force = float(unloaded.forces[: 2 * t].max()) / model.teeth_per_station
+    front, back = np.split(unloaded.loaded[model.flanks], 2)
+    if front.any() and back.any():
+        force = float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
         play = design.bearing.radial_clearance_um / 2e3
         lowered = play > LOW_RIM * model.wave_generator.deflection
         why = (
@@ -229,10 +228,9 @@ def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -
             else "there is no clearance"
         )
         lines.append(f"teeth press on both flanks without torque, up to {force:.2g} N each: {why}")
-    full = states[len(LOADING) - 1]
-    teeth = full.forces[:t] - full.forces[t : 2 * t]
-    most = int(np.abs(teeth).argmax())
-    if most in (0, t - 1):
+    teeth = np.abs(model.pair_forces(states[len(LOADING) - 1]))
+    most = int(teeth.argmax())
+    if most in (0, len(teeth) - 1):
         lines.append(
             f"the pair of teeth that carries most stands {abs(degrees(model.tooth_angles[most])):.0f}° from "
             "the major axis, at the end of the working depth that is assumed: its force hangs on that end"

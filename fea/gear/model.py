@@ -152,11 +152,10 @@ class GearModel:
         """
         return equilibrium(self.contacts, torque_Nm * NMM_PER_NM / 2, start)
 
-    def teeth_loaded(self, at: Equilibrium) -> float:
-        """How many teeth of the whole gear carry on either flank."""
-        t = len(self.tooth_angles)
-        either = at.loaded[:t] | at.loaded[t : 2 * t]
-        return 2 * float(either.sum()) * self.teeth_per_station
+    def pair_forces(self, at: Equilibrium) -> np.ndarray:
+        """Of a pair of teeth at each of `tooth_angles` (t,) [N]: front flank less back flank."""
+        front, back = np.split(at.forces[self.flanks], 2)
+        return (front - back) / self.teeth_per_station
 
     def _of_rim(self) -> np.ndarray:
         phi, a, m = self.tooth_angles, len(self.seat_angles), self.places
