@@ -1,0 +1,14 @@
+"""What both contact solvers take from Mehrotra's method (SIAM J. Optim. 2 (1992) 575-601)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+CENTRING = 3
+"""The target falls with this power of what the plain Newton step leaves (Mehrotra's choice)."""
+
+
+def room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray) -> float:
+    """Share of a step (`push`, `lift`), at most 1, that leaves forces and gaps positive; (k,) each."""
+    nearest = max(float((-push / force).max()), float((-lift / gap).max()))
+    return 1.0 if nearest <= 1 else 1 / nearest
