@@ -19,7 +19,8 @@ from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline import revolved
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash
-from flexspline.pipeline.gear import LOADING, Chain, GearCurve, chain_of, chords, curve_of
+from flexspline.pipeline.gear import LOADING, GearCurve, curve_of
+from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import gear_model
 from flexspline.pipeline.part_stiffness import part_stiffness
 

@@ -26,6 +26,15 @@ def value_at(design: Design, key: str) -> float | None:
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
+def has_table_of(design: Design, key: str) -> bool:
+    """Whether the table of a dotted key is there, the key itself stated or left to its default."""
+    try:
+        _reach(_tables(design), key)
+    except DesignError:
+        return False
+    return True
+
+
 def with_values(design: Design, values: Mapping[str, object]) -> Design:
     """A checked design with other values at some keys; array elements are counted from 0.
 
@@ -36,7 +45,8 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     tables = _tables(design)
     for key, value in values.items():
         table, last = _reach(tables, key)
-        if isinstance(table.get(last), int) and isinstance(value, float) and value.is_integer():
+        # what the file does not state may be a whole number as well
+        if isinstance(table.get(last, 0), int) and isinstance(value, float) and value.is_integer():
             value = int(value)
         table[last] = value
     return design_from(tables)

@@ -21,7 +21,8 @@ from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
 from flexspline.pipeline.ellipse_peak import ellipse_field
-from flexspline.pipeline.gear import GearCurve, chain_of, gear_curve
+from flexspline.pipeline.gear import GearCurve, gear_curve
+from flexspline.pipeline.gear_chain import chain_of
 from flexspline.pipeline.load_cases import (
     RIM_CASES,
     RimCase,

@@ -279,10 +279,16 @@ QUANTITIES: tuple[Quantity, ...] = (
         "lost_motion_arcsec",
         "arcsec",
         "Lost motion, between ± 4 % of rated torque",
+        "θ_lm",
         decimals=1,
     ),
     Quantity(
-        "teeth_in_contact", "teeth_in_contact", "", "Teeth in contact at rated torque", kind="count"
+        "teeth_in_contact",
+        "teeth_in_contact",
+        "",
+        "Teeth in contact at rated torque",
+        "z_c",
+        kind="count",
     ),
     *(
         Quantity(

@@ -10,7 +10,8 @@ from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.gear import LOADING, Chain
+from flexspline.pipeline.gear import LOADING
+from flexspline.pipeline.gear_chain import Chain
 
 SMALLEST = LOADING[0]
 """Of the largest torque: there the teeth have just met, and twice the angle is the gap."""

@@ -43,7 +43,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
-from flexspline.pipeline.gear import Chain
+from flexspline.pipeline.gear_chain import Chain
 from flexspline.pipeline.parts import AnalysisContext
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]

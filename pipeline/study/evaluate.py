@@ -20,6 +20,8 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
 from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_stiffness
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
+from flexspline.pipeline.gear import curve_of
+from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.revolved import (
     contact,
     ellipse_peak,
@@ -28,7 +30,7 @@ from flexspline.pipeline.revolved import (
     torque_peak,
     with_equivalent_ring,
 )
-from flexspline.pipeline.study.figures import SIZES, Solve
+from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
 from flexspline.pipeline.study.holes import Factor, pierced, with_holes
 
 TORSION_TOLERANCE = 2e-3
@@ -107,6 +109,11 @@ def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None =
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
             found = with_holes(found, holes)
+        if "gear" in solves and "K_e" not in missing:
+            try:
+                found |= _gear(design, found["K_e_Nm_per_rad"])
+            except OUR_ERRORS as fault:
+                missing["gear"] = str(fault)
         if not {in_sum, "K_e"} & set(missing):
             try:
                 found |= _sum(design, found)
@@ -134,6 +141,11 @@ def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
         "K_series_Nm_per_rad": series_stiffness(K_b, K_e),
         **{f"backlash_arcsec.{t}": float(getattr(total, f"{t}_arcsec")) for t in terms},
     }
+
+
+def _gear(design: Design, K_e_Nm_per_rad: float) -> dict[str, float]:
+    curve = curve_of(design, fast_chain(design, K_e_Nm_per_rad, TORSION_TOLERANCE))
+    return {key: float(getattr(curve, key)) for key in GIVEN_BY["gear"]}
 
 
 def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:

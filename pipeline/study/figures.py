@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Literal
 
-Solve = Literal["torsion", "lobes", "unsupported", "contact", "ellipse", "torque"]
+Solve = Literal["torsion", "lobes", "unsupported", "contact", "ellipse", "torque", "gear"]
 
 
 def _stiffness(name: str) -> tuple[str, ...]:
@@ -31,6 +31,13 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
     "contact": _stiffness("K_b_lobes_contact"),
     "ellipse": ("wave_generator_peak_mises_MPa",),
     "torque": ("torque_peak_mises_MPa", "shaft_torque_peak_mises_MPa"),
+    "gear": (
+        "K1_Nm_per_rad",
+        "K2_Nm_per_rad",
+        "K3_Nm_per_rad",
+        "lost_motion_arcsec",
+        "teeth_in_contact",
+    ),
 }
 SIZES = ("flexspline_mass_g", "flexspline_length_mm", "shaft_mass_g", "shaft_length_mm")
 """Need no solve."""

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING, DesignError
-from flexspline.geometry.keys import STEP, value_at
+from flexspline.geometry.keys import STEP, has_table_of, value_at
 from flexspline.geometry.load import load_design, read_toml
 from flexspline.geometry.schema import Location, allowed, node_at
 from flexspline.pipeline.study.figures import FIGURES, TOTAL, USUAL_FIGURES, not_a_figure
@@ -170,8 +170,11 @@ def _always_stated(study: Study) -> bool:
 def _check_design_key(study: Study, table: str, key: str) -> None:
     kind = study.design.flexspline.kind
     node = node_at(location_of(key), kind)
-    if node.get("type") in ("number", "integer") and value_at(study.design, key) is not None:
-        return
+    if node.get("type") in ("number", "integer") and has_table_of(study.design, key):
+        if table != "tolerance" or value_at(study.design, key) is not None:
+            return
+        reason = "has no value in the design file that could scatter; state it there"
+        raise StudyError(f'tolerance."{key}"', {}, reason)
     known = _numeric_keys(study.design)
     near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
     reason = f"did you mean {near[0]}?" if near and near[0] != key else f"e.g. {known[0]}"

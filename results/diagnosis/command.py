@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
-from flexspline.pipeline.gear import chain_of
+from flexspline.pipeline.gear_chain import chain_of
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.results.diagnosis.console import diagnosis_table

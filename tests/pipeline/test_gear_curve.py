@@ -7,7 +7,9 @@ import pytest
 from random_designs import design_of
 
 from flexspline.geometry.load import design_from
-from flexspline.pipeline.gear import LOADING, Chain, chords, curve_of
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.gear import LOADING, curve_of
+from flexspline.pipeline.gear_chain import Chain, chords
 from flexspline.pipeline.gear_model import even, gear_model
 
 
@@ -15,14 +17,24 @@ from flexspline.pipeline.gear_model import even, gear_model
 def test_more_torque_turns_it_farther(seed: int) -> None:
     """Cups and hats, thin and thick, of 30 to 301 teeth, one without room for two edges along its seat."""
     design = design_from(design_of(seed, slips=False))
-    curve = curve_of(design, Chain(gear_model(design, design.part("flexspline")), 0.0, 0.0))
+    chain = Chain(gear_model(design, design.part("flexspline")), 0.0, 0.0)
+    curve = curve_of(design, chain)
     torque, angle = np.array(curve.torque_Nm), np.array(curve.angle_arcsec)
     up = slice(0, len(LOADING))
     assert np.diff(angle[up]).min() > 0
-    back = slice(len(LOADING) - 1, 2 * len(LOADING) - 1)
-    assert torque[back][::-1] == pytest.approx(torque[up])
-    # without friction the way back is the way there: to what the forces settle to
-    assert angle[back][::-1] == pytest.approx(angle[up], rel=1e-4, abs=1e-3)
+    # the curve's other branches are solved here, begun from full torque: without friction the way back is
+    # the way there, and both ways are alike, to what the forces settle to
+    rated = curve.rated_torque_Nm
+    back = ARCSEC_PER_RAD * chain.angles([rated, 0.5 * rated, 0.04 * rated, -0.04 * rated, -rated])
+    there = np.interp([rated, 0.5 * rated, 0.04 * rated], torque[up], angle[up])
+    assert back == pytest.approx([*there, *-there[[2, 0]]], rel=1e-4, abs=1e-3)
+    assert len(torque) == len(angle) == 4 * len(LOADING) - 2
+    assert (torque[0], torque[-1], torque.min()) == pytest.approx(
+        (torque[up].min(), -torque[up].min(), -rated)
+    )
+    assert angle == pytest.approx(
+        np.interp(np.abs(torque), torque[up], angle[up]) * np.sign(torque)
+    )
     assert curve.teeth_in_contact > 0
     assert min(curve.compliance_shares.values()) >= 0
     assert sum(curve.compliance_shares.values()) == pytest.approx(1)

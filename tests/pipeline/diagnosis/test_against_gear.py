@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.prediction import prediction_of
-from flexspline.pipeline.gear import Chain, chain_of
+from flexspline.pipeline.gear_chain import Chain, chain_of
 
 ROOT = Path(__file__).parents[3]
 DESIGN = flexspline.load_design(ROOT / "examples" / "xb1-40.toml").changed({"shaft.bolt_count": 0})

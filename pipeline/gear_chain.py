@@ -1,0 +1,106 @@
+"""The gear as a chain in series: teeth, rim and bearing in contact, then bolt holes and shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.fea.gear.equilibrium import Equilibrium
+from flexspline.fea.gear.model import GearModel
+from flexspline.fea.types import NMM_PER_NM
+from flexspline.geometry.design import Design
+from flexspline.geometry.part import Part
+from flexspline.pipeline import revolved
+from flexspline.pipeline.enclosed_part import tolerance_of
+from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.part_stiffness import part_stiffness
+from flexspline.pipeline.parts import AnalysisContext
+
+
+def chords(torques_Nm: Sequence[float] | np.ndarray, angles_rad: np.ndarray) -> tuple[float, ...]:
+    """Stiffness [N·m/rad] between each torque and the next."""
+    return tuple((np.diff(torques_Nm) / np.diff(angles_rad)).tolist())
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The contact model with what stands behind it in series.
+
+    `shaft`, `holes`: compliance of the shaft, and what bolt holes add to the flexspline's [rad/(N·m)].
+    """
+
+    model: GearModel
+    shaft: float
+    holes: float
+
+    def angle(self, at: Equilibrium) -> float:
+        """Rotation of the output [rad]."""
+        return at.rotation + self.torque_Nm(at) * (self.shaft + self.holes)
+
+    @staticmethod
+    def torque_Nm(at: Equilibrium) -> float:
+        """On the whole gear; an equilibrium's is that of one half [N·mm]."""
+        return 2 * at.torque / NMM_PER_NM
+
+    def along(self, torques_Nm: Sequence[float]) -> list[Equilibrium]:
+        """One after the other, each begun from the one before.
+
+        Raises
+        ------
+        EquilibriumError
+        """
+        found: list[Equilibrium] = []
+        for torque in torques_Nm:
+            found.append(self.model.at_torque(torque, found[-1].forces if found else None))
+        return found
+
+    def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:
+        """Of the output [rad]; errors as `along`."""
+        return np.array([self.angle(at) for at in self.along(torques_Nm)])
+
+    def shares(self, at: Equilibrium) -> dict[str, float]:
+        """Of dθ/dT, in the order in which torque passes."""
+        parts = {k: v * NMM_PER_NM for k, v in self.model.compliance_of(at).items()}
+        parts["flexspline"] += self.holes
+        parts["shaft"] = self.shaft
+        total = sum(parts.values())
+        return {key: parts[key] / total for key in ("flexspline", "shaft", "teeth", "bearing")}
+
+
+def chain_of(context: AnalysisContext) -> Chain:
+    """A design's contact model, its shaft and its bolt holes.
+
+    Raises
+    ------
+    DesignError
+    ComputationError
+    """
+    flexspline = context.part("flexspline")
+    with context.progress.stage("flexspline, condensed to its teeth and its seat"):
+        model = gear_model(context.design, flexspline.part)
+    holes = _of_holes(flexspline.part, tolerance_of(flexspline))
+    return Chain(model, 1 / part_stiffness(context.part("shaft")).K_Nm_per_rad, holes)
+
+
+def fast_chain(design: Design, K_e_Nm_per_rad: float, tolerance: float) -> Chain:
+    """The same with a shaft that is known already; `tolerance` of what the bolt holes do, relative.
+
+    Raises
+    ------
+    DesignError
+    ComputationError
+    """
+    part = revolved.with_equivalent_ring(design).part("flexspline")
+    return Chain(gear_model(design, part), 1 / K_e_Nm_per_rad, _of_holes(part, tolerance))
+
+
+def _of_holes(part: Part, tolerance: float) -> float:
+    """What bolt holes add [rad/(N·m)], by K_b of the case `uniform`: 1/K with them less 1/K without."""
+    if part.bolts is None:
+        return 0.0
+    own, filled = (
+        revolved.torsion(each, tolerance).K_Nm_per_rad for each in (part, part.without_holes())
+    )
+    return max(0.0, 1 / own - 1 / filled)
