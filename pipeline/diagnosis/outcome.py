@@ -62,6 +62,8 @@ class Gain:
     held_out_rows: tuple[int, ...] = ()
     left: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False, repr=False)
     """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
+    channel: str = ""
+    """Of which a whole level was held out: an amplitude, a rate, a temperature."""
 
 
 Aim = Literal["more_data", "find_structure", "confirm", "separate"]
@@ -95,7 +97,8 @@ class NextMeasurement:
 class DiagnosisOutcome:
     """The verdict and all that goes with it, as facts; `results.diagnosis` puts them into words.
 
-    `too_little` is why there are too few data, of an `insufficient` verdict.
+    `too_little` is why there are too few data, of an `insufficient` verdict. `gains_at_levels` are the
+    errors on whole amplitudes, rates and temperatures, each predicted from the others.
     """
 
     verdict: Verdict
@@ -104,3 +107,4 @@ class DiagnosisOutcome:
     gain: Gain | None = None
     next_measurement: NextMeasurement | None = None
     too_little: str = ""
+    gains_at_levels: tuple[Gain, ...] = ()

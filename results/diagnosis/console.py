@@ -6,6 +6,7 @@ import textwrap
 from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
@@ -46,16 +47,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         lines += _wrapped(
             calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome.verdict)
         )
-    gain = outcome.gain
-    if gain is not None:
-        lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
-        for words, value in (
-            ("simulation as it stands", gain.rmse_before),
-            (calibrated_words(gain), gain.rmse_calibrated),
-            ("with the causes found", gain.rmse_after),
-            ("noise of the reading", gain.noise_floor),
-        ):
-            lines.append(f"    {words:<60} {figures_text(value)}")
+    lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
         lines += _wrapped(
@@ -66,6 +58,28 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     lines.append(f"  SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}")
     lines.append(f"files in {folder}")
     return "\n".join(lines)
+
+
+def _errors(outcome: DiagnosisOutcome) -> list[str]:
+    """Errors on what was held out: between other cycles, then on whole amplitudes, rates and temperatures."""
+    lines, gain = [], outcome.gain
+    if gain is not None:
+        lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
+        for words, value in (
+            ("simulation as it stands", gain.rmse_before),
+            (calibrated_words(gain), gain.rmse_calibrated),
+            ("with the causes found", gain.rmse_after),
+            ("noise of the reading", gain.noise_floor),
+        ):
+            lines.append(f"    {words:<60} {figures_text(value)}")
+    if outcome.gains_at_levels:
+        lines.append(
+            "  Error where a whole level was left out, in arcsec rms, without and with the causes:"
+        )
+    for level in outcome.gains_at_levels:
+        before, after = figures_text(level.rmse_before), figures_text(level.rmse_after)
+        lines.append(f"    {level.held_out:<60} {before:<7} {after}")
+    return lines
 
 
 def _wrapped(text: str, first: str = "  ", rest: str | None = None) -> list[str]:

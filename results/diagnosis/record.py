@@ -34,6 +34,10 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
     }
     if outcome.gain is not None:
         record["gain"] = _gain(outcome.gain)
+    if outcome.gains_at_levels:
+        record["gain_at_levels"] = [
+            {"channel": g.channel, **_gain(g)} for g in outcome.gains_at_levels
+        ]
     if diagnosis.model is not None:
         record["extended_model"] = EXTENDED_MODEL
     if outcome.next_measurement is not None:

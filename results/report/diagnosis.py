@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NamedCause, Unexplained
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
@@ -14,7 +14,6 @@ from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import (
     VERDICTS,
-    calibrated_words,
     capital,
     cause_title,
     channel_words,
@@ -42,6 +41,7 @@ from flexspline.results.report.document import (
     Pictures,
     Table,
 )
+from flexspline.results.report.errors_held_out import errors_held_out
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, bold, code, note, plain, worded
 
@@ -60,7 +60,7 @@ def diagnosis_document(
         *_verdict(diagnosis, used),
         *_causes(diagnosis.outcome),
         *_unexplained(diagnosis.outcome.unexplained),
-        *_worth(diagnosis.outcome),
+        *errors_held_out(diagnosis.outcome),
         *_after(diagnosis),
         *_figures(figures),
         *_model(diagnosis),
@@ -143,34 +143,6 @@ def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
     )  # fmt: skip
 
 
-def _worth(outcome: DiagnosisOutcome) -> Iterable[Block]:
-    gain, found = outcome.gain, bool(outcome.causes)
-    if gain is None:
-        return
-    yield Heading("Prediction error on data not used in the fit")
-    yield Paragraph(f"Held out: {gain.held_out}.")
-    yield Table(
-        columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
-        rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
-    )
-    above = gain.rmse_before**2 - gain.noise_floor**2
-    share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
-    if found and share > 0:
-        yield Paragraph(
-            f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
-            "the noise, the least that any model can reach."
-        )
-
-
-def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
-    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
-    yield f"The simulation as designed{zeroed}", gain.rmse_before
-    yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
-    if found:
-        yield "With the causes found", gain.rmse_after
-    yield "Measurement noise, the lower limit", gain.noise_floor
-
-
 def _after(diagnosis: Diagnosis) -> Iterable[Block]:
     after = diagnosis.outcome.next_measurement
     if after is not None:
@@ -208,10 +180,3 @@ def _notes(diagnosis: Diagnosis) -> Iterable[Block]:
     if found:
         yield Heading("Notes")
         yield Bullets(tuple(map(capital, found)), small=True)
-
-
-def _percent(share: float) -> str:
-    """Never rounded up to all: 99.97 % is 99.9 %."""
-    if share >= 1:
-        return "100"
-    return f"{int(1000 * share) / 10:.1f}" if share > 0.99 else f"{100 * share:.0f}"

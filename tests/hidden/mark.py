@@ -29,6 +29,15 @@ class Size:
 
 
 @dataclass(frozen=True)
+class LevelGain:
+    """Gain on a whole amplitude, rate or temperature that was held out, and the oracle's on the same rows."""
+
+    channel: str
+    gain: float
+    oracle: float
+
+
+@dataclass(frozen=True)
 class Mark:
     """What became of a case; `right` is what its kind demands.
 
@@ -38,6 +47,7 @@ class Mark:
     near : a foreign effect of which one named cause absorbs more than twice what it leaves.
     seconds : per 3,000 rows where there are more.
     gain : share of the error above the noise removed; oracle : what the true form would remove.
+    levels : the same of each amplitude, rate and temperature held out as a whole.
     """
 
     kind: str
@@ -60,6 +70,7 @@ class Mark:
     oracle: float | None = None
     fault: str = ""
     near: bool = False
+    levels: tuple[LevelGain, ...] = ()
 
 
 def mark(case: Case, diagnose: Diagnose) -> Mark:
@@ -89,7 +100,16 @@ def mark(case: Case, diagnose: Diagnose) -> Mark:
         seconds=seconds, sizes=_sizes(case, causes) if confident else (), fault=fault,
         near=case.absorbed > NEAR,
     )  # fmt: skip
-    return _with_gain(marked, case, said.get("gain") or {})
+    if not exact:
+        return marked
+    both = _shares(case, said.get("gain") or {})
+    gain, best = both or (None, None)
+    levels = tuple(
+        LevelGain(one["channel"], *shares)
+        for one in said.get("gain_at_levels", [])
+        if (shares := _shares(case, one)) is not None
+    )
+    return replace(marked, gain=gain, oracle=best, levels=levels)
 
 
 def _right(case: Case, verdict: str, exact: bool, mentioned: set[str]) -> bool:
@@ -112,17 +132,21 @@ def _sizes(case: Case, causes: list[dict]) -> tuple[Size, ...]:
     return tuple(sizes)
 
 
-def _with_gain(marked: Mark, case: Case, gain: dict) -> Mark:
-    """Both shares over the same rows and over the true noise, so a generous floor gains nothing."""
-    if not marked.exact or "rmse_before" not in gain:
-        return marked
+def _shares(case: Case, gain: dict) -> tuple[float, float] | None:
+    """The diagnosis's share and the oracle's over the same rows and the true noise.
+
+    So a generous floor gains nothing. None where there is nothing above the noise to gain.
+    """
+    if "rmse_before" not in gain:
+        return None
     held = held_out_rows(gain, case.rows, case.file_cycles)
     best = None if held is None else oracle(list(case.units), case.rig, held)
-    if best is None or best.before**2 < 1.5 * best.floor**2:  # nothing above the noise to gain
-        return marked
+    if best is None or best.before**2 < 1.5 * best.floor**2:
+        return None
     above = best.before**2 - best.floor**2
-    share = (gain["rmse_before"] ** 2 - gain["rmse_after"] ** 2) / above
-    return replace(marked, gain=float(share), oracle=best.share)
+    # against one error before: the two zeros may be taken over other rows
+    share = (best.before**2 - gain["rmse_after"] ** 2) / above
+    return float(share), best.share
 
 
 def _label(case: Case) -> str:

@@ -10,6 +10,9 @@ import numpy as np
 
 from hidden.mark import Mark
 
+LEVELS = {"torque_amplitude": "amplitude", "torque_rate": "rate", "temperature_C": "temperature"}
+"""Channels of which whole levels are held out."""
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -53,6 +56,12 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
     error = [s.error for s in sizes]
     off = [s.deviations for s in sizes]
     gain = [m.gain / m.oracle for m in (*singles, *pairs) if m.gain is not None and m.oracle]
+    levels = {
+        channel: [
+            x.gain / x.oracle for m in (*singles, *pairs) for x in m.levels if x.channel == channel
+        ]
+        for channel in LEVELS
+    }
     return [
         _share("single: right cause first", singles, "first", least=0.97),
         _share("single: exactly right", singles, "exact", least=0.94),
@@ -72,6 +81,9 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
         Figure("magnitude within 2 deviations", len(off), _within(off, 2), least=0.88, most=1.0),
         _number("gain / oracle's: median", gain, 50, least=0.96),
         _number("gain / oracle's: 10th percentile", gain, 10, least=0.72),
+        *(_number(f"the same, a whole {LEVELS[c]}: {words}", values, at, least=least)
+          for c, values in levels.items()
+          for words, at, least in (("median", 50, 0.93), ("10th percentile", 10, 0.60))),
         _number("seconds: median", [m.seconds for m in marks], 50),
         _number("seconds: longest", [m.seconds for m in marks], 100, most=3.0),
     ]  # fmt: skip

@@ -15,7 +15,7 @@
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
-| error on data held out; the model | `held_out.py`, `written_model.py` |
+| error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """
 
@@ -35,7 +35,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.held_out import gain_of
+from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
@@ -103,6 +103,7 @@ def diagnose_sweep(
         decision.unexplained,
         gain,
         next_measurement(explained, decision),
+        gains_at_levels=gains_at_levels(explained, ids) if ids else (),
     )
     written = written_model(explained, sweep, ids, gain)
     return outcome, SweepAnalysis(explained, written.model, written.doubt, tuple(tests))

@@ -113,7 +113,12 @@ def with_shapes(
     own = x.T @ x - cross.T @ solved[:, 1:]
     return replace(
         old,
-        columns=replace(columns, all=np.hstack([columns.all, new]), terms=tuple(terms)),
+        columns=replace(
+            columns,
+            all=np.hstack([columns.all, new]),
+            terms=tuple(terms),
+            tuned_from=len(old.terms) if columns.tuned_from is None else columns.tuned_from,
+        ),
         gram=np.block([[old.gram, mixed], [mixed.T, own]]),
         right=np.concatenate([old.right, x.T @ old.y - cross.T @ solved[:, 0]]),
         scale=np.concatenate([old.scale, prior]),

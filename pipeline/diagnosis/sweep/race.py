@@ -6,6 +6,7 @@ leaves.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,7 +27,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification, identify
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION
+from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
@@ -86,24 +87,31 @@ class ExplainedSweep:
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
-    first = _with_tuned_shapes(_evidence(prepared))
+    first = with_tuned_shapes(_evidence(prepared), is_named)
     best = Search(first).run()
     left = fit_regressors(first, best.terms).residual()
     prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=first.columns)
-    final = _with_tuned_shapes(_evidence(prepared))
+    final = with_tuned_shapes(_evidence(prepared), is_named)
     prepared = replace(prepared, columns=final.columns)
     identified = identify(final, beside=prepared.offset_Nm != 0.0)
     seen = _crossing(prepared, identified.fit)
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
 
 
-def _with_tuned_shapes(now: GaussianEvidence) -> GaussianEvidence:
-    """The race with tuned shapes: of the best named set, of each cause alone, of the best of all.
+def is_named(term: Regressor) -> bool:
+    """Whether a term is a cause's."""
+    return term.cause is not None
+
+
+def with_tuned_shapes(
+    now: GaussianEvidence, allowed: Callable[[Regressor], bool]
+) -> GaussianEvidence:
+    """The race with tuned shapes: of the best set of allowed terms, of each cause alone, of the best of all.
 
     Named causes are tuned before any nuisance term is let in: a shape from a coarse grid leaves a
     misfit, which a nuisance term would fill.
     """
-    named = Search(now, lambda t: t.cause is not None)
+    named = Search(now, allowed)
     best = named.run()
     for _ in range(TUNINGS):
         sets = [best.terms, *_alone(named, best)]
@@ -112,7 +120,7 @@ def _with_tuned_shapes(now: GaussianEvidence) -> GaussianEvidence:
         if wider is now:
             break
         now = wider
-        named = Search(now, lambda t: t.cause is not None)
+        named = Search(now, allowed)
         before, best = best.score, named.run([best.terms, ()])
         if best.score < before + WORTH_TUNING:
             break

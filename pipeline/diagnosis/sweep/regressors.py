@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
@@ -75,6 +75,16 @@ class DesignMatrix:
     all: np.ndarray
     terms: tuple[Regressor, ...]
     ahead: FrictionAhead | None = None
+    tuned_from: int | None = None
+    """The first of `terms` that was tuned to a record's rows; None: none was."""
+
+    @property
+    def untuned(self) -> DesignMatrix:
+        """Without the shapes that were tuned, for a fit on other rows."""
+        if self.tuned_from is None:
+            return self
+        terms = self.terms[: self.tuned_from]
+        return replace(self, all=self.all[:, : terms[-1].at.stop], terms=terms, tuned_from=None)
 
 
 def design_matrix(

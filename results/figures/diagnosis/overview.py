@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,16 +14,15 @@ from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, sa
 
 
 def write_overview(path: Path, shown: SweepPictureData) -> None:
-    """Two panels over the torque that was read: angle, and measured less simulated."""
-    prediction, history = shown.diagnosis.prediction, shown.history
-    torque = history.torque_Nm
+    """Two panels over the output's torque: angle, and measured less simulated."""
+    prediction, torque = shown.diagnosis.prediction, shown.output_Nm
     inside = ~shown.kept
     model = shown.nominal - shown.left
     with styled():
         figure = new_figure(8.0, 5.4, DPI)
         above = figure.add_axes((0.095, 0.43, 0.875, 0.405))
         below = figure.add_axes((0.095, 0.104, 0.875, 0.295))
-        angle = prediction.angle_arcsec(history) + shown.nominal
+        angle = prediction.angle_arcsec(replace(shown.history, torque_Nm=torque)) + shown.nominal
         for sign in (-1.0, 1.0):
             t = sign * np.linspace(1e-9, 1.04 * shown.largest_Nm, 50)
             line = prediction.compliance * t + sign * prediction.gap_arcsec / 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -66,13 +66,24 @@ class SweepPictureData:
         """The true history: a shifted torque reading is corrected, its torque that at the teeth."""
         return self.explained.prepared.rig.history
 
+    @cached_property
+    def carried_Nm(self) -> np.ndarray:
+        """(n,) what friction takes of the torque ahead of the teeth; 0 where there is none."""
+        ahead = self.fit.evidence.columns.ahead
+        return np.zeros(len(self.history)) if ahead is None else ahead.carried_Nm
+
+    @cached_property
+    def output_Nm(self) -> np.ndarray:
+        """(n,) torque on the output: the reading, put right where it is shifted."""
+        return self.history.torque_Nm + self.carried_Nm
+
     @property
     def kept(self) -> np.ndarray:
         return self.explained.prepared.kept
 
     @property
     def largest_Nm(self) -> float:
-        return float(np.abs(self.history.torque_Nm).max())
+        return float(np.abs(self.output_Nm).max())
 
     @property
     def noise_arcsec(self) -> float:
@@ -95,16 +106,17 @@ class SweepPictureData:
 
     @cached_property
     def nominal(self) -> np.ndarray:
-        """(n,) measured less simulated angle, the zero of each unit fitted."""
-        return less_zero(self.explained.prepared.target, self.kept, self.history)
+        """(n,) measured less the angle simulated at the output's torque, the zero of each unit fitted."""
+        prepared = self.explained.prepared
+        at_output = replace(self.history, torque_Nm=self.output_Nm)
+        off = prepared.sweep.angle_arcsec - prepared.prediction.angle_arcsec(at_output)
+        return less_zero(off, self.kept, self.history)
 
     @property
     def channels(self) -> list[Channel]:
         """Channels that were recorded and vary."""
         sweep, h = self.explained.prepared.sweep, self.history
-        ahead = self.fit.evidence.columns.ahead
-        torque = h.torque_Nm + (ahead.carried_Nm if ahead else 0.0)
-        found = [Channel("torque_Nm", LABELS["torque_Nm"], torque)]
+        found = [Channel("torque_Nm", LABELS["torque_Nm"], self.output_Nm)]
         if sweep.history.time_s is not None and h.time_s is not None:
             found.append(_time(h.time_s))
         if h.cycle.max() > 0:

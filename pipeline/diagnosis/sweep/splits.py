@@ -1,0 +1,154 @@
+"""Which rows of a record to hold out: cycles between others; whole amplitudes, rates, temperatures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import (
+    FEWEST,
+    by_travel,
+    rates_of,
+)
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """A channel of which a record may have several levels: its words, and what parts two levels.
+
+    `step` : in the channel's unit, or in the logarithm of its value (`by_ratio`).
+    """
+
+    channel: str
+    name: str
+    unit: str
+    digits: str
+    step: float
+    by_ratio: bool = False
+
+
+AMPLITUDE = _Kind("torque_amplitude", "amplitude", "N·m", ".3g", log(1.2), by_ratio=True)
+"""1.2: the turns of smaller loops are then clear of the larger ones' (two rows at each are never used)."""
+RATE = _Kind("torque_rate", "rate", "N·m/s", ".2g", log(1.5), by_ratio=True)
+"""1.5: what lags in proportion to the rate then differs by half."""
+TEMPERATURE = _Kind("temperature_C", "temperature", "°C", ".1f", 4.0)
+"""4 K: what an ordinary room, ±2 K, does not do by itself."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """What is held out, in words, and its rows (n,); `channel` where it is a whole level of one."""
+
+    label: str
+    rows: np.ndarray
+    channel: str = ""
+
+
+def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Split | None:
+    """Whole cycles, or positions, or units.
+
+    Every third cycle, never the first: the last is kept for fitting where there are more than two, so
+    that what changes from cycle to cycle is not extrapolated. None where nothing can be spared. `names` are
+    the file's own numbers of each unit's cycles.
+    """
+    present = np.unique(history.cycle)
+    count = len(present)
+    if count >= 2:
+        places = [1] if count == 2 else [c for c in range(1, count - 1) if c % 3 == 1]
+        chosen = present[places]
+        own = names[0] if len(names[0]) == count else tuple(present + 1.0)
+        label = ", ".join(f"{own[c]:g}" for c in places)
+        return Split(
+            f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
+        )
+    position = history.input_angle_deg
+    if position is not None and len(spots := np.unique(position)) >= 4:
+        chosen_places = spots[1::3]
+        label = ", ".join(f"{p:g}" for p in chosen_places[:6])
+        return Split(f"input_angle_deg {label}", np.isin(position, chosen_places))
+    units = history.unit_slices
+    if len(units) >= 3:
+        rows = np.zeros(len(history), bool)
+        rows[units[1]] = True
+        return Split("unit 2", rows)
+    return None
+
+
+def whole_levels(history: History, timed: bool) -> list[Split]:
+    """Whole amplitudes, rates and temperatures, where a record has several of them.
+
+    Of each channel the lowest, the middle and the highest, one at a time.
+
+    `timed` : whether time was recorded. A level in which all cycles of a unit lie is none for that unit:
+    its zero would not be known.
+    """
+    cycles = _cycles(history)
+    found: list[Split] = []
+    for kind, values in _values(history, cycles, timed):
+        levels = _levels(np.log(values) if kind.by_ratio else values, kind.step)
+        last = int(levels.max())
+        for level in sorted({0, (last + 1) // 2, last}) if last > 0 else ():
+            chosen = levels == level
+            rows = np.zeros(len(history), bool)
+            rows[np.concatenate([cycles[k] for k in np.flatnonzero(chosen)])] = True
+            for unit in history.unit_slices:
+                rows[unit] &= not rows[unit].all()
+            if rows.any() and not any(np.array_equal(rows, other.rows) for other in found):
+                found.append(Split(_words(kind, values[chosen]), rows, kind.channel))
+    return found
+
+
+def _cycles(history: History) -> list[np.ndarray]:
+    """Rows of each cycle of each unit."""
+    key = history.unit * (int(history.cycle.max()) + 1) + history.cycle
+    return [np.flatnonzero(key == k) for k in np.unique(key)]
+
+
+def _values(
+    history: History, cycles: list[np.ndarray], timed: bool
+) -> Iterator[tuple[_Kind, np.ndarray]]:
+    """The value of each cycle in each channel that may have levels."""
+    torque, temperature = history.torque_Nm, history.temperature_C
+    peaks = np.array([np.abs(torque[rows]).max() for rows in cycles])
+    if (peaks > 0).all():
+        yield AMPLITUDE, peaks
+    if timed:
+        rates = np.array([_rate(history, rows) for rows in cycles])
+        if (rates > 0).all():
+            yield RATE, rates
+    if temperature is not None:
+        yield TEMPERATURE, np.array([temperature[rows].mean() for rows in cycles])
+
+
+def _rate(history: History, rows: np.ndarray) -> float:
+    """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
+    if len(rows) < 2 * FEWEST:
+        return 0.0
+    found = rates_of(history, rows)
+    return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
+
+
+def _levels(values: np.ndarray, step: float) -> np.ndarray:
+    """(c,) level of each cycle, counted upwards: one begins where a value is a step above its first."""
+    out = np.zeros(len(values), int)
+    order = np.argsort(values, kind="stable")
+    first, level = values[order[0]], 0
+    for k in order:
+        if values[k] > first + step:
+            first, level = values[k], level + 1
+        out[k] = level
+    return out
+
+
+def _words(kind: _Kind, values: np.ndarray) -> str:
+    """A level in words: its value, or its ends where they differ in the digits told."""
+    low, high = (format(v, kind.digits) for v in (values.min(), values.max()))
+    return (
+        f"{kind.name} {low} {kind.unit}"
+        if low == high
+        else f"{kind.name} {low} to {high} {kind.unit}"
+    )

@@ -1,0 +1,72 @@
+"""The errors on data that were not used for fitting, in the report of a diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
+from flexspline.results.diagnosis.words import calibrated_words, capital, figures_text
+from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
+
+
+def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
+    """Between other cycles; then on whole amplitudes, rates and temperatures, where there are several."""
+    yield from _between_others(outcome)
+    yield from _at_levels(outcome.gains_at_levels)
+
+
+def _between_others(outcome: DiagnosisOutcome) -> Iterable[Block]:
+    gain, found = outcome.gain, bool(outcome.causes)
+    if gain is None:
+        return
+    yield Heading("Prediction error on data not used in the fit")
+    yield Paragraph(f"Held out: {gain.held_out}.")
+    yield Table(
+        columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
+        rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
+    )
+    above = gain.rmse_before**2 - gain.noise_floor**2
+    share = (gain.rmse_before**2 - gain.rmse_after**2) / above if above > 0 else 0.0
+    if found and share > 0:
+        yield Paragraph(
+            f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
+            "the noise, the least that any model can reach."
+        )
+
+
+def _at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
+    if not gains:
+        return
+    yield Paragraph(
+        "What the model is worth where it extrapolates: each amplitude, rate or temperature was left out "
+        "as a whole and predicted from the others."
+    )
+    yield Table(
+        columns=(
+            Column("Left out", grow=1),
+            *(Column(words, "right") for words in ("As designed", "Calibrated", "With causes, arcsec rms")),
+        ),
+        rows=tuple(
+            (
+                capital(g.held_out),
+                *(figures_text(v) for v in (g.rmse_before, g.rmse_calibrated, g.rmse_after)),
+            )
+            for g in gains
+        ),
+    )  # fmt: skip
+
+
+def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
+    zeroed = ", its zero fitted" if gain.unit == "arcsec" else ""
+    yield f"The simulation as designed{zeroed}", gain.rmse_before
+    yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
+    if found:
+        yield "With the causes found", gain.rmse_after
+    yield "Measurement noise, the lower limit", gain.noise_floor
+
+
+def _percent(share: float) -> str:
+    """Never rounded up to all: 99.97 % is 99.9 %."""
+    if share >= 1:
+        return "100"
+    return f"{int(1000 * share) / 10:.1f}" if share > 0.99 else f"{100 * share:.0f}"
