@@ -41,7 +41,7 @@ from flexspline.results.report.document import (
     Pictures,
     Table,
 )
-from flexspline.results.report.errors_held_out import errors_held_out
+from flexspline.results.report.errors_held_out import errors_at_levels, errors_held_out
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, bold, code, note, plain, worded
 
@@ -62,6 +62,7 @@ def diagnosis_document(
         *_unexplained(diagnosis.outcome.unexplained),
         *errors_held_out(diagnosis.outcome),
         *_after(diagnosis),
+        *errors_at_levels(diagnosis.outcome.gains_at_levels),
         *_figures(figures),
         *_model(diagnosis),
         *_notes(diagnosis),

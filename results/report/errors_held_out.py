@@ -10,12 +10,7 @@ from flexspline.results.report.document import Block, Column, Heading, Paragraph
 
 
 def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
-    """Between other cycles; then on whole amplitudes, rates and temperatures, where there are several."""
-    yield from _between_others(outcome)
-    yield from _at_levels(outcome.gains_at_levels)
-
-
-def _between_others(outcome: DiagnosisOutcome) -> Iterable[Block]:
+    """On cycles, positions or units between others."""
     gain, found = outcome.gain, bool(outcome.causes)
     if gain is None:
         return
@@ -34,12 +29,13 @@ def _between_others(outcome: DiagnosisOutcome) -> Iterable[Block]:
         )
 
 
-def _at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
+def errors_at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
+    """On whole amplitudes, rates and temperatures, where there are several."""
     if not gains:
         return
+    yield Heading("Prediction error where the model extrapolates")
     yield Paragraph(
-        "What the model is worth where it extrapolates: each amplitude, rate or temperature was left out "
-        "as a whole and predicted from the others."
+        "Each amplitude, rate or temperature was left out as a whole and predicted from the others."
     )
     yield Table(
         columns=(

@@ -13,6 +13,8 @@ from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 
+FRICTION = "friction_hysteresis"
+"""This cause's id: the only one that may lie ahead of the teeth."""
 THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
 """Of the elements, as shares of the largest torque."""
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
@@ -59,7 +61,7 @@ class FrictionHysteresis(Cause):
     itself; with no gap it looks like a single threshold at F, of amplitude F times the compliance.
     """
 
-    id = "friction_hysteresis"
+    id = FRICTION
     title = "friction hysteresis"
     unit = "arcsec"
     positive = True

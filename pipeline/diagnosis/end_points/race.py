@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
@@ -31,7 +32,7 @@ UNNAMED_NATS = -2.0
 UNNAMED_SPREAD = 0.3
 """Prior standard deviation of that curve, of the predicted angle: as wide as `stiffness_hardening`'s."""
 UNNAMED = "?torque_Nm"
-CONCAVE = {"clearance_offset", "friction_hysteresis", "stiffness_hardening"}
+CONCAVE = {"clearance_offset", FRICTION, "stiffness_hardening"}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the
 first one's shape. A pair has at most one of them."""
 FREE = 100.0

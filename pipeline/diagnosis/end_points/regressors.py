@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
-from flexspline.pipeline.diagnosis.causes.friction_hysteresis import SINGLE
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, SINGLE
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
@@ -74,7 +74,7 @@ def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]
         known_causes()["stiffness_hardening"],
         known_causes()["direction_asymmetry"],
     )
-    friction = known_causes()["friction_hysteresis"]
+    friction = known_causes()[FRICTION]
     found = [
         EndPointRegressor(clearance.id, "total", ones, clearance.spread({}, rig), False, Element({}, (1.0,))),
         EndPointRegressor(series.id, "total", 2 * torque, series.spread({}, rig), False, Element({}, (1.0,))),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import (
@@ -17,7 +18,6 @@ from flexspline.pipeline.diagnosis.model.span import (
 )
 from flexspline.pipeline.diagnosis.sweep.row_selection import before_far_turn
 
-FRICTION = "friction_hysteresis"
 BEYOND_THE_EDGE = 0.5
 """Of what a cause adds beyond the most that it adds within what was measured: laws that agree inside go apart
 outside. A cubic and a quadratic hardening, each fitted to the other, differ by 0.4 and 0.6 of that at one
@@ -54,14 +54,14 @@ class Deviation:
     rows_beyond: dict[str, int]
 
 
-def parameter_columns(model: ExtendedModel, history: History, units: tuple[str, ...]) -> np.ndarray:
-    """(n, p) what one of each parameter adds to the angle.
+def parameter_columns(
+    model: ExtendedModel, read: History, true: History, units: tuple[str, ...]
+) -> np.ndarray:
+    """(n, p) what one of each parameter adds to the angle, of a true history and that at the teeth.
 
     In this order: the zeros; compliance; gap; each unit's own compliance and gap; the amplitudes of each
     cause's elements. Of one ahead of the teeth, what it takes of the wind-up.
     """
-    read = model.true_history(history)
-    true = model.at_teeth(read)
     of_unit = [
         np.isin(true.unit, [u for u, given in enumerate(units) if given == name]).astype(float)
         for name in model.zeros_arcsec
@@ -72,11 +72,13 @@ def parameter_columns(model: ExtendedModel, history: History, units: tuple[str, 
     blocks = [np.column_stack(columns)]
     for cause_id, elements in model.elements.items():
         for e in elements:
-            column = known_causes()[cause_id].columns(e.shape, true)
-            carried = known_causes()[cause_id].at_teeth((e,), read).torque_Nm - read.torque_Nm
-            if carried.any():
-                column = model.compliance * carried[:, None] / e.amplitudes[0]
-            blocks.append(column)
+            cause = known_causes()[cause_id]
+            at_teeth = cause.at_teeth((e,), read)
+            if at_teeth is read:
+                blocks.append(cause.columns(e.shape, true))
+            else:
+                carried = at_teeth.torque_Nm - read.torque_Nm
+                blocks.append(model.compliance * carried[:, None] / e.amplitudes[0])
     return np.hstack(blocks)
 
 
@@ -102,11 +104,11 @@ def deviation_of(
     from scipy.special import ndtr
 
     variance = np.full(len(history), doubt.reading_arcsec**2)
-    if len(doubt.covariance):
-        columns = parameter_columns(model, history, units)
-        variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
     read = model.true_history(history)
     true = model.at_teeth(read)
+    if len(doubt.covariance):
+        columns = parameter_columns(model, read, true, units)
+        variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
     carried = true.torque_Nm - read.torque_Nm
     unsure = np.hypot(doubt.torque_noise_Nm, CARRIED_UNSURE * np.abs(carried))
     wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, 1e-12))

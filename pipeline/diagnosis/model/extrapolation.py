@@ -11,6 +11,8 @@ from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, span_of
 
 def extrapolated(deviation: Deviation, span: MeasuredSpan, history: History) -> list[str]:
     """A line for each channel in which rows lie outside; their deviations are wider."""
+    if not deviation.rows_beyond:
+        return []
     own = span_of(history)
     return [
         f"{count} of {len(history)} rows extrapolate: {_reach(channel, own)}; the model's record "

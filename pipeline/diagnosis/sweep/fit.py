@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -19,7 +20,6 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
     posterior_of,
 )
 from flexspline.pipeline.diagnosis.sweep.regressors import (
-    FRICTION,
     NOISE_WINDOWS,
 )
 

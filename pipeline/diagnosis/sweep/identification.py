@@ -9,10 +9,11 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0

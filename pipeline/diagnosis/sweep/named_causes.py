@@ -7,12 +7,12 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
@@ -34,8 +34,8 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     found = []
     for c in identified.named:
         rivals = identified.rivals[c]
-        if timeless and c in ("friction_hysteresis", "rate_dependence"):
-            other = {"friction_hysteresis": "rate_dependence"}.get(c, "friction_hysteresis")
+        if timeless and c in (FRICTION, "rate_dependence"):
+            other = {FRICTION: "rate_dependence"}.get(c, FRICTION)
             rivals = tuple(dict.fromkeys((*rivals, other)))
         chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
         if c == FRICTION and ahead is not None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
@@ -69,7 +70,7 @@ KINDS = (
     _Kind(softening, positive=True, against=frozenset({"stiffness_hardening"})),
     _Kind(over_angle, less_linear=True),
     _Kind(over_direction, less_linear=True),
-    _Kind(leading, positive=True, against=frozenset({"friction_hysteresis", "rate_dependence"})),
+    _Kind(leading, positive=True, against=frozenset({FRICTION, "rate_dependence"})),
     _Kind(over_time, less_linear=True),
     _Kind(changing_stiffness),
     _Kind(waves_and_steps, less_linear=True),

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.noise import (
     estimated,
     isolated_outliers,
@@ -27,7 +28,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification, identify
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned

@@ -13,8 +13,6 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
-FRICTION = "friction_hysteresis"
-"""The cause that may lie ahead of the teeth."""
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""
 NUISANCE_SPREAD = 0.15

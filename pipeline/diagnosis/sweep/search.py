@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
 from flexspline.pipeline.diagnosis.sweep.evidence_gains import RegressorGroup
-from flexspline.pipeline.diagnosis.sweep.regressors import FRICTION, Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
 """Nats against each cause named: one of thirteen (2.6), and odds of 1 to 7 that one acts at all (1.9)."""

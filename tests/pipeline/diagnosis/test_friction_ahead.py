@@ -22,6 +22,7 @@ from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE, Doubt, dev
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
+from flexspline.results.figures.diagnosis.seen import seen
 
 FRICTION = 0.3
 """N·m."""
@@ -143,6 +144,18 @@ def test_the_written_model_predicts_the_record(tmp_path: Path) -> None:
     assert found.outcome.gain is not None
     assert found.outcome.gain.rmse_calibrated > found.causes[0].magnitude / 4
     assert found.outcome.gain.rmse_calibrated > 1.5 * found.outcome.gain.rmse_after
+
+
+def test_pictures_show_the_torque_on_the_output(tmp_path: Path) -> None:
+    """Not what is left of it for the teeth; and what the line at that torque leaves of the angle."""
+    found, _, _ = diagnosed(1, tmp_path)
+    shown = seen(found)
+    assert shown is not None
+    prepared = shown.explained.prepared
+    read = prepared.sweep.history
+    np.testing.assert_allclose(shown.output_Nm, read.torque_Nm, rtol=1e-12)
+    line = found.prediction.angle_arcsec(read)
+    assert np.ptp(prepared.sweep.angle_arcsec - line - shown.nominal) < 1e-9  # but for one zero
 
 
 def test_deviation_of_a_prediction() -> None:

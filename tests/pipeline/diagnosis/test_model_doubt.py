@@ -150,7 +150,8 @@ def test_columns_are_as_many_as_counted() -> None:
          "torque_offset": (Element({}, (0.01,)),)},
         {"a": (0.0, 0.0), "b": (0.0, 0.0)},
     )  # fmt: skip
-    columns = parameter_columns(model, sweep(units=2), ("a", "b"))
+    history = sweep(units=2)
+    columns = parameter_columns(model, history, model.at_teeth(history), ("a", "b"))
     assert columns.shape[1] == parameter_count(model) == 2 + 2 + 4 + 2 + 1
 
 
