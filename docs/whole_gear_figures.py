@@ -18,10 +18,11 @@ from flexspline.geometry.sized import sized_template
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline import revolved
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash
+from flexspline.pipeline.backlash import backlash
 from flexspline.pipeline.gear import LOADING, GearCurve, curve_of
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.gear_terms import TIGHT, gear_terms
 from flexspline.pipeline.part_stiffness import part_stiffness
 
 ROOT = Path(__file__).parents[1]
@@ -227,35 +228,17 @@ def _figures(curve: GearCurve) -> str:
 def four_terms(name: str, design: Design, chain: Chain, K_b: float) -> str:
     """Each term of the sum at ± T_L, and what the contact model has in its place [arcsec]."""
     total = backlash(design, K_b, 1 / chain.shaft)
-    load, model = design.load.torque_Nm, chain.model
-
-    def twist(of: GearModel, torque: float) -> float:
-        """Between ± torque, without the shaft [arcsec]."""
-        both = Chain(of, 0.0, chain.holes).angles([-torque, torque])
-        return float(both[1] - both[0]) * ARCSEC_PER_RAD
-
-    small = LOADING[0] * load
-    no_flank = replace(model, mesh=replace(model.mesh, clearance=0.0))
-    no_play = replace(no_flank, wave_generator=replace(model.wave_generator, play=0.0))
-    gaps = [twist(of, small) for of in (model, no_flank, no_play)]
-    own = {
-        "shaft": 2 * load * chain.shaft * ARCSEC_PER_RAD,
-        "flexspline": twist(model, load) - gaps[0],
-        "flank_clearance": gaps[0] - gaps[1],
-        "bearing_play": gaps[1] - gaps[2],
-        "rest": gaps[2],
-    }
-    own["total"] = sum(own.values())
+    own = gear_terms(chain, design.load.torque_Nm)
     lines = []
     for key, words in (
         ("shaft", "shaft, 2T/K_e"),
         ("flexspline", "flexspline, 2T/K_b; in the model with teeth and bearing"),
         ("flank_clearance", "flank clearance"),
         ("bearing_play", "bearing play"),
-        ("rest", "gap of the tight gear: balls and rim give way, the rim is no ideal ellipse"),
+        (TIGHT, "gap of the tight gear: balls and rim give way, the rim is no ideal ellipse"),
         ("total", "sum"),
     ):
-        theirs = 0.0 if key == "rest" else getattr(total, f"{key}_arcsec")
+        theirs = 0.0 if key == TIGHT else getattr(total, f"{key}_arcsec")
         lines.append(f"| {name} | {words} | {theirs:.1f} | {own[key]:.1f} |")
     return "\n".join(lines)
 

@@ -11,11 +11,14 @@ from flexspline.fea.solid.peak import stress_field
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
 from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.sanity import warnings
+from flexspline.geometry.wave_generator import Assumed
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE, ellipse_field, half_seat_peak
+from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
 from flexspline.pipeline.load_cases import rim_answers
 from flexspline.pipeline.part_meshes import MeshedPart
@@ -28,7 +31,7 @@ from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.pipeline.wave_generator import sharp_edges
 
 CACHED_TYPES: tuple[type, ...] = (
-    EquivalentRing, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,
+    Assumed, EquivalentRing, GearCurve, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,
     TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
@@ -46,7 +49,8 @@ class RunResult:
     """Everything that `flexspline run` found.
 
     `fields` has "flexspline_torque", "shaft_torque" and "wave_generator", but for those that are
-    `stiffnesses.missing`. `warnings` are the design's own.
+    `stiffnesses.missing`. `gear` is the whole gear's curve, None where it is missing likewise. `warnings` are
+    the design's own.
     """
 
     design: Design
@@ -56,6 +60,7 @@ class RunResult:
     backlash: Backlash
     linear_limit: LinearLimit
     stage_seconds: Mapping[str, float]
+    gear: GearCurve | None = None
 
 
 def stiffnesses(
@@ -96,9 +101,9 @@ def stiffnesses(
 
 
 def run(context: AnalysisContext) -> RunResult:
-    """The main job: all stiffnesses, the three stress fields, and the backlash sum.
+    """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
 
-    A field that fails is absent, with its reason in `stiffnesses.missing`.
+    A field or a curve that fails is absent, with its reason in `stiffnesses.missing`.
 
     Raises
     ------
@@ -118,11 +123,25 @@ def run(context: AnalysisContext) -> RunResult:
     }
     made = {name: tried.get(name, solve) for name, solve in asked.items()}
     fields = {name: solved for name, solved in made.items() if solved is not None}
+    gear = tried.get("gear", lambda: _gear(context))
     found = replace(found, missing={**found.missing, **tried.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
     limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)
     seconds = dict(context.progress.seconds)
-    return RunResult(design, warnings(design), found, fields, total, limit, seconds)
+    return RunResult(design, warnings(design), found, fields, total, limit, seconds, gear)
+
+
+def _gear(context: AnalysisContext) -> GearCurve:
+    """A design that has no whole gear, as one whose play takes the stroke, has everything else.
+
+    Raises
+    ------
+    ComputationError
+    """
+    try:
+        return gear_curve(context)
+    except DesignError as fault:
+        raise ComputationError(str(fault)) from None
 
 
 def backlash_of(design: Design, found: Stiffnesses) -> Backlash:

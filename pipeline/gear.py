@@ -10,7 +10,7 @@ and balls stand alike on both sides of them, so the curve is odd. Positive torqu
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import degrees
 
 import numpy as np
@@ -25,6 +25,7 @@ from flexspline.geometry.wave_generator import Assumed, flexible_bearing
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY, even
+from flexspline.pipeline.gear_terms import gear_terms
 from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
@@ -59,6 +60,8 @@ class GearCurve:
     warnings : one line each.
     tooth_angle_deg, tooth_force_N : teeth within reach of one lobe at rated torque, front less back flank.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
+    terms_arcsec : between ± T_L, in place of the backlash sum's terms (`pipeline.gear_terms`); empty where
+        nobody asked.
     """
 
     K1_Nm_per_rad: float
@@ -78,6 +81,7 @@ class GearCurve:
     tooth_force_N: tuple[float, ...]
     ball_angle_deg: tuple[float, ...]
     ball_force_N: tuple[float, ...]
+    terms_arcsec: Mapping[str, float] = field(default_factory=dict)
 
 
 def gear_curve(context: AnalysisContext) -> GearCurve:
@@ -88,9 +92,20 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
     DesignError
     ComputationError
     """
-    chain = chain_of(context)
-    with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
-        return curve_of(context.design, chain)
+    design, load = context.design, context.design.load
+
+    def solve() -> GearCurve:
+        chain = chain_of(context)
+        with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
+            terms = gear_terms(chain, load.torque_Nm)
+            return replace(curve_of(design, chain), terms_arcsec=terms)
+
+    depends_on = {
+        "flexspline": context.part("flexspline").revolved_key,
+        "shaft": context.part("shaft").torsion_key,
+        "others": [design.gear, design.bearing, design.wave_generator, load],
+    }
+    return context.cache.get("gear", depends_on, solve)[0]
 
 
 def curve_of(design: Design, chain: Chain) -> GearCurve:

@@ -15,8 +15,9 @@ SPREAD = "backlash_arcsec.std"
 def table(record: dict[str, Any], folder: Path) -> str:
     """One line per figure of the record that stands in the table of quantities, then what was assumed."""
     lines = [f"{record['design']}"]
+    gear = record.get("gear", {})  # a run's; `flexspline gear` has its figures beside the others
     for entry in QUANTITIES:
-        value: Any = record
+        value: Any = {**gear, **record}
         for key in entry.key.split("."):
             value = value.get(key) if isinstance(value, dict) else None
         if value is None and entry.key == SPREAD and "backlash_arcsec" in record:
@@ -32,6 +33,9 @@ def table(record: dict[str, Any], folder: Path) -> str:
             mark = marked(record, entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines.append(f"  {entry.name:<64} {shown}".rstrip())
+    if "assumed" in gear:
+        keys = ", ".join(a["key"] for a in gear["assumed"])
+        lines.append(f"  assumed for the whole gear: {keys}")
     lines += [
         f"  assumed: {a['key']} = {a['value']:.4g}, {a['why']}" for a in record.get("assumed", ())
     ]

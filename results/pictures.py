@@ -26,6 +26,7 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
+from flexspline.results.figures.gear import CURVE, LOADS, write_gear_angle, write_gear_loads
 from flexspline.results.figures.torque_angle import write_torque_angle
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.mesh_picture import write_mesh_picture
@@ -224,6 +225,10 @@ def _charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterable[_D
     yield _Drawing("backlash_budget", {**sums, "extended": added}, budget)
     line = partial(_here, write_torque_angle, angle, design.load.torque_Nm, backlash)
     yield _Drawing("torque_angle", {**sums, "K": [K_b, K_e]}, line)
+    if result.gear is not None:
+        curve = asdict(result.gear)
+        yield _Drawing(CURVE, {"curve": curve}, partial(_here, write_gear_angle, result.gear))
+        yield _Drawing(LOADS, {"curve": curve}, partial(_here, write_gear_loads, result.gear))
     if settling:  # a single mesh shows no convergence
         convergence = partial(_here, write_convergence, settling)
         yield _Drawing("convergence", {k: asdict(v) for k, v in settling.items()}, convergence)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from flexspline.pipeline.analysis import RunResult
     from flexspline.pipeline.backlash import Backlash
     from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
+    from flexspline.pipeline.gear import GearCurve
     from flexspline.pipeline.linear_limit import LinearLimit
     from flexspline.pipeline.stiffnesses import Stiffnesses
 
@@ -163,8 +164,26 @@ def run_record(result: RunResult, wall_s: float) -> Record:
         **mass_record(result.design),
         **backlash_record(result.backlash),
         **linear_limit_record(result.linear_limit),
+        **({} if result.gear is None else {"gear": gear_figures(result.gear)}),
         "warnings": list(all_warnings(result)),
         "stage_s": {name: round(s, 3) for name, s in result.stage_seconds.items()},
+    }
+
+
+GEAR_FIGURES = (
+    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
+    "lost_motion_arcsec", "teeth_in_contact",
+)  # fmt: skip
+"""Of the record, by their names in `GearCurve`."""
+
+
+def gear_figures(curve: GearCurve) -> Record:
+    """The whole gear; no friction is modelled, so there is no hysteresis loss."""
+    return {
+        **{key: getattr(curve, key) for key in GEAR_FIGURES},
+        "compliance_shares": dict(curve.compliance_shares),
+        "terms_arcsec": dict(curve.terms_arcsec),
+        "assumed": [{"key": a.key, "value": a.value, "why": a.why} for a in curve.assumed],
     }
 
 

@@ -69,6 +69,9 @@ def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
 def _missing(found: Stiffnesses) -> Iterator[str]:
     said = set()
     for name, why in found.missing.items():
+        if name == "gear":
+            yield f"Whole gear: not found, {why}"
+            continue
         peak = PEAK_OF.get(name, name)
         if peak in said:  # a field and its peak fail together
             continue

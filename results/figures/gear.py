@@ -10,9 +10,12 @@ from flexspline.pipeline.gear import GearCurve
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
 
+CURVE, LOADS = "gear_torque_angle", "gear_loads"
+"""Names of the pictures."""
+
 
 def write_gear_angle(path: Path, curve: GearCurve) -> None:
-    """θ(T) with K1, K2 and K3 as the chords that they are."""
+    """θ(T) with K1, K2 and K3, the chords between the torques that are marked."""
     torque, angle = np.array(curve.torque_Nm), np.array(curve.angle_arcsec)
     with styled():
         figure = new_figure(8.0, 4.6)

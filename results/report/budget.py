@@ -86,5 +86,5 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         + (", the total with one standard deviation, and its sources." if stated else ".")
     )
     line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture("backlash_budget", terms + extended, 70))
-    yield from shown(content, roomy, Picture("torque_angle", line, 62))
+    yield from shown(content, roomy, Picture("backlash_budget", terms + extended, 62))
+    yield from shown(content, roomy, Picture("torque_angle", line, 54))

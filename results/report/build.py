@@ -79,6 +79,8 @@ def report_content(
         half_seat_peak=found.half_seat_peak,
         linear_limit=result.linear_limit,
         ring=found.ring,
+        gear=result.gear,
+        gear_missing=found.missing.get("gear", ""),
         warnings=all_warnings(result),
         stage_seconds=result.stage_seconds,
         versions=library_versions(),

@@ -10,6 +10,7 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import Backlash, series_stiffness
+from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.results.report.attached import Attachment
 
@@ -30,6 +31,7 @@ class ReportContent:
     half_seat_peak : the ellipse's on a seat half as wide as the ring.
     linear_limit : beyond which torque the figures are not valid.
     ring : the plain ring that stands for drawn teeth, None where none are drawn.
+    gear : the whole gear's curve; `gear_missing`: why there is none.
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
     versions : name and version of the libraries that computed and drew.
@@ -51,6 +53,8 @@ class ReportContent:
     linear_limit: LinearLimit | None = None
     ring: EquivalentRing | None = None
     warnings: tuple[str, ...] = ()
+    gear: GearCurve | None = None
+    gear_missing: str = ""
     stage_seconds: Mapping[str, float] | None = None
     versions: Mapping[str, str] | None = None
     extended_model: str = ""

@@ -27,10 +27,11 @@ from flexspline.results.report.document import (
 from flexspline.results.report.issued import issued
 from flexspline.results.report.shown import shown
 from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
+from flexspline.results.report.whole_gear import whole_gear
 
 ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
-they follow each other and the report stays within seven pages."""
+they follow each other and the report stays within eight pages."""
 GUARANTEED = bounds_kind(True)
 NBSP = "\N{NO-BREAK SPACE}"
 
@@ -41,6 +42,7 @@ def run_document(content: ReportContent) -> Document:
     sections = (
         (_summary(content), _asked(content), _answer(content)),
         (budget(content, roomy),),
+        (whole_gear(content, roomy),),
         (_stress(content, roomy),),
         (_solver(content, roomy), _limits(content)),
     )
@@ -150,8 +152,8 @@ def _which(load_case: str) -> Words:
         *plain(" is nearest to a mounted gear. The uniform case is the stiffest; it compares parts. "),
         *free,
         *plain(" shows how much the wave generator carries. No case holds the compliance of teeth, "
-               "wave-generator bearing and bolts, which make a gear softer; flexspline gear computes it with "
-               "teeth and bearing. The backlash sum uses the case "
+               "wave-generator bearing and bolts, which make a gear softer; ")
+        , *ref("gear"), *plain(" has teeth and bearing in it. The backlash sum uses the case "
                f"“{load_case}” (solver.load_case)."),
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from PIL import Image
 
 NAMES = (
     "flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator",
-    "backlash_budget", "torque_angle", "convergence",
+    "backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads",
 )  # fmt: skip
 
 

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+from hand_made_curve import gear_curve
+
 from flexspline.fea.types import MeshLevel, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import Backlash
@@ -76,6 +78,7 @@ def content(**changes):
             451.3, (19.2, 0.0, 21.6), "the seat's edges", 0.4, False, 400.0
         ),
         versions={"numpy": "2.0.0"},
+        gear=gear_curve(23.2, 474.0, 108.0),
         stage_seconds={"mesh of the flexspline": 5.31},
     )
     return replace(base, **changes)

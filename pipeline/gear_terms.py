@@ -1,0 +1,47 @@
+"""What the whole gear has in place of each term of the four-term backlash sum, between −T_L and +T_L."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from flexspline.fea.gear.model import GearModel
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.gear_chain import Chain
+
+SMALL = 1e-3
+"""Of the load torque: what turns the gear through its gaps, and hardly winds it up."""
+TIGHT = "tight_gear"
+"""The gap that is left without any clearance, for which the sum has no term."""
+
+
+def gear_terms(chain: Chain, load_Nm: float) -> Mapping[str, float]:
+    """Twist [arcsec] by the sum's names: shaft, flexspline, flank_clearance, bearing_play, tight_gear, total.
+
+    "flexspline" is the wind-up of flexspline, teeth and bearing together. A clearance is what the
+    free angle loses when first the flanks', then the bearing's is taken away; "tight_gear" is what is left:
+    balls and rim give way, and the rim is no ideal ellipse.
+
+    Raises
+    ------
+    EquilibriumError
+    """
+    model = chain.model
+    no_flank = replace(model, mesh=replace(model.mesh, clearance=0.0))
+    no_play = replace(no_flank, wave_generator=replace(model.wave_generator, play=0.0))
+
+    def twist(of: GearModel, torque_Nm: float) -> float:
+        """Without the shaft; the curve is odd."""
+        return 2 * ARCSEC_PER_RAD * float(Chain(of, 0.0, chain.holes).angles([torque_Nm])[0])
+
+    gap, without_flank, without_any = (
+        twist(of, SMALL * load_Nm) for of in (model, no_flank, no_play)
+    )
+    terms = {
+        "shaft": 2 * load_Nm * chain.shaft * ARCSEC_PER_RAD,
+        "flexspline": twist(model, load_Nm) - gap,
+        "flank_clearance": gap - without_flank,
+        "bearing_play": without_flank - without_any,
+        TIGHT: without_any,
+    }
+    return {**terms, "total": sum(terms.values())}
