@@ -25,7 +25,7 @@ MODULES = sorted(
 )
 PICTURES = {
     "flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator",
-    "backlash_budget", "torque_angle",
+    "backlash_budget", "torque_angle", "gear_torque_angle", "gear_loads",
 }  # fmt: skip
 DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
 MARKS = {

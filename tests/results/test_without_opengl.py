@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 RENDERED = {"flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator"}
-CHARTS = {"backlash_budget", "torque_angle", "convergence"}
+CHARTS = {"backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads"}
 SAID = "apt-get install libegl1 libgl1"
 Run = subprocess.CompletedProcess[str]
 
