@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator
     from playwright.sync_api import Page as BrowserPage
 
+VIEWPORT = {"width": 1280, "height": 800}
 PATIENCE_MS = 60_000
 """A loaded machine; what is waited for takes a second on an idle one."""
 
@@ -75,10 +76,10 @@ def write_design(path: Path, *, holes: bool = False, name: str = "a cup") -> Pat
 
 
 class Page:
-    """One tab of the studio."""
+    """One tab of the studio; without `url` it is opened later."""
 
-    def __init__(self, browser: Browser, url: str, init: str = "", **settings: Any) -> None:
-        shape = {"viewport": {"width": 1280, "height": 800}, **settings}
+    def __init__(self, browser: Browser, url: str = "", init: str = "", **settings: Any) -> None:
+        shape = {"viewport": VIEWPORT, **settings}
         self.context = browser.new_context(accept_downloads=True, **shape)
         self.context.add_init_script(init)
         self.tab: BrowserPage = self.context.new_page()
@@ -87,8 +88,25 @@ class Page:
         self.requests: list[str] = []
         self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))
+        if url:
+            self.open(url)
+
+    def open(self, url: str) -> None:
         self.tab.goto(url)
         self.at("#name:enabled").wait_for()
+
+    def begin_again(self, url: str) -> None:
+        """As a new tab would: half a second of computing instead of one and a half."""
+        self.tab.unroute_all()
+        self.tab.set_viewport_size(VIEWPORT)
+        self.tab.emulate_media(media="null")
+        self.tab.goto(
+            f"{url.partition('?')[0]}page/theme.js"
+        )  # the same origin, and no script runs
+        self.tab.evaluate("sessionStorage.clear(); localStorage.clear()")
+        self.errors.clear()
+        self.requests.clear()
+        self.open(url)
 
     def close(self) -> None:
         self.context.close()

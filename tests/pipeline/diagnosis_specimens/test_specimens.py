@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from specimen_truth import EXAMPLE_FILE as DRAWN
 
 from flexspline.geometry.keys import (
     lengths,
@@ -31,13 +32,6 @@ ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "xb1-40.toml"
 DESIGN = load_design(EXAMPLE)
 LENGTH, WALL = "flexspline.length_mm", "flexspline.wall_thickness_mm"
-DIAPHRAGM = "flexspline.diaphragm_thickness_mm"
-DRAWN = {
-    LENGTH: np.array([30.0, 24, 36, 33, 27, 39, 30, 34]),
-    WALL: np.array([0.40, 0.45, 0.50, 0.40, 0.52, 0.45, 0.48, 0.42]),
-    DIAPHRAGM: np.array([0.6, 0.8, 0.6, 0.9, 0.5, 0.7, 0.75, 0.55]),
-}
-"""Those of the example file, so that they are solved once for both."""
 
 
 @pytest.fixture(scope="module")

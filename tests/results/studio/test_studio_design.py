@@ -58,10 +58,10 @@ def test_a_slider_moves_and_the_figures_follow(page: Page) -> None:
     assert page.value("backlash_arcsec.shaft") == pytest.approx(2 / shaft * 206264.806, rel=1e-6)
 
 
-DRAG = """async (key) => {
+DRAG = """async (key) => {  // three seconds, or until both have moved often enough
   const slider = document.querySelector(`.row[data-key="${key}"] input[type=range]`);
   const figures = new Set(), pictures = new Set();
-  for (let i = 0; i < 60; i++) {
+  for (let i = 0; i < 60 && (figures.size < 4 || pictures.size < 3); i++) {
     slider.value = String(0.3 + 0.003 * i);
     slider.dispatchEvent(new Event("input", { bubbles: true }));
     await new Promise((done) => setTimeout(done, 50));

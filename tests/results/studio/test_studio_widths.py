@@ -99,7 +99,7 @@ def test_a_hat_with_holes_and_a_long_name(tab: Page) -> None:
 def test_beside_a_pinned_design(tab: Page) -> None:
     tab.complete()
     tab.at("#pin").click()
-    tab.set("flexspline.wall_thickness_mm", "0.44")
+    tab.set("flexspline.wall_thickness_mm", "0.41")
     tab.complete()
     looks_right(tab, "pinned")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import os
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -62,18 +61,42 @@ def commands_running(studio: Server) -> list[int]:
     return found
 
 
-def test_a_solid_solve_shows_its_progress_and_stops(page: Page, studio: Server) -> None:
-    page.quick()
-    page.set("solver.tolerance_pct", "0.011")  # minutes of work, were it not stopped
+def solving(page: Page, studio: Server) -> None:
+    """Press, and wait until the solid solve is at work."""
     page.at("#work-solid").click()
     page.at("#progress-solid:has-text('mesh of the flexspline')").wait_for()
     if Path("/proc").is_dir():
         assert commands_running(studio)
     assert page.at("#work-solid").inner_text() == "Stop"
+
+
+def ends_soon(studio: Server) -> bool:
+    ends = time.monotonic() + 15
+    while commands_running(studio) and time.monotonic() < ends:
+        time.sleep(0.2)
+    return commands_running(studio) == []
+
+
+def test_a_solid_solve_shows_its_progress_and_ends_by_stop_reload_and_close(
+    page: Page, studio: Server
+) -> None:
+    page.quick()
+    page.set("solver.tolerance_pct", "0.011")  # minutes of work, were it not stopped
+    solving(page, studio)
     page.at("#work-solid").click()
     page.at("#progress-solid:has-text('stopped')").wait_for()
     assert page.at("#work-solid").inner_text() != "Stop"
     assert commands_running(studio) == []
+
+    solving(page, studio)
+    page.tab.reload()
+    page.quick()
+    assert page.at("#work-solid").inner_text() == "Solve with the solid model"
+    assert ends_soon(studio)
+
+    solving(page, studio)
+    page.close()
+    assert ends_soon(studio)
 
 
 def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(tab: Page) -> None:
@@ -171,27 +194,6 @@ def test_a_server_killed_and_started_again_is_found(
     finally:
         page.close()
         first.end(kill=True)
-
-
-@pytest.mark.parametrize("leave", ["close", "reload"])
-def test_a_tab_that_is_left_leaves_nothing_running(
-    opened: Callable[..., Page], studio: Server, leave: str
-) -> None:
-    page = opened()
-    page.quick()
-    page.set("solver.tolerance_pct", "0.011")
-    page.at("#work-solid").click()
-    page.at("#progress-solid:has-text('mesh of')").wait_for()
-    if leave == "close":
-        page.close()
-    else:
-        page.tab.reload()
-        page.quick()
-        assert page.at("#work-solid").inner_text() == "Solve with the solid model"
-    ends = time.monotonic() + 15
-    while commands_running(studio) and time.monotonic() < ends:
-        time.sleep(0.2)
-    assert commands_running(studio) == []
 
 
 @pytest.mark.long
