@@ -31,13 +31,14 @@ WRITERS = ("--write-validation", "--write-reliability")
 ROWS = pytest.StashKey[list[Row]]()
 OUTCOME = pytest.StashKey[str]()
 SLOWEST = (
-    "test_cli", "test_hidden_specimens", "test_swept", "test_document_commands", "test_studio_work",
-    "test_studio_design", "test_documents", "test_specimens", "test_studio_reading", "test_studio_widths",
-    "test_without_opengl", "test_hidden", "test_study_command", "test_optimum", "test_mesher",
-    "test_sensitivity", "test_legibility_diagnosis", "test_studio_stale",
+    "test_cli", "test_specimens", "test_hidden_specimens", "test_swept", "test_document_commands",
+    "test_studio_process", "test_studio_design", "test_documents", "test_studio_reading",
+    "test_studio_widths", "test_studio_work", "test_without_opengl", "test_hidden", "test_mesher",
+    "test_files", "test_estimate_honesty", "test_optimum", "test_legibility_diagnosis",
+    "test_studio_stale", "test_report_browser",
 )  # fmt: skip
 """Files that take twenty seconds or more, begun first so that no worker is left alone with one at the end.
-The first makes the run that others read."""
+The first makes the run that others read, the second the solves of specimens that the third does."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -83,7 +83,7 @@ def test_drawn_teeth_with_bolt_holes_are_an_estimate_too(tmp_path: Path, monkeyp
 
 @pytest.mark.cad
 def test_a_keyway_makes_k_e_an_estimate(tmp_path: Path) -> None:
-    asked = design("keyed-shaft.toml")
+    asked = design("keyed-shaft.toml").changed({"solver.tolerance_pct": 5.0})
     assert kinds(asked, tmp_path, rim=False) == {"K_b": "guaranteed", "K_e": "estimated"}
 
 

@@ -60,10 +60,16 @@ def excel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_the_same_record_gives_the_same_causes(excel: Path, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def read(excel: Path) -> dict:
+    """Its diagnosis; the files are in `out` beside it."""
+    return diagnosed(excel)
+
+
+def test_the_same_record_gives_the_same_causes(read: dict, tmp_path: Path) -> None:
     copy = tmp_path / SWEEP.name
     copy.write_bytes(SWEEP.read_bytes())
-    plain, said = diagnosed(copy), diagnosed(excel)
+    plain, said = diagnosed(copy), read
     assert [c["id"] for c in said["causes"]] == [c["id"] for c in plain["causes"]]
     for one, other in zip(said["causes"], plain["causes"], strict=True):
         # six to nine decimals were written
@@ -71,8 +77,8 @@ def test_the_same_record_gives_the_same_causes(excel: Path, tmp_path: Path) -> N
     assert not any(note.startswith("columns read") for note in plain["notes"])
 
 
-def test_how_it_was_read_is_said(excel: Path) -> None:
-    said = diagnosed(excel)
+def test_how_it_was_read_is_said(excel: Path, read: dict) -> None:
+    said = read
     columns = said["read_as"]
     assert {head: c["as"] for head, c in columns.items()} == {
         "Zyklus-Nr.": "cycle", "Zeit": "time_s", "Drehmoment": "torque_Nm", "Winkel": "angle_arcsec",
@@ -99,8 +105,8 @@ def test_how_it_was_read_is_said(excel: Path) -> None:
     assert "columns not used: Notiz" in said["notes"]
 
 
+@pytest.mark.usefixtures("read")
 def test_a_prediction_keeps_the_file_s_form(excel: Path) -> None:
-    diagnosed(excel)
     out = excel.parent / "out"
     model = out / "extended_model.toml"
     done = flexspline("predict", CUP, "--model", model, excel, "--out", out, "--json")

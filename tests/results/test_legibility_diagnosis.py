@@ -80,12 +80,14 @@ RECORDS = {
     "nothing wrong": lambda f: sweep(f, lambda *_: 0.0),
     "one cycle": lambda f: sweep(f, lambda t, i, u: -4 * branch(i), cycles=1),
     "every channel": lambda f: sweep(
-        f, many, cycles=8, columns=("temperature_C", "input_angle_deg")
+        f, many, cycles=5, columns=("temperature_C", "input_angle_deg")
     ),
     "unknown": lambda f: sweep(f, lambda t, i, u: (0.0, 9.0, -4.0, 14.0, 3.0)[i // 60]),
-    "units with long names": lambda f: sweep(f, lambda t, i, u: -3 * branch(i) * (u != 1), LONG),
+    "units with long names": lambda f: sweep(
+        f, lambda t, i, u: -3 * branch(i) * (u != 1), LONG, cycles=3
+    ),
     "units in other letters": lambda f: sweep(
-        f, lambda t, i, u: -3 * branch(i) * u, ("Größe 1", "名前", "$x$", "d")
+        f, lambda t, i, u: -3 * branch(i) * u, ("Größe 1", "名前", "$x$", "d"), cycles=3
     ),
     "thirty units": lambda f: sweep(
         f, lambda t, i, u: -3 * branch(i), [f"A-{i:03d}" for i in range(12)], cycles=2

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import io
-import os
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
-from studio_page import Page, Server, running, start, write_design
+from studio_page import Page
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
+    pass
 
 ROOT = Path(__file__).parents[3]
 END_POINTS = ROOT / "examples" / "measured" / "size-40-end-points.csv"
@@ -46,57 +44,6 @@ def test_picture_and_step_are_handed_over(tab: Page) -> None:
         name, data = downloaded(tab, f"#progress-step a:has-text('{part}.step')")
         assert name == f"{part}.step"
         assert data.startswith(b"ISO-10303-21;")
-
-
-def commands_running(studio: Server) -> list[int]:
-    """Processes that work in a folder of this studio's (Linux)."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        try:
-            where = os.readlink(entry / "cwd") if entry.name.isdigit() else ""
-        except OSError:
-            continue
-        if where and studio.temporary and Path(where).is_relative_to(studio.temporary):
-            found.append(int(entry.name))
-    return found
-
-
-def solving(page: Page, studio: Server) -> None:
-    """Press, and wait until the solid solve is at work."""
-    page.at("#work-solid").click()
-    page.at("#progress-solid:has-text('mesh of the flexspline')").wait_for()
-    if Path("/proc").is_dir():
-        assert commands_running(studio)
-    assert page.at("#work-solid").inner_text() == "Stop"
-
-
-def ends_soon(studio: Server) -> bool:
-    ends = time.monotonic() + 15
-    while commands_running(studio) and time.monotonic() < ends:
-        time.sleep(0.2)
-    return commands_running(studio) == []
-
-
-def test_a_solid_solve_shows_its_progress_and_ends_by_stop_reload_and_close(
-    page: Page, studio: Server
-) -> None:
-    page.quick()
-    page.set("solver.tolerance_pct", "0.011")  # minutes of work, were it not stopped
-    solving(page, studio)
-    page.at("#work-solid").click()
-    page.at("#progress-solid:has-text('stopped')").wait_for()
-    assert page.at("#work-solid").inner_text() != "Stop"
-    assert commands_running(studio) == []
-
-    solving(page, studio)
-    page.tab.reload()
-    page.quick()
-    assert page.at("#work-solid").inner_text() == "Solve with the solid model"
-    assert ends_soon(studio)
-
-    solving(page, studio)
-    page.close()
-    assert ends_soon(studio)
 
 
 def test_solid_figures_stand_beside_the_fast_ones_until_the_design_moves(tab: Page) -> None:
@@ -168,32 +115,6 @@ def test_a_file_too_large_is_refused(tab: Page, tmp_path: Path) -> None:
     tab.at("#tab-measured").click()
     choose(tab, large)
     tab.at("#measured-fault:has-text('larger than 20 MB')").wait_for()
-
-
-def test_a_server_killed_and_started_again_is_found(
-    studio_browser: Browser, tmp_path: Path
-) -> None:
-    design = write_design(tmp_path / "design.toml")
-    first = start(design)
-    page = Page(studio_browser, first.url)
-    try:
-        page.quick()
-        page.set("flexspline.wall_thickness_mm", "0.47")
-        page.quick()
-        before = page.value("K_b_Nm_per_rad")
-        first.end(kill=True)
-        page.at("#notice:has-text('Connection lost')").wait_for()
-        page.field("flexspline.length_mm").fill("31")
-        with running(design, "--port", str(first.port)) as second:
-            page.at("#notice:has-text('open the address that it printed')").wait_for()
-            page.context.new_page().goto(second.url)  # its cookie is the first tab's too
-            page.at("#notice:has-text('Connected again')").wait_for()
-            page.quick()
-            assert page.field("flexspline.wall_thickness_mm").input_value() == "0.47"
-            assert page.value("K_b_Nm_per_rad") < before  # what was typed meanwhile counts: longer
-    finally:
-        page.close()
-        first.end(kill=True)
 
 
 @pytest.mark.long
