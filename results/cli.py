@@ -7,29 +7,19 @@ from typing import Annotated, Any
 
 import typer
 
+from flexspline.results.diagnosis.command import register as register_diagnosis
 from flexspline.results.job import (
-    Against,
-    CountsPerTurn,
-    DesignFile,
     Job,
-    Json,
-    Kb,
-    Ke,
-    MeasuredFile,
-    ModelPath,
-    Out,
-    TorqueFile,
     answered,
     begin,
     deliver,
-    folder_of,
     keep,
     kept,
-    stiffness_option,
     tell,
     tell_all,
     warn,
 )
+from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
 from flexspline.results.studio.command import register as register_studio
 from flexspline.results.study.command import register as register_study
@@ -211,57 +201,7 @@ def export(
         show(as_json(record) if json else "\n".join(record["files"]), json)
 
 
-@app.command()
-def diagnose(
-    design: DesignFile,
-    measured: MeasuredFile,
-    kb: Kb = None,
-    ke: Ke = None,
-    counts_per_turn: CountsPerTurn = None,
-    against: Annotated[
-        Against,
-        typer.Option(
-            "--against",
-            help="Compare a sweep with the backlash sum's straight line, or with the"
-            " torque-angle curve of the whole gear.",
-        ),
-    ] = Against.SUM,
-    out: Out = None,
-    json: Json = False,
-) -> None:
-    """What the simulation gets wrong, and why, from measured data."""
-    with answered(design):
-        from flexspline.pipeline.diagnosis.against_gear import refuse_given
-        from flexspline.results.diagnosis.command import diagnose_and_write
-
-        job = begin(design, out)
-        given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        if against is Against.GEAR:
-            refuse_given(kb, ke)
-        said = diagnose_and_write(
-            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
-            against is Against.GEAR,
-        )  # fmt: skip
-        show(said, json)
-
-
-@app.command()
-def predict(
-    design: DesignFile,
-    torque: TorqueFile,
-    model: ModelPath,
-    counts_per_turn: CountsPerTurn = None,
-    out: Out = None,
-    json: Json = False,
-) -> None:
-    """The angle for a torque history, by an extended model."""
-    with answered(design):
-        from flexspline.geometry.load import load_design
-        from flexspline.results.diagnosis.prediction import predict_and_write
-
-        gear, folder = load_design(design), folder_of(design, out)
-        said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)
-        show(said, json)
+register_diagnosis(app)
 
 
 @app.command()

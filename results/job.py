@@ -1,4 +1,4 @@
-"""What every command does: words of the command line, errors as one line, the design, the folder."""
+"""What every command does: errors as one line, the design, the folder, the answer."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -20,59 +19,6 @@ if TYPE_CHECKING:
     from flexspline.pipeline.stiffnesses import Stiffnesses
     from flexspline.results.report.attached import Attachment
 
-DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
-
-
-def _folder(word: str) -> Path:
-    """As pathlib reads it, which would take an empty word for the current folder."""
-    if not word:
-        tell('flexspline: --out = "" names no folder; "." is the current one')
-        raise typer.Exit(2)
-    return Path(word)
-
-
-Out = Annotated[
-    Path | None,
-    typer.Option(
-        "--out",
-        metavar="DIR",
-        parser=_folder,
-        help="Where files go; default beside the input, NAME.out/",
-    ),
-]
-MeasuredFile = Annotated[
-    Path, typer.Argument(metavar="MEASURED.csv", help="Torque sweep, end points or specimens.")
-]
-TorqueFile = Annotated[
-    Path, typer.Argument(metavar="TORQUE.csv", help="A history with torque_Nm, as measured data.")
-]
-ModelPath = Annotated[
-    Path, typer.Option("--model", metavar="MODEL.toml", help="An extended model of `diagnose`.")
-]
-Kb = Annotated[
-    float | None, typer.Option("--Kb", metavar="X", help="K_b in N·m/rad, instead of FEA")
-]
-Ke = Annotated[
-    float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
-]
-CountsPerTurn = Annotated[
-    float | None,
-    typer.Option(
-        "--counts-per-turn",
-        metavar="N",
-        help="Counts of a turn of the encoder, where an angle is in counts",
-    ),
-]
-
-
-class Against(StrEnum):
-    """What `diagnose` compares a sweep with."""
-
-    SUM = "sum"
-    GEAR = "gear"
-
-
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 LONGEST_LINE = 2000
 """Letters of a message: a path may take most of them."""
 
@@ -226,13 +172,3 @@ def kept(job: Job, as_json: bool) -> Iterator[None]:
     except NotFoundError as fault:
         keep(job, fault.found, as_json)
         raise
-
-
-def stiffness_option(name: str, value: float | None) -> float | None:
-    """A stiffness given on the command line, checked."""
-    from flexspline.geometry.errors import DesignError
-    from flexspline.geometry.ranges import STIFFNESS_Nm_per_rad
-
-    if value is not None and value not in STIFFNESS_Nm_per_rad:
-        raise DesignError(name, value, f"must be a number {STIFFNESS_Nm_per_rad} N·m/rad")
-    return value

@@ -1,49 +1,95 @@
-"""What `flexspline diagnose` does: stiffnesses, diagnosis, files, words."""
+"""`flexspline diagnose` and `flexspline predict`: their words of the command line, and whom they ask."""
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
+from typing import Annotated
 
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
-from flexspline.pipeline.diagnosis.measurement.record import read_measurement
-from flexspline.pipeline.gear_chain import chain_of
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.stiffness_pair import stiffness_pair
-from flexspline.results.diagnosis.console import diagnosis_table
-from flexspline.results.diagnosis.files import write_diagnosis
-from flexspline.results.diagnosis.record import diagnosis_record
-from flexspline.results.records import as_json
-from flexspline.results.report.attached import Attachment
+import typer
+
+from flexspline.results.job import answered, begin, folder_of, tell
+from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
+from flexspline.results.streams import show
+
+MeasuredFile = Annotated[
+    Path, typer.Argument(metavar="MEASURED.csv", help="Torque sweep, end points or specimens.")
+]
+TorqueFile = Annotated[
+    Path, typer.Argument(metavar="TORQUE.csv", help="A history with torque_Nm, as measured data.")
+]
+ModelPath = Annotated[
+    Path, typer.Option("--model", metavar="MODEL.toml", help="An extended model of `diagnose`.")
+]
+CountsPerTurn = Annotated[
+    float | None,
+    typer.Option(
+        "--counts-per-turn",
+        metavar="N",
+        help="Counts of a turn of the encoder, where an angle is in counts",
+    ),
+]
 
 
-def diagnose_and_write(
-    context: AnalysisContext,
-    measured: Path,
-    given: tuple[float | None, float | None],
-    folder: Path,
-    json: bool,
-    attached: tuple[Attachment, ...] = (),
-    counts_per_turn: float | None = None,
-    gear: bool = False,
-) -> str:
-    """Diagnose, write all files, and return what is printed; `given` are K_b and K_e, None: FEA.
+class Against(StrEnum):
+    """What `diagnose` compares a sweep with."""
 
-    `counts_per_turn` of the encoder, where a column is in counts. `gear`: compare with the curve of the whole
-    gear, not with the straight line.
+    SUM = "sum"
+    GEAR = "gear"
 
-    Raises
-    ------
-    DesignError, ComputationError, MeasurementError
-    """
-    read_measurement(measured, counts_per_turn)  # refuse a bad file before the long work
-    used = stiffness_pair(context, *given)
-    chain = chain_of(context) if gear else None
-    with context.progress.stage("diagnosis"):
-        found = diagnose_file(
-            context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            context if given == (None, None) else None, counts_per_turn, chain,
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this room."""
+    app.command()(diagnose)
+    app.command()(predict)
+
+
+def diagnose(
+    design: DesignFile,
+    measured: MeasuredFile,
+    kb: Kb = None,
+    ke: Ke = None,
+    counts_per_turn: CountsPerTurn = None,
+    against: Annotated[
+        Against,
+        typer.Option(
+            "--against",
+            help="Compare a sweep with the backlash sum's straight line, or with the"
+            " torque-angle curve of the whole gear.",
+        ),
+    ] = Against.SUM,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """What the simulation gets wrong, and why, from measured data."""
+    with answered(design):
+        from flexspline.pipeline.diagnosis.against_gear import refuse_given
+        from flexspline.results.diagnosis.diagnose import diagnose_and_write
+
+        job = begin(design, out)
+        given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
+        if against is Against.GEAR:
+            refuse_given(kb, ke)
+        said = diagnose_and_write(
+            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
+            against is Against.GEAR,
         )  # fmt: skip
-    record = diagnosis_record(found)
-    with context.progress.stage("figures and report"):
-        write_diagnosis(folder, found, record, used, attached)
-    return as_json(record) if json else diagnosis_table(found, folder)
+        show(said, json)
+
+
+def predict(
+    design: DesignFile,
+    torque: TorqueFile,
+    model: ModelPath,
+    counts_per_turn: CountsPerTurn = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """The angle for a torque history, by an extended model."""
+    with answered(design):
+        from flexspline.geometry.load import load_design
+        from flexspline.results.diagnosis.prediction import predict_and_write
+
+        gear, folder = load_design(design), folder_of(design, out)
+        said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)
+        show(said, json)

@@ -9,7 +9,8 @@ from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
 from flexspline.results.numbers import grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
-from flexspline.results.quantities import Quantity, bounds_kind, quantity
+from flexspline.results.quantities import bounds_kind, quantity
+from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.dimensions import ratio, weights
 

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from flexspline.results.job import DesignFile, Json, Out, answered, folder_of, tell
+from flexspline.results.job import answered, folder_of, tell
+from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]

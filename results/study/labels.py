@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexspline.results.peaks import BORDER
-from flexspline.results.quantities import BY_KEY, Quantity, bounds_kind
+from flexspline.results.quantities import BY_KEY, bounds_kind
+from flexspline.results.quantity import Quantity
 
 AT_BORDER, GUARANTEED = "_at_excluded_border", "_bounds_guaranteed"
 """Ends of the keys of a row's marks: numbers in the store, which holds nothing else."""

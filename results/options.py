@@ -1,0 +1,48 @@
+"""Words of the command line that several commands take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flexspline.results.job import tell
+
+DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
+
+
+def _folder(word: str) -> Path:
+    """As pathlib reads it, which would take an empty word for the current folder."""
+    if not word:
+        tell('flexspline: --out = "" names no folder; "." is the current one')
+        raise typer.Exit(2)
+    return Path(word)
+
+
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        parser=_folder,
+        help="Where files go; default beside the input, NAME.out/",
+    ),
+]
+Kb = Annotated[
+    float | None, typer.Option("--Kb", metavar="X", help="K_b in N·m/rad, instead of FEA")
+]
+Ke = Annotated[
+    float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
+
+
+def stiffness_option(name: str, value: float | None) -> float | None:
+    """A stiffness given on the command line, checked."""
+    from flexspline.geometry.errors import DesignError
+    from flexspline.geometry.ranges import STIFFNESS_Nm_per_rad
+
+    if value is not None and value not in STIFFNESS_Nm_per_rad:
+        raise DesignError(name, value, f"must be a number {STIFFNESS_Nm_per_rad} N·m/rad")
+    return value

@@ -1,0 +1,73 @@
+"""A quantity of result.json: its names, and how its values are printed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
+
+Kind = Literal["number", "count", "bounds", "text"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One entry of result.json.
+
+    Attributes
+    ----------
+    key : path in result.json, nested keys joined by dots.
+    column : the CSV header, flat, the unit still its suffix.
+    unit : as printed, "" for none.
+    name : long name.
+    symbol : letter and index joined by "_", e.g. ``K_b``; "" for none.
+    kind : what stands under the key; "bounds" is a pair of numbers.
+    digits : significant digits in print (kind "number" and "bounds").
+    decimals : fixed decimals instead of significant digits.
+    note : beside it in the report: of a stiffness, what is held and what is driven.
+    """
+
+    key: str
+    column: str
+    unit: str
+    name: str
+    symbol: str = ""
+    kind: Kind = "number"
+    digits: int = 4
+    decimals: int | None = None
+    note: str = ""
+
+    @property
+    def mathtext(self) -> str:
+        """The symbol for matplotlib, index upright."""
+        letter, _, index = self.symbol.partition("_")
+        return f"${letter}_{{\\mathrm{{{index}}}}}$" if index else f"${letter}$"
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis or a table's column: "long name in unit"."""
+        return f"{self.name} in {self.unit}" if self.unit else self.name
+
+    def text(self, value: float) -> str:
+        """The number as printed, without unit: ``44712.3`` → ``44 712`` for five digits."""
+        if self.kind == "count":
+            return grouped(value, 0)
+        if self.decimals is not None:
+            return grouped(value, self.decimals)
+        return grouped(value, decimals_for(value, self.digits))
+
+    def short(self, value: float, letters: int = 9) -> str:
+        """As `text`; where that takes more letters, three digits and a power of ten."""
+        text = self.text(value)
+        return text if len(text) <= letters else with_power(value, 3)
+
+    def with_unit(self, value: float) -> str:
+        """The number and its unit."""
+        return f"{self.text(value)}{THIN}{self.unit}" if self.unit else self.text(value)
+
+    def range_text(self, low: float, high: float) -> str:
+        """Both ends with the same decimals, enough of them that unequal ends look unequal."""
+        places = decimals_for(high, self.digits) if self.decimals is None else self.decimals
+        while low != high and grouped(low, places) == grouped(high, places) and places < 6:
+            places += 1
+        return f"{grouped(low, places)} to {grouped(high, places)}"
