@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi, radians
 
 from flexspline.fea.gear.ball import ball_between_races
+from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.kinematics import Mesh
 from flexspline.fea.gear.model import GearModel, WaveGenerator
 from flexspline.fea.gear.race import condensed_race, race_outline
@@ -32,7 +34,8 @@ GROOVE_SHARE = 0.3
 """Width on which a ball presses on its race, over its diameter: the contact spreads through the race. Half
 of it moves K by up to 0.5 %."""
 
-
+KEPT = 64
+"""Condensed bodies remembered, 10 kB each: who changes the bearing need not condense the flexspline anew."""
 LEAST_LEVER = 0.2
 """Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
 
@@ -55,11 +58,9 @@ def gear_model(design: Design, flexspline: Part) -> GearModel:
             design.bearing.radial_clearance_um,
             f"must be below {2e3 * bearing.deflection:.4g} µm: twice the wave generator's stroke",
         )
-    part, shape = flexspline.without_holes(), flexspline.shape
+    shape = flexspline.shape
     assert not isinstance(shape, Shaft)
-    material = Elastic.of(part.material)
     pitch = gear.module_mm * gear.teeth_flexspline / 2
-    places = places_along(shape.ring_start, shape.ring_end, PLACES)
     middle = (shape.inner_radius + shape.ring_radius) / 2
     more = gear.teeth_circular_spline - gear.teeth_flexspline
     mesh = Mesh(
@@ -70,26 +71,37 @@ def gear_model(design: Design, flexspline: Part) -> GearModel:
         pressure_angle=radians(gear.pressure_angle_deg),
         height=(pitch - middle) / middle,
     )
-    with one_thread():
-        rim = condensed_rim(part.meridian, material, pitch, places, LAST_HARMONIC)
-        groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
-        race = condensed_race(
-            race_outline(
-                shape.inner_radius, bearing.race_thickness, shape.ring_start, shape.ring_end, groove
-            ),
-            BEARING_STEEL,
-            places,
-            LAST_HARMONIC,
-        )
+    groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
     return GearModel(
         mesh,
         _wave_generator(bearing, shape.inner_radius, play),
-        rim,
-        race,
+        _rim(flexspline.without_holes(), pitch, (shape.ring_start, shape.ring_end)),
+        _race(
+            shape.inner_radius, bearing.race_thickness, (shape.ring_start, shape.ring_end), groove
+        ),
         pair_compliance(design),
         gear.teeth_flexspline,
         MOST_STATIONS,
     )
+
+
+@lru_cache(KEPT)
+def _rim(part: Part, pitch_radius: float, seat: tuple[float, float]) -> Condensed:
+    material, places = Elastic.of(part.material), places_along(*seat, PLACES)
+    with one_thread():
+        return condensed_rim(part.meridian, material, pitch_radius, places, LAST_HARMONIC)
+
+
+@lru_cache(KEPT)
+def _race(
+    outer_radius: float, thickness: float, seat: tuple[float, float], groove: float
+) -> Condensed:
+    outline, places = (
+        race_outline(outer_radius, thickness, *seat, groove),
+        places_along(*seat, PLACES),
+    )
+    with one_thread():
+        return condensed_race(outline, BEARING_STEEL, places, LAST_HARMONIC)
 
 
 def _wave_generator(bearing: FlexibleBearing, inner_radius: float, play: float) -> WaveGenerator:

@@ -15,6 +15,8 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
+from flexspline.pipeline.gear import GearCurve, curve_of
+from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.revolved import (
     contact,
     ellipse_field,
@@ -59,6 +61,13 @@ def rim(design: Design, case: RimCase) -> Stiffness:
     if case == "K_b_lobes_contact":
         return contact(part, tolerance)
     return lobes(part, case == "K_b_lobes", tolerance)
+
+
+def gear(design: Design) -> GearCurve:
+    """The whole gear, its shaft without holes; errors as `torsion`, and a play that takes the stroke."""
+    tolerance = _tolerance(design)
+    K_e = stiffness(design, "shaft", tolerance).K_Nm_per_rad
+    return curve_of(design, fast_chain(design, K_e, tolerance))
 
 
 def field(design: Design, view: View) -> RevolvedField:

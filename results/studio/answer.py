@@ -27,6 +27,10 @@ from flexspline.results.style import PALETTE
 
 STIFFNESSES = ("K_b", *get_args(RimCase), "K_e", "K_series")
 PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
+GEAR_ROWS = (
+    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
+)  # fmt: skip
+GEAR_MARKS = (("T_1", "T1_Nm"), ("T_2", "T2_Nm"), ("T_N", "rated_torque_Nm"))
 LINE_POINTS = 25
 """Of the torque–angle line: it is straight, its band bends."""
 ESTIMATED = "≈\u2009"
@@ -56,6 +60,8 @@ def message(design: Design, found: Found) -> Message:
             "line": _line(design, total, K_b, K_e),
             "beyond": list(limit.passed(design)),
         }
+    if "gear" in found:
+        shown["gear"] = _gear(found["gear"])
     return {
         "stiffness": [_stiffness(name, figures) for name in STIFFNESSES],
         "peaks": [_peak(name, figures, design) for name in PEAKS],
@@ -123,6 +129,21 @@ def _peak(name: str, figures: Found, design: Design) -> Message:
         narrow = f"on a seat half as wide {quantity(half).with_unit(figures[half])}"
         row["more"] = "; ".join(filter(None, [row.get("more"), narrow]))
     return row
+
+
+def _gear(found: Found) -> Message:
+    """Figures, shares of the compliance, assumed keys of the design file; of the fast model the curve too."""
+    shares = found["compliance_shares"].items()
+    return {
+        "rows": [figure(key, found[key]) for key in GEAR_ROWS],
+        "shares": [
+            {"name": name, "value": value, "colour": colour}
+            for (name, value), colour in zip(shares, PALETTE, strict=False)
+        ],
+        "marks": [[symbol, found[key]] for symbol, key in GEAR_MARKS],
+        "assumed": [f"{a['key']} = {a['value']:.4g}" for a in found["assumed"] if "." in a["key"]],
+        "line": found.get("line"),
+    }
 
 
 def _waiting(key: str) -> Message:

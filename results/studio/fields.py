@@ -5,14 +5,17 @@ All of it comes from the schema; the page has no list of keys of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import floor, log10
+from types import MappingProxyType
 from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
+from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.schema import UNITS, Location, Node, dotted, node_at
+from flexspline.geometry.wave_generator import flexible_bearing
 
 GROUPS: tuple[tuple[str, Location], ...] = (
     ("Flexspline", ("flexspline",)),
@@ -21,6 +24,7 @@ GROUPS: tuple[tuple[str, Location], ...] = (
     ("Material of the shaft", ("material", "shaft")),
     ("Gear", ("gear",)),
     ("Bearing", ("bearing",)),
+    ("Wave generator", ("wave_generator",)),
     ("Load", ("load",)),
     ("Uncertainty, one standard deviation", ("uncertainty",)),
     ("Solver", ("solver",)),
@@ -47,10 +51,10 @@ def received(tables: Any) -> Design:
 def form(design: Design) -> list[Tables]:
     """The groups of the form, each a title and its entries, for the design's own kind and segments."""
     tables = design.model_dump(mode="json", exclude_none=True)
-    kind = design.flexspline.kind
+    kind, usual = design.flexspline.kind, assumed_values(design)
     groups: list[Tables] = []
     for title, location in GROUPS:
-        groups += _group(title, location, _at(tables, location), kind)
+        groups += _group(title, location, _at(tables, location), kind, usual)
         if location == ("shaft",):
             for i, segment in enumerate(tables["shaft"]["segment"]):
                 name = "flange" if i == 0 else f"segment {i + 1}"
@@ -66,13 +70,25 @@ def _at(tables: Tables, location: Location) -> Tables | None:
     return here
 
 
-def _group(title: str, location: Location, table: Tables | None, kind: str) -> Iterator[Tables]:
-    """Nothing for a table that the design leaves out."""
+def assumed_values(design: Design) -> dict[str, float]:
+    """What stands for keys of the gear that the design leaves out, by key."""
+    every = (*rated_torque(design)[1], *flexible_bearing(design).assumed)
+    return {assumed.key: assumed.value for assumed in every}
+
+
+def _group(
+    title: str,
+    location: Location,
+    table: Tables | None,
+    kind: str,
+    usual: Mapping[str, float] = MappingProxyType({}),
+) -> Iterator[Tables]:
+    """Nothing for a table that the design leaves out; `usual`: where sliders of absent values stand."""
     if table is None:
         return
     scale = max((float(v) for v in table.values() if _is_number(v)), default=1.0)
     entries = [
-        _entry((*location, key), node_at((*location, key), kind), table.get(key), scale)
+        _entry((*location, key), node_at((*location, key), kind), table.get(key), scale, usual)
         for key in node_at(location, kind).get("properties", {})
     ]
     known = [e for e in entries if e]
@@ -84,7 +100,9 @@ def _after_dimensions(entry: Tables) -> int:
     return 2 if entry["kind"] == "choice" else int(str(entry["at"][-1]).startswith("bolt_"))
 
 
-def _entry(location: Location, node: Node, value: Any, scale: float) -> Tables | None:
+def _entry(
+    location: Location, node: Node, value: Any, scale: float, usual: Mapping[str, float]
+) -> Tables | None:
     """One key: a number with its slider, or a choice; None for tables and for what has no choice."""
     about = {
         "key": dotted(location),
@@ -100,11 +118,11 @@ def _entry(location: Location, node: Node, value: Any, scale: float) -> Tables |
     if node.get("type") not in ("number", "integer"):
         return None
     whole = node["type"] == "integer"
-    low, high, step = slider(node, value, scale, whole, str(location[-1]))
-    optional = value is None
+    stand_in = usual.get(dotted(location)) if value is None else value
+    low, high, step = slider(node, stand_in, scale, whole, str(location[-1]))
     return {
-        **about, "kind": "whole" if whole else "number",
-        "low": low, "high": high, "step": step, "optional": optional,
+        **about, "kind": "whole" if whole else "number", "optional": value is None,
+        "low": low, "high": high, "step": step, "usual": stand_in,
     }  # fmt: skip
 
 

@@ -14,12 +14,13 @@ from flexspline.pipeline.live import (
     View,
     field,
     first_field,
+    gear,
     profile,
     rim,
     torsion,
 )
 from flexspline.pipeline.revolved import revolved
-from flexspline.results.records import bounded_record, peak_record
+from flexspline.results.records import bounded_record, gear_figures, peak_record
 from flexspline.results.studio.shape import field_message, profile_message
 from flexspline.results.studio.worker import Fault
 
@@ -33,6 +34,8 @@ PEAK_KEYS: dict[View, str] = {
 """result.json's name of the peak that a view shows."""
 FIRST = "first field wave_generator"
 """The stress on the wave generator before any refinement; its `PEAK_rough` says so."""
+GEAR = "gear"
+"""The whole gear's figures and the positive branch of its curve."""
 CHORDS_PER_WALL = 40
 """Arcs of a shape without stress are drawn with chords no farther off than wall/40."""
 
@@ -57,6 +60,13 @@ def _torsion(design: Design) -> Found:
 
 def _rim(case: RimCase) -> Callable[[Design], Found]:
     return lambda design: bounded_record(case, rim(design, case))
+
+
+def _gear(design: Design) -> Found:
+    curve = gear(design)
+    up = curve.torque_Nm.index(max(curve.torque_Nm)) + 1  # the other branches mirror the first
+    line = {"torque_Nm": curve.torque_Nm[:up], "angle_arcsec": curve.angle_arcsec[:up]}
+    return {"gear": {**gear_figures(curve), "line": line}}
 
 
 def _field(view: View) -> Callable[[Design], Found]:
@@ -89,6 +99,7 @@ def _profile(view: View) -> Callable[[Design], Found]:
 
 _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     "torsion": _torsion,
+    GEAR: _gear,
     FIRST: _first,
     **{case: _rim(case) for case in RIM_CASES},
     **{f"field {view}": _field(view) for view in VIEWS},

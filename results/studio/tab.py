@@ -19,7 +19,7 @@ from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.live import left_out
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.questions import FIRST, PEAK_KEYS, RIM_CASES, VIEWS
+from flexspline.results.studio.questions import FIRST, GEAR, PEAK_KEYS, RIM_CASES, VIEWS
 from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
@@ -173,7 +173,8 @@ def _picture(view: str) -> list[str]:
 
 
 def _slow(view: str) -> list[str]:
-    """Peaks before the other rim cases; the peak of the view itself comes with its picture."""
+    """The wave generator's peak, the whole gear, the other peaks, then the other rim cases; the peak of the
+    view itself comes with its picture."""
     peaks = [f"field {v}" for v in VIEWS if v != view]
     peaks.sort(key=lambda question: question != "field wave_generator")
-    return [*peaks, *(case for case in RIM_CASES if case not in QUICK)]
+    return [*peaks[:1], GEAR, *peaks[1:], *(case for case in RIM_CASES if case not in QUICK)]

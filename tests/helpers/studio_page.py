@@ -129,7 +129,7 @@ class Page:
     def complete(self) -> None:
         """Wait until everything does, the picture too."""
         self.quick()
-        self.at("#answers :is(tr.stale, td.rough)").first.wait_for(state="detached")
+        self.at("#answers :is(tr.stale, td.rough), #gear.stale").first.wait_for(state="detached")
         self.at('#stage[data-shown^="field"]').wait_for()
 
     def value(self, key: str) -> float:

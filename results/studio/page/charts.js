@@ -94,7 +94,15 @@ export function chartLine(line, budget, looks, pinned, tall) {
   return chart;
 }
 
-function ticks(top) {
+// How a figure stands to the pinned design's.
+export function differenceCell(row, other) {
+  if (other?.value === undefined || row.value === undefined) return el("td", {});
+  const change = row.value - other.value;
+  return el("td", { class: "delta" }, signed(change, row.decimals), el("br"),
+    el("span", { class: "limit" }, `${signed((100 * change) / other.value, 1)} %`));
+}
+
+export function ticks(top) {
   const decade = 10 ** Math.floor(Math.log10(top));
   const step = [0.2, 0.5, 1, 2, 5].map((s) => s * decade).find((s) => top / s <= 3);
   return Array.from({ length: Math.floor(top / step) + 1 }, (_, i) => i * step);

@@ -1,7 +1,8 @@
 // The right side: stiffnesses, peaks and the backlash sum; what a pinned design and the solid model say.
 
-import { chartBudget, chartLine } from "./charts.js";
-import { el, signed, symbol } from "./dom.js";
+import { chartBudget, chartLine, differenceCell } from "./charts.js";
+import { el, symbol } from "./dom.js";
+import { gearPanel } from "./gear.js";
 import { state } from "./state.js";
 
 const SHORT = {
@@ -17,6 +18,7 @@ const SHORT = {
 };
 
 const BRIEF = ["K_b_Nm_per_rad", "K_e_Nm_per_rad", "wave_generator_peak_mises_MPa"];
+const GEAR = "gear"; // its figures and its curve come together
 const DRAWN = "backlash"; // the sum and its line come together, and so have one number
 
 export class Figures {
@@ -28,7 +30,8 @@ export class Figures {
     this.agreement = el("p", { id: "agreement", class: "limit" });
     this.peaks = el("section", { class: "peaks" });
     this.backlash = el("section", {});
-    root.append(this.whose, this.stiffness, this.work, this.peaks, this.backlash);
+    this.gear = el("section", { id: "gear" });
+    root.append(this.whose, this.stiffness, this.work, this.peaks, this.backlash, this.gear);
   }
 
   // Every figure keeps the number of the design that it belongs to; an older one never replaces a newer.
@@ -46,6 +49,10 @@ export class Figures {
       this.numbers[DRAWN] = answer.number;
       Object.assign(merged, { budget: answer.budget, line: answer.line });
     }
+    if (answer.gear && newer(GEAR)) {
+      this.numbers[GEAR] = answer.number;
+      merged.gear = answer.gear;
+    }
     this.now = merged;
     this.draw();
   }
@@ -54,7 +61,8 @@ export class Figures {
   of(number) {
     const own = (row) => (this.numbers[row.key] === number ? row : waiting(row));
     const whole = this.numbers[DRAWN] === number ? this.now : { budget: null, line: null };
-    return { stiffness: this.now.stiffness.map(own), peaks: this.now.peaks.map(own), budget: whole.budget, line: whole.line };
+    const gear = this.numbers[GEAR] === number ? this.now.gear : null;
+    return { stiffness: this.now.stiffness.map(own), peaks: this.now.peaks.map(own), budget: whole.budget, line: whole.line, gear };
   }
 
   stale(key) {
@@ -95,6 +103,13 @@ export class Figures {
         chartLine(now.line, now.budget, this.looks, pinned?.line, !this.narrow),
       );
     }
+    this.drawGear(now.gear, pinned?.gear);
+  }
+
+  drawGear(gear, pinned) {
+    this.gear.className = this.stale(GEAR) ? "stale" : "";
+    this.gear.replaceChildren();
+    if (gear) this.gear.append(this.heading("Whole gear, wave generator locked", "arcsec over N·m"), ...gearPanel(gear, pinned));
   }
 
   // Where the answers do not stand beside the sliders: four of them in a line that stays in sight.
@@ -153,11 +168,7 @@ export class Figures {
   }
 
   pinnedCell(row, part) {
-    const other = this.seen.pinned[part].find((entry) => entry.key === row.key);
-    if (other?.value === undefined || row.value === undefined) return el("td", {});
-    const change = row.value - other.value;
-    return el("td", { class: "delta" }, signed(change, row.decimals), el("br"),
-      el("span", { class: "limit" }, `${signed((100 * change) / other.value, 1)} %`));
+    return differenceCell(row, this.seen.pinned[part].find((entry) => entry.key === row.key));
   }
 }
 

@@ -40,9 +40,9 @@ export class Form {
   }
 
   number(entry, id, value) {
-    const field = el("input", { id, inputmode: "decimal", autocomplete: "off", value: value ?? "", placeholder: "none" });
+    const field = el("input", { id, inputmode: "decimal", autocomplete: "off", value: value ?? "", placeholder: entry.usual === null ? "none" : "default" });
     const slider = el("input", {
-      type: "range", min: entry.low, max: entry.high, step: entry.step, value: value ?? entry.low,
+      type: "range", min: entry.low, max: entry.high, step: entry.step, value: value ?? entry.usual ?? entry.low,
       "aria-label": entry.unit ? `${entry.label}, ${entry.unit}` : entry.label,
     });
     slider.addEventListener("input", () => {

@@ -10,13 +10,17 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from studio_page import Page, Server, running, start, write_design
 
-from flexspline.geometry.load import load_design
+import flexspline
+from flexspline.geometry.keys import without_holes
+from flexspline.geometry.load import design_from, load_design
+from flexspline.geometry.template import template
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -87,6 +91,23 @@ def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> Non
     for term in ("shaft", "flexspline", "flank_clearance", "bearing_play", "total"):
         assert page.value(f"backlash_arcsec.{term}") == pytest.approx(terms[term], rel=SAME)
     assert f"± {terms['std']:.1f}" in page.row("backlash_arcsec.total").inner_text()
+
+
+def test_the_whole_gear_follows_and_equals_the_command_s(page: Page) -> None:
+    page.complete()
+    before = page.value("K1_Nm_per_rad")
+    race = "wave_generator.race_thickness_mm"
+    assert page.field(race).input_value() == ""  # the design leaves it to its default
+    page.set(race, "0.9")
+    page.complete()
+    design = design_from(tomllib.loads(template("cup")))
+    gear = flexspline.gear(without_holes(design).changed({race: 0.9}))
+    assert page.value("K1_Nm_per_rad") == pytest.approx(gear.K1_Nm_per_rad, rel=SAME)
+    assert page.value("lost_motion_arcsec") == pytest.approx(gear.lost_motion_arcsec, rel=SAME)
+    assert page.value("K1_Nm_per_rad") > before  # a stiffer race
+    page.set(race, "")
+    page.complete()
+    assert page.value("K1_Nm_per_rad") == before
 
 
 def commands_running(studio: Server) -> list[int]:
