@@ -27,9 +27,10 @@ from study import EXAMPLES, STUDY
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.drive import evaluate_all
 from flexspline.pipeline.study.evaluate import evaluate
-from flexspline.pipeline.study.load import Study, study_from
+from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import source_of, trial_store_of
+from flexspline.pipeline.study.study import Study
 from flexspline.results.study.progress import Watch
 from flexspline.results.study.tables import table_of, write_csv
 

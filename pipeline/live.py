@@ -17,15 +17,8 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
 from flexspline.pipeline.gear import GearCurve, curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.revolved import (
-    contact,
-    ellipse_field,
-    first_ellipse_field,
-    lobes,
-    stiffness,
-    torque_field,
-    with_equivalent_ring,
-)
+from flexspline.pipeline.revolved import contact, lobes, stiffness, with_equivalent_ring
+from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
 RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]

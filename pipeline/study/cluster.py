@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.local_workers import LocalWorkers, WorkerDiedError
+from flexspline.pipeline.study.study import StudyError
 
 CONNECT_S = 30.0
 """[s] distributed's own default."""

@@ -22,14 +22,8 @@ from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_s
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.revolved import (
-    contact,
-    ellipse_peak,
-    lobes,
-    stiffness,
-    torque_peak,
-    with_equivalent_ring,
-)
+from flexspline.pipeline.revolved import contact, lobes, stiffness, with_equivalent_ring
+from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
 from flexspline.pipeline.study.holes import Factor, pierced, with_holes
 

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from flexspline.pipeline.study.load import Study
+from flexspline.pipeline.study.study import Study
 
 Values = Mapping[str, float]
 

@@ -10,9 +10,9 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.figures import USUAL_FIGURES
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import linked
 from flexspline.pipeline.study.scatter import Scatter
+from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.verified import Verified
 
 

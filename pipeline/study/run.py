@@ -14,13 +14,13 @@ from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_c
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
 from flexspline.pipeline.study.holes import DRIFT, Factor, drifts, holes_of
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
 from flexspline.pipeline.study.store import TrialStore, TrialStoreError
+from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.tolerance import Scattered, scattered
 from flexspline.pipeline.study.verify import verify
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexspline.pipeline.study.claims import ROW
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.polish import near, polish_of
+from flexspline.pipeline.study.study import Study
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler

@@ -14,9 +14,9 @@ import numpy as np
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import Solve, needed
 from flexspline.pipeline.study.holes import Factor
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.plan import Plan, from_unit, linked
 from flexspline.pipeline.study.store import Finished, Job, TrialStore
+from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.trial_tables import Values
 
 if TYPE_CHECKING:

@@ -19,9 +19,9 @@ from flexspline.geometry.keys import value_at, with_values
 from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.holes import Factor
-from flexspline.pipeline.study.load import Study, StudyError, location_of
 from flexspline.pipeline.study.plan import Listed, linked
 from flexspline.pipeline.study.source import Planned, solves_of
+from flexspline.pipeline.study.study import Study, StudyError, location_of
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

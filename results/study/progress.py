@@ -8,8 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from flexspline.pipeline.study.drive import Progress
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.study import Study
 from flexspline.results.study.labels import valued
 
 EVERY_S = 5.0

@@ -8,9 +8,9 @@ import numpy as np
 
 from flexspline.geometry.ranges import SMALLEST_NUMBER
 from flexspline.pipeline.study.holes import unfollowed as unfollowed_keys
-from flexspline.pipeline.study.load import Study
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
+from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
 from flexspline.results.study.labels import entry, valued
 

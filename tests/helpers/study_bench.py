@@ -11,7 +11,8 @@ from pathlib import Path
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import USUAL_FIGURES
-from flexspline.pipeline.study.load import Study, study_from
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.study import Study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"

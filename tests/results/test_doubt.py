@@ -11,7 +11,8 @@ from unlike_gears import GEARS
 from flexspline.geometry.design import Design
 from flexspline.pipeline.backlash import backlash
 from flexspline.pipeline.diagnosis.prediction import prediction_of
-from flexspline.pipeline.study.load import StudyError, study_from
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.study import StudyError
 from flexspline.results.console import table
 from flexspline.results.doubt import missing, spread_sentence
 from flexspline.results.records import as_json, backlash_record

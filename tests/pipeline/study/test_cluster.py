@@ -9,9 +9,9 @@ from study_bench import GRID, WALL, quick, study_of
 
 from flexspline.pipeline.study.cluster import worker_pool
 from flexspline.pipeline.study.evaluate import Outcome, Task
-from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.local_workers import RETRIES
 from flexspline.pipeline.study.run import run_study, trial_store_of
+from flexspline.pipeline.study.study import StudyError
 
 MARKS = "FLEXSPLINE_TEST_MARKS"
 

@@ -9,8 +9,8 @@ import flexspline
 from flexspline.geometry.keys import with_values
 from flexspline.pipeline.study.evaluate import TORSION_TOLERANCE, Task, evaluate
 from flexspline.pipeline.study.figures import needed
-from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.source import solves_of
+from flexspline.pipeline.study.study import StudyError
 
 HOLE_FREE = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(
     {"shaft.bolt_count": 0, "flexspline.bolt_count": 0}

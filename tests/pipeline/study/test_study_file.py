@@ -7,8 +7,8 @@ from study_bench import EXAMPLES, GRID, study_of
 
 from flexspline.pipeline.study.database import StorageError
 from flexspline.pipeline.study.figures import SIZES
-from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.schema import WORDS, Method
+from flexspline.pipeline.study.study import StudyError
 
 
 @pytest.mark.parametrize(

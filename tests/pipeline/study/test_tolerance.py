@@ -11,9 +11,9 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import TOTAL
 from flexspline.pipeline.study.indices import sampled_indices
-from flexspline.pipeline.study.load import StudyError
 from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
 from flexspline.pipeline.study.scatter import Scatter, scatter_of
+from flexspline.pipeline.study.study import StudyError
 from flexspline.pipeline.study.tolerance import Input, saltelli
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document

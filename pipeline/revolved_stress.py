@@ -1,0 +1,124 @@
+"""Stress and displacement by the fast model (`pipeline.revolved`): holes and keyway left out.
+
+Solved for 1 GPa, 1 mm and 1 N·m and remembered; `tolerance` is relative, of the peak stress.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+
+from flexspline.fea.axisymmetric.peak_refinement import StressProblem
+from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
+from flexspline.fea.types import Elastic, StressPeak
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.part import Part
+from flexspline.pipeline.revolved import KEPT, of_1_GPa
+
+KEPT_FIELDS = 32
+"""A field is larger than a few figures by a thousand times."""
+
+
+def ellipse_peak(part: Part, w0_mm: float, tolerance: float) -> StressPeak:
+    """The peak stress on the wave generator's ellipse; errors as `torsion`."""
+    found = _ellipse_peak(_body(part), tolerance)
+    return found.times(w0_mm * part.material.youngs_modulus_GPa)
+
+
+def torque_peak(part: Part, torque_Nm: float, tolerance: float) -> StressPeak:
+    """The peak stress under a torque; errors as `torsion`."""
+    return _torque_peak(_body(part), tolerance).times(torque_Nm)
+
+
+def ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
+    """Displacement and stress on the wave generator's ellipse; errors as `torsion`."""
+    return _on_ellipse(part, w0_mm, _ellipse_field(_body(part), tolerance))
+
+
+def first_ellipse_field(part: Part, w0_mm: float, tolerance: float) -> RevolvedField:
+    """`ellipse_field` before any refinement; to be asked for before it, lest the work is done twice."""
+    return _on_ellipse(part, w0_mm, _begun(_body(part), tolerance).newest)
+
+
+def torque_field(part: Part, torque_Nm: float, tolerance: float) -> RevolvedField:
+    """Displacement and stress under a torque; errors as `torsion`."""
+    unit = _torque_field(_body(part), tolerance)
+    return _loaded(unit, torque_Nm, torque_Nm / part.material.youngs_modulus_GPa)
+
+
+def _on_ellipse(part: Part, w0_mm: float, unit: RevolvedField) -> RevolvedField:
+    return _loaded(unit, part.material.youngs_modulus_GPa * w0_mm, w0_mm)
+
+
+def _loaded(unit: RevolvedField, stress: float, displacement: float) -> RevolvedField:
+    """The unit solution times its load."""
+    return replace(
+        unit,
+        displacement=unit.displacement * displacement,
+        stress=unit.stress * stress,
+        peak=unit.peak.times(stress),
+    )
+
+
+def _body(part: Part) -> Part:
+    """What stands for a part whose holes are left out."""
+    return of_1_GPa(part.without_holes())
+
+
+@lru_cache(maxsize=KEPT)
+def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
+    """For w0 = 1 mm."""
+    return ellipse_stress(
+        part.meridian, Elastic.of(part.material), 1.0, part.exclusion_mm, tolerance
+    ).peak
+
+
+@lru_cache(maxsize=KEPT)
+def _torque_peak(part: Part, tolerance: float) -> StressPeak:
+    """For 1 N·m."""
+    return _torque_field(part, tolerance).peak
+
+
+@lru_cache(maxsize=KEPT_FIELDS)
+def _torque_field(part: Part, tolerance: float) -> RevolvedField:
+    """For 1 N·m."""
+    return torsion_stress(
+        part.meridian, Elastic.of(part.material), part.driven, 1.0, part.exclusion_mm, tolerance
+    )
+
+
+class _Refining:
+    """A field that is solved as far as somebody asked."""
+
+    def __init__(self, meshes: Iterator[RevolvedField]) -> None:
+        self._meshes = meshes
+        self.newest = next(meshes)
+
+    def last(self) -> RevolvedField:
+        """The one within the tolerance."""
+        for field in self._meshes:
+            self.newest = field
+        return self.newest
+
+
+@lru_cache(maxsize=1)
+def _begun(part: Part, tolerance: float) -> _Refining:
+    """For w0 = 1 mm; only the newest, for it holds its model."""
+    unit = ellipse(w0_mm=1.0)
+    return _Refining(
+        StressProblem(
+            part.meridian, Elastic.of(part.material), unit, part.exclusion_mm, tolerance
+        ).fields()
+    )
+
+
+@lru_cache(maxsize=KEPT_FIELDS)
+def _ellipse_field(part: Part, tolerance: float) -> RevolvedField:
+    """For w0 = 1 mm."""
+    try:
+        return _begun(part, tolerance).last()
+    except ComputationError:
+        _begun.cache_clear()  # what ended in an error must not pass for the last mesh
+        raise

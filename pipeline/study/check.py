@@ -1,0 +1,144 @@
+"""What a study must keep beyond its schema: keys of the design, spans, figures, and what methods need."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import Any
+
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import MISSING
+from flexspline.geometry.keys import has_table_of, value_at
+from flexspline.geometry.schema import allowed, node_at
+from flexspline.pipeline.study.figures import FIGURES, not_a_figure
+from flexspline.pipeline.study.schema import WORDS, Span, Spread
+from flexspline.pipeline.study.study import Study, StudyError, is_whole, location_of
+
+SPREAD = "backlash_arcsec.std"
+SMALLEST_SPREAD = 1e-6
+"""Of the value: no gauge tells a part in a million, and differences of K drown in rounding."""
+
+
+def check(study: Study) -> None:
+    """Raises StudyError where something cannot be."""
+    file, method = study.file, study.file.run.method
+    for key, span in file.vary.items():
+        _check_design_key(study, "vary", key)
+        _check_span(study, key, span)
+    for key, link in file.link.items():
+        _check_design_key(study, "link", key)
+        if link.of not in {**file.vary, **file.tolerance}:
+            raise StudyError(f'link."{key}".of', link.of, "must be a key of [vary] or [tolerance]")
+        if key in file.vary:
+            raise StudyError(f'link."{key}"', link.of, "the same key stands in [vary]; keep one")
+    for key, spread in file.tolerance.items():
+        _check_design_key(study, "tolerance", key)
+        if (spread.plus_minus is None) == (spread.std is None):
+            raise StudyError(f'tolerance."{key}"', {}, f"must be {WORDS['tolerance.*']}")
+        _check_spread(study, key, spread)
+    for table in ("objective", "constraint"):
+        for key in getattr(file, table):
+            if key not in FIGURES:
+                raise StudyError(f'{table}."{key}"', {}, not_a_figure(key))
+            if key == SPREAD and not _always_stated(study):
+                reason = "needs a standard deviation above 0 in the design's [uncertainty]"
+                raise StudyError(f'{table}."{key}"', {}, reason)
+    for key, limit in file.constraint.items():
+        low, high = limit.min, limit.max
+        if low is None and high is None:
+            raise StudyError(f'constraint."{key}"', {}, f"must be {WORDS['constraint.*']}")
+        if low is not None and high is not None and low > high:
+            raise StudyError(f'constraint."{key}".min', low, f"must be at most max = {high:g}")
+    if method == "tolerance":
+        if file.vary:
+            key = next(iter(file.vary))
+            raise StudyError(
+                f'vary."{key}"', {}, 'method "tolerance" takes [tolerance] instead of [vary]'
+            )
+    elif not file.vary:
+        raise StudyError("vary", MISSING, "give at least one design key to vary")
+    elif file.tolerance:
+        key = next(iter(file.tolerance))
+        raise StudyError(f'tolerance."{key}"', {}, 'needs method = "tolerance"')
+    if file.run.verify and not file.objective:
+        reason = "must be 0 without an [objective], which says what is best"
+        raise StudyError("run.verify", file.run.verify, reason)
+    if method == "optimize" and not file.objective:
+        raise StudyError("objective", MISSING, 'method "optimize" needs at least one figure')
+
+
+def _always_stated(study: Study) -> bool:
+    """Whether some source of doubt is above 0 in every design of the study."""
+    file = study.file
+    for key, std in study.design.uncertainty:
+        name = f"uncertainty.{key}"
+        least = file.vary[name].ends[0] if name in file.vary else std
+        if name not in file.link and least > 0:
+            return True
+    return False
+
+
+def _check_design_key(study: Study, table: str, key: str) -> None:
+    kind = study.design.flexspline.kind
+    node = node_at(location_of(key), kind)
+    if node.get("type") in ("number", "integer") and has_table_of(study.design, key):
+        if table != "tolerance" or value_at(study.design, key) is not None:
+            return
+        reason = "has no value in the design file that could scatter; state it there"
+        raise StudyError(f'tolerance."{key}"', {}, reason)
+    known = _numeric_keys(study.design)
+    near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
+    reason = f"did you mean {near[0]}?" if near and near[0] != key else f"e.g. {known[0]}"
+    raise StudyError(f'{table}."{key}"', {}, f"is no number of the design file; {reason}")
+
+
+def _check_spread(study: Study, key: str, spread: Spread) -> None:
+    """Neither lost in rounding beside the value, nor beyond all that the key may hold."""
+    name, amount = (
+        ("std", spread.std) if spread.plus_minus is None else ("plus_minus", spread.plus_minus)
+    )
+    node = node_at(location_of(key), study.design.flexspline.kind)
+    value = value_at(study.design, key)
+    least = SMALLEST_SPREAD * max(abs(float(value or 0)), float(node["minimum"])) or SMALLEST_SPREAD
+    most = float(node["maximum"])
+    if amount is None or not least <= amount <= most:
+        reason = f"must be a number from {least:g} to {most:g}"
+        raise StudyError(f'tolerance."{key}".{name}', amount, reason)
+
+
+def _numeric_keys(design: Design) -> list[str]:
+    found: list[str] = []
+
+    def walk(prefix: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for name, inner in value.items():
+                walk(f"{prefix}.{name}" if prefix else name, inner)
+        elif isinstance(value, list):
+            for i, inner in enumerate(value):
+                walk(f"{prefix}[{i}]", inner)
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            found.append(prefix)
+
+    walk("", design.model_dump(mode="json", exclude_none=True))
+    return found
+
+
+def _check_span(study: Study, key: str, span: Span) -> None:
+    name = f'vary."{key}"'
+    listed = span.values is not None
+    if listed and (span.min, span.max, span.steps) != (None, None, None):
+        raise StudyError(name, span.model_dump(exclude_none=True), f"must be {WORDS['vary.*']}")
+    if not listed and (span.min is None or span.max is None):
+        missing = "min" if span.min is None else "max"
+        raise StudyError(f"{name}.{missing}", MISSING, f"give {WORDS['vary.*']}")
+    low, high = span.ends
+    if not listed and low >= high:
+        raise StudyError(f"{name}.min", low, f"must be below max = {high:g}")
+    node = node_at(location_of(key), study.design.flexspline.kind)
+    for value in span.values or span.ends:
+        if is_whole(study.design, key) and value != int(value):
+            raise StudyError(name, value, "must hold whole numbers")
+        least = float(node["minimum"])
+        most = float(node.get("maximum", value))
+        if not least <= value <= most:
+            words = allowed(location_of(key), study.design.flexspline.kind)
+            raise StudyError(name, value, f"must be {words}")

@@ -1,0 +1,72 @@
+"""A study that was read and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import STEP
+from flexspline.geometry.schema import Location, node_at
+from flexspline.pipeline.study.figures import TOTAL, USUAL_FIGURES
+from flexspline.pipeline.study.schema import StudyFile
+
+
+class StudyError(DesignError):
+    """A study file that cannot be accepted: key, value, and what would work."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study that was read and checked, and the design that it varies."""
+
+    name: str
+    file: StudyFile
+    design: Design
+
+    @cached_property
+    def whole(self) -> frozenset[str]:
+        """Keys that hold whole numbers."""
+        return frozenset(k for k in self.file.vary if is_whole(self.design, k))
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The design keys whose values change from design to design."""
+        return (*self.file.vary, *self.file.link, *self.file.tolerance)
+
+    @property
+    def asked(self) -> frozenset[str]:
+        """The figures that a design must have: objectives and constraints, else the usual ones."""
+        if self.file.run.method == "tolerance":
+            return frozenset(self.outputs)
+        return frozenset({**self.file.objective, **self.file.constraint} or USUAL_FIGURES)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The figures whose scatter a tolerance study tells: the objectives, or the backlash."""
+        return tuple(self.file.objective) or (TOTAL,)
+
+    def is_answered(self, figures: Mapping[str, float]) -> bool:
+        """Whether a design has every figure asked for; what else could not be solved costs only itself."""
+        return self.asked <= figures.keys()
+
+
+def location_of(key: str) -> Location:
+    """``shaft.segment[1].length_mm`` → ("shaft", "segment", 1, "length_mm")."""
+    parts: list[str | int] = []
+    for name in key.split("."):
+        match = STEP.fullmatch(name)
+        if match is None:
+            parts.append(name)
+            continue
+        parts.append(match[1])
+        if match[2] is not None:
+            parts.append(int(match[2]))
+    return tuple(parts)
+
+
+def is_whole(design: Design, key: str) -> bool:
+    """Whether a design key holds a whole number."""
+    return node_at(location_of(key), design.flexspline.kind).get("type") == "integer"
