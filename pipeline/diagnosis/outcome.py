@@ -28,6 +28,8 @@ class NamedCause:
     """Units under test that alone show it; empty: all do."""
     ahead_Nm: float = 0.0
     """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
+    widest_arcsec: float | None = None
+    """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
 
     @property
     def is_surplus(self) -> bool:

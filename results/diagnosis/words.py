@@ -41,6 +41,9 @@ VERDICTS = {
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
+WIDER = 1.1
+"""Times the width at T = 0 that a friction loop is somewhere else, where it is said."""
+
 
 def channel_words(name: str) -> str:
     """A channel's name in words; a design key without its unit; an unknown one as it is."""
@@ -93,10 +96,13 @@ def title_of(cause_id: str, magnitude: float = 0.0) -> str:
 
 def cause_title(cause: NamedCause) -> str:
     """What a person reads of a cause found."""
-    title = title_of(cause.id, cause.magnitude)
+    more = []
     if cause.ahead_Nm:
-        return f"{title} (of it {figures_text(cause.ahead_Nm)} N·m ahead of the gap)"
-    return title
+        more.append(f"of it {figures_text(cause.ahead_Nm)} N·m ahead of the gap")
+    if cause.widest_arcsec is not None and cause.widest_arcsec > WIDER * abs(cause.magnitude):
+        more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
+    title = title_of(cause.id, cause.magnitude)
+    return f"{title} ({', '.join(more)})" if more else title
 
 
 def capital(text: str) -> str:

@@ -8,6 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.micro_slip import (
+    LEAST_POWER,
+    MOST_POWER,
+    POWER,
+    POWERS,
+    micro_slips,
+)
 from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -15,8 +22,11 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 
 FRICTION = "friction_hysteresis"
 """This cause's id: the only one that may lie ahead of the teeth."""
-THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.9)
+THRESHOLDS = (0.015, 0.04, 0.08, 0.15, 0.25, 0.4)
 """Of the elements, as shares of the largest torque."""
+LARGEST_SHARP = 0.5
+"""Of the largest torque: a single element of a larger threshold yields, after a turn there, only under torque
+of the other sign. A gear's friction does not; a lock that gives way does (`sweep/rig_nuisance.py`)."""
 SINGLE, EVEN, EXPONENTIAL, DAHL = 0, 1, 2, 3
 """How thresholds are spread: all at r; evenly, with mean r; exponentially; or one element of Dahl's."""
 ALIKE, GROWING, CLOSING = 0, 1, 2
@@ -24,8 +34,6 @@ ALIKE, GROWING, CLOSING = 0, 1, 2
 SPREAD_ELEMENTS = 14
 """Against 4000, the first loading of the even spread is within 0.13 % of its end, of the exponential one,
 whose tail is cut, within 3.6 %."""
-WIDEST_SPREAD = 0.5
-"""Of the largest torque: spread evenly up to twice the mean, the widest element just yields there."""
 REACH, MOST_REACH = 0.35, 0.8
 """Of the largest torque, start and limit of what `loaded` = CLOSING has: at 0.8 the loop is still
 exp(−1/(2·0.8²)) = 46 % as wide at the largest torque, and closes no more."""
@@ -56,6 +64,8 @@ class FrictionHysteresis(Cause):
     closing (`loaded`); and whether the friction also takes torque at the loop's ends (`held` = 1) or
     leaves the chord as it is (`held` = 0).
 
+    Micro-slip is an element of another kind: no threshold, but a `power` of torque (`micro_slip.py`).
+
     Friction ahead of the teeth (output bearing, seals) is an element of another kind: its amplitude is a
     torque F [N·m], and gap and elasticity act on T − F·z (`sliding.py`). It adds nothing to the angle by
     itself; with no gap it looks like a single threshold at F, of amplitude F times the compliance.
@@ -65,7 +75,7 @@ class FrictionHysteresis(Cause):
     title = "friction hysteresis"
     unit = "arcsec"
     positive = True
-    tunable = ("threshold_Nm", "exponent", "reach")
+    tunable = ("threshold_Nm", "exponent", "reach", POWER)
     shape_doubt = 0.015
     """Of 12 made-up records one and two deviations cover 58 and 83 %; without it, 42 and 67."""
     vary = "torque_rate"
@@ -78,22 +88,29 @@ class FrictionHysteresis(Cause):
         found: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
         least = deadband_Nm(rig.history) / largest
-        shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-3]]
+        shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-1]]
         for share in shares:
             for spread, loaded, held, start in VARIANTS:
-                if share > WIDEST_SPREAD and (loaded or spread):
-                    continue
                 found.append({
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
                     "deadband_Nm": deadband, "exponent": float(spread == DAHL),
                     "reach": REACH * (loaded == CLOSING),
                 })  # fmt: skip
-        return found
+        return found + [
+            {POWER: p, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
+            for p in POWERS for held in (1, 0)
+        ]  # fmt: skip
 
     def possible(self, shape: Shape) -> bool:
+        if POWER in shape:
+            return LEAST_POWER <= shape[POWER] <= MOST_POWER
         return (
             shape["threshold_Nm"] >= shape["deadband_Nm"]
+            and (
+                shape["spread"] != SINGLE
+                or shape["threshold_Nm"] <= LARGEST_SHARP * shape["largest_torque_Nm"]
+            )
             and shape["exponent"] <= MOST_BENT
             and shape["reach"] < MOST_REACH
         )
@@ -102,9 +119,17 @@ class FrictionHysteresis(Cause):
         return self.columns_of_all([shape], history)[0]
 
     def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
-        if any(AHEAD in s for s in shapes):
-            behind = iter(self.columns_of_all([s for s in shapes if AHEAD not in s], history))
-            return [np.zeros((len(history), 1)) if AHEAD in s else next(behind) for s in shapes]
+        """Nothing for elements ahead of the teeth: they are in the history's torque."""
+        own = [s for s in shapes if AHEAD not in s and POWER not in s]
+        behind = iter(self._behind(own, history) if own else ())
+        slipping = iter(micro_slips([s for s in shapes if POWER in s], history))
+        none = np.zeros((len(history), 1))
+        return [
+            none if AHEAD in s else next(slipping) if POWER in s else next(behind) for s in shapes
+        ]
+
+    def _behind(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+        """Columns of elements with a threshold."""
         stopped = [s for s in shapes if s["spread"] != DAHL]
         sloped = [s for s in shapes if s["spread"] == DAHL]
         states = dict(zip(map(id, sloped), self._dahls(sloped, history), strict=True))
@@ -177,11 +202,19 @@ class FrictionHysteresis(Cause):
 
         Of torque carried ahead of the teeth it is what elasticity makes of it.
         """
+        return float(self._widths(elements, rig)[LOOP_ROWS // 2])
+
+    def widest_arcsec(self, elements: Sequence[Element], rig: Rig) -> float:
+        """Full width of that loop where it is widest: friction that grows with torque has none at T = 0."""
+        return float(self._widths(elements, rig).max())
+
+    def _widths(self, elements: Sequence[Element], rig: Rig) -> np.ndarray:
+        """(LOOP_ROWS,) width of the closed loop from −T to T."""
         largest = rig.torque_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
         up = np.linspace(-largest, largest, LOOP_ROWS)
         loop = np.concatenate([up, up[::-1], up, up[::-1]])
         none = np.zeros(len(loop), int)
         teeth = self.at_teeth(elements, History(loop, none, none))
         angle = rig.compliance * (teeth.torque_Nm - loop) + self.angle_arcsec(elements, teeth)
-        rising, falling = 2 * LOOP_ROWS + LOOP_ROWS // 2, 3 * LOOP_ROWS + LOOP_ROWS // 2
-        return float(angle[falling] - angle[rising])
+        rising, falling = angle[2 * LOOP_ROWS : 3 * LOOP_ROWS], angle[3 * LOOP_ROWS :]
+        return falling[::-1] - rising

@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
-from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, FrictionHysteresis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -97,6 +97,13 @@ class SweepFit:
             twist = known_causes()[SOFT].angle_arcsec(elements[SOFT], History(ends, none, none))
             found[FRICTION] += float(twist[1] - twist[0])
         return found
+
+    def widest_loop_arcsec(self) -> float:
+        """Of friction's closed loop at the largest amplitude."""
+        friction = known_causes()[FRICTION]
+        assert isinstance(friction, FrictionHysteresis)
+        widest = friction.widest_arcsec(self.elements()[FRICTION], self.measured_rig())
+        return max(widest, self.magnitudes()[FRICTION])
 
     def magnitude_stds(self) -> dict[str, float]:
         """Their standard deviations by the posterior, to first order."""

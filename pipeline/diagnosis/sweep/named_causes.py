@@ -44,6 +44,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         found.append(NamedCause(
             c, chance, rivals, magnitude[c], std[c], known_causes()[c].unit, nats,
             identified.rms[c], _own_units(explained, c), _ahead_Nm(explained, c),
+            identified.fit.widest_loop_arcsec() if c == FRICTION else None,
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()["torque_offset"]
