@@ -31,16 +31,21 @@ OFFSET_LEAST = (0.012, 0.005)
 
 
 def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
-    """The race again with an offset of the torque reading, where the record shows one; else `plain`."""
+    """The race again with an offset of the torque reading, where the record shows one; else `plain`.
+
+    It starts from where the gap's step fits best of all places, if that is clearly not zero: what a race
+    with the gap at zero leaves shows a large offset at a wrong place, its terms bent to the rows between.
+    """
     prepared, seen = plain.prepared, plain.crossing
-    if seen is not None and _counts(seen, prepared):
-        return _raced_with(prepared, seen.offset_Nm) or plain
     sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
     guess = first_offset(sweep.history, sweep.angle_arcsec, gap, prepared.band_Nm)
-    if abs(guess) < prepared.band_Nm / 2:
-        return plain
-    shifted = _raced_with(prepared, guess)
-    return shifted if shifted is not None and gained(shifted, plain) > NAMED_COST else plain
+    if abs(guess) >= prepared.band_Nm / 2:
+        shifted = _raced_with(prepared, guess)
+        if shifted is not None and gained(shifted, plain) > NAMED_COST:
+            return shifted
+    if seen is not None and _counts(seen, prepared):
+        return _raced_with(prepared, seen.offset_Nm) or plain
+    return plain
 
 
 def _counts(seen: Crossing, prepared: PreparedSweep) -> bool:
