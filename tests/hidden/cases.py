@@ -20,9 +20,11 @@ from hidden.elastic import (
 )
 from hidden.foreign import KINDS, UNIT_GAIN, foreign, unit_gain
 from hidden.friction import draw_friction
-from hidden.plans import FOR_CAUSE, FOR_FOREIGN, TRAPS, away_from_reference
+from hidden.micro_slip import draw_micro_slip
+from hidden.plans import FOR_CAUSE, FOR_FOREIGN, FOR_FORM, TRAPS, away_from_reference
 from hidden.program import Plan, Program
 from hidden.reading import draw_kinematic, draw_torque_offset
+from hidden.rig_faults import RIG_FAULTS
 from hidden.slow import draw_creep, draw_drift, draw_rate
 from hidden.surroundings import REFERENCE_C
 from hidden.truth import CALIBRATED, standing
@@ -44,12 +46,15 @@ CAUSES: dict[str, Callable[[Setting, np.random.Generator], Hidden]] = {
 }
 FORMS: dict[str, tuple[str, Callable[[Setting, np.random.Generator], Hidden]]] = {
     "friction_ahead": ("friction_hysteresis", draw_friction_ahead),
+    "micro_slip": ("friction_hysteresis", draw_micro_slip),
 }
 """Further forms of a cause, by name; drawn only where asked for, so that old seeds keep their records."""
 DECIDABLE = 6.0
 """Noise units, 18 nats, thrice what docs/contract.md calls ambiguous."""
 FOREIGN_STANDING = (12.0, 30.0, 90.0)
 """Noise units beyond the best two causes at the three levels; 10 are asked for."""
+ONE_WAY = ("softening", "leading_output", "lock_slips", "lock_yields", "stick_slip")
+"""Foreign effects whose reverse is something else."""
 KEEP_WEAK = 0.2
 """Of the singles below that stay: a wrong name would be wrong there too."""
 SHARES = {"clean": 0.2, "single": 0.39, "pair": 0.15, "foreign": 0.16, "undecidable": 0.1}
@@ -98,9 +103,14 @@ def _clean(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case:
 
 
 def _single(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:
-    cause, draw = FORMS.get(cause) or (cause, CAUSES[cause])
+    form = cause
+    cause, draw = FORMS.get(form) or (form, CAUSES[form])
     level = int(rng.integers(3))
-    bench = Bench(FOR_CAUSE[cause], rng, 1 if cause in CALIBRATED else _several(rng, 0.05))
+    bench = Bench(
+        FOR_FORM.get(form) or FOR_CAUSE[cause],
+        rng,
+        1 if cause in CALIBRATED else _several(rng, 0.05),
+    )
     try:
         hidden = draw(bench.setting(level), rng)
     except CannotShowError:  # the programme drawn cannot show this cause
@@ -155,7 +165,7 @@ def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Cas
     only = int(rng.integers(len(bench.gears))) if several else None
     setting = bench.setting(level)
     try:
-        shape, said = unit_gain(rng) if several else KINDS[kind](setting, rng)
+        shape, said = unit_gain(rng) if several else (KINDS | RIG_FAULTS)[kind](setting, rng)
         one = foreign(kind, shape, said, 1.0)
         found = standing(bench.measured((one,), only), bench.rig, (one.cause,))
     except CannotShowError:
@@ -168,7 +178,7 @@ def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Cas
     size = FOREIGN_STANDING[level] * float(rng.uniform(0.9, 1.3)) / left
     if size > 0.35 * setting.windup:  # nobody would call that a gear
         return None
-    shape_sign = 1 if kind in ("softening", "leading_output") else rng.choice([-1, 1])
+    shape_sign = 1 if kind in ONE_WAY else rng.choice([-1, 1])
     hidden = foreign(
         kind, shape, f"{said}, one cause mimics {absorbed:.2f} of it", size * shape_sign
     )

@@ -33,6 +33,13 @@ FOR_CAUSE: dict[str, Plan] = {
 }
 """A loop under friction is told from one under rate by several rates: those two get them."""
 
+FOR_FORM: dict[str, Plan] = {
+    "micro_slip": Plan(
+        several_rates=True, several_peaks=True, with_columns=("time_s",), cycles=(3, 8)
+    ),
+}
+"""Of forms that only other programmes than their cause's show: micro-slip has no loop of one size."""
+
 FOR_FOREIGN: dict[str, Plan] = {
     "slow_wave": Plan(with_columns=("time_s",), cycles=(3, 8)),
     "zero_step": Plan(with_columns=("time_s", "cycle"), cycles=(3, 8)),
@@ -49,6 +56,18 @@ FOR_FOREIGN: dict[str, Plan] = {
     ),
     "hum": Plan(with_columns=("time_s",), rows=(800, 3000), cycles=(2, 5)),
     "leading_output": Plan(with_columns=("time_s",)),
+    "lock_slips": Plan(with_columns=("time_s",), cycles=(3, 8)),
+    "lock_yields": Plan(with_columns=("time_s",), cycles=(3, 8)),
+    "ringing": Plan(
+        wave=("triangle", "staircase", "trapezoid"),
+        with_columns=("time_s",),
+        rows=(1000, 3000),
+        cycles=(2, 5),
+    ),
+    "stick_slip": Plan(with_columns=("time_s",), rows=(600, 3000)),
+    "tooth_ripple": Plan(
+        places=("even", "random"), with_columns=("input_angle_deg", "cycle"), cycles=(9, 24)
+    ),
 }
 
 

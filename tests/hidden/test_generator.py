@@ -12,8 +12,10 @@ from hidden.elastic import chord_asymmetry, hardening_ratio
 from hidden.foreign import KINDS
 from hidden.friction import FAMILIES, closed_loop_width, slipping
 from hidden.gear import altered, draw_gear, draw_rig
+from hidden.micro_slip import Joint
 from hidden.noise import Noise, draw_noise, sample, spread
 from hidden.program import Plan, draw_program
+from hidden.rig_faults import RIG_FAULTS
 from hidden.slow import amounts, kelvin_chain, per_decade, per_hour, shift_per_rate
 from hidden.truth import standing
 
@@ -178,7 +180,7 @@ def test_a_single_stands_out_and_shows_in_the_file(cause: str) -> None:
     assert {x.count(",") for x in lines} == {lines[0].count(",")}
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [*KINDS, *RIG_FAULTS])
 def test_a_foreign_effect_is_not_absorbed(kind: str) -> None:
     case = draw_case(13, 0, "foreign", kind)
     assert standing(list(case.units), case.rig, (f"foreign:{kind}",)).of_two(0) >= 10
@@ -219,3 +221,21 @@ def test_friction_ahead_of_the_gap_is_a_play_and_moves_the_crossing() -> None:
 def test_width_of_friction_ahead_of_the_gap(bearing: Bearing) -> None:
     # far from its reach the bearing holds all its friction: twist 2·share at wind-up 1
     assert loop_width(bearing, 0.06) == pytest.approx(0.12, rel=1e-4)
+
+
+@pytest.mark.parametrize(("chi", "capacity"), [(-0.7, 1.5), (-0.1, 1.5), (-0.5, 5.0)])
+def test_a_joint_starts_at_its_first_stiffness_and_loses_energy_as_a_power(
+    chi: float, capacity: float
+) -> None:
+    """T^(χ + 3) where few elements slip; source: Segalman, J. Appl. Mech. 72, 752 (2005), eq. 24."""
+    assert Joint(chi, capacity).move(1e-6) == pytest.approx(1e-6, rel=1e-3)
+
+    def loss(amplitude: float) -> float:
+        leg = np.linspace(0, 1, 61)[1:]
+        loop = amplitude * np.tile(np.concatenate([leg, 1 - leg, -leg, leg - 1]), 2)
+        joint = Joint(chi, capacity)
+        x = np.array([joint.move(q) for q in loop])
+        return float(np.trapezoid(loop[-241:], x[-241:]))
+
+    # at 5 and 10 % of the torque; the slip itself softens the joint, which adds up to 0.25 to the exponent
+    assert np.log2(loss(0.1) / loss(0.05)) == pytest.approx(chi + 3 + 0.1, abs=0.15)

@@ -13,7 +13,7 @@
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
-| test the residual in every channel | `residual_tests.py`, `unexplained.py` |
+| test the residual in every channel, and for jumps | `residual_tests.py`, `jumps.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
@@ -36,6 +36,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurem
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels
+from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
@@ -85,11 +86,12 @@ def diagnose_sweep(
         return _insufficient(hidden), None
     causes = named_causes(explained)
     tests = channel_tests(explained.prepared, identified.fit)
+    jumps = jumps_of(explained.prepared, identified.fit)
     decision = decided(
         causes,
-        unexplained_of(identified, tests),
+        unexplained_of(identified, tests, jumps),
         named_rms=hypot(*(c.rms_arcsec for c in causes)),
-        unnamed_rms=identified.unnamed_rms,
+        unnamed_rms=hypot(identified.unnamed_rms, jumps.rms_arcsec if jumps else 0.0),
         structure=any(t.p_value < SURE for t in tests),
     )
     broken = broken_limit(sweep, explained, decision.causes)

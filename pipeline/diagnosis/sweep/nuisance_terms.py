@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     over_unit,
     waves_and_steps,
 )
+from flexspline.pipeline.diagnosis.sweep.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     Made,
     leading,
@@ -78,6 +79,8 @@ KINDS = (
     _Kind(over_temperature),
     _Kind(over_position),
     _Kind(over_unit),
+    _Kind(giving_way),
+    _Kind(ringing, less_linear=True),
 )
 
 

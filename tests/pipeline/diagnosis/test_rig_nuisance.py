@@ -1,0 +1,142 @@
+"""What a rig does and no gear: a lock that gives way, ringing, stick-slip; against closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden.adapter import diagnose
+from hidden.cases import draw_case
+from histories import PREDICTION, sweep
+
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, jumps_of
+from flexspline.pipeline.diagnosis.sweep.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.race import run_race
+from flexspline.pipeline.diagnosis.sweep.rig_nuisance import YIELDS, giving_way, ringing
+
+HELD = replace(sweep(cycles=3, rows=400, hold=100), temperature_C=None, input_angle_deg=None)
+"""0.02 N·m and 5 s a row: ramps of 100 rows, holds of 100."""
+TURNING = replace(sweep(cycles=3, rows=400, hold=0), temperature_C=None, input_angle_deg=None)
+
+
+def line(torque: np.ndarray) -> np.ndarray:
+    return 10.0 * torque + 30.0 * np.sign(torque)
+
+
+def record(history, angle: np.ndarray) -> Sweep:
+    return Sweep(
+        Path("rig.csv"), history, angle, ("",), (tuple(np.unique(history.cycle) + 1.0),),
+        np.arange(len(angle)) + 2, cycles_recorded=True,
+    )  # fmt: skip
+
+
+def test_corners_of_holds_and_of_turns() -> None:
+    """In shares of the ramps' rate: 1 at a hold's ends, 2 where a triangle turns; within a row."""
+    held = corners_of(HELD)
+    first = [(c.time_s / 5, c.change) for c in held[:4]]
+    # the rows 100 to 199 hold 2 N·m; then 200 rows down, and a hold at −2 N·m
+    assert [t for t, _ in first] == pytest.approx([99, 199, 399, 499], abs=1.01)
+    assert [c for _, c in first] == pytest.approx([-1, -1, 1, 1], rel=0.01)
+    turned = corners_of(TURNING)
+    assert [c.time_s / 5 for c in turned[:3]] == pytest.approx([99, 299, 499], abs=1.01)
+    assert [c.change for c in turned[:3]] == pytest.approx([-2, 2, -2], rel=0.01)
+
+
+def test_a_sine_has_no_corners() -> None:
+    t = np.arange(1200)
+    sine = replace(TURNING, torque_Nm=2 * np.sin(2 * np.pi * t / 400))
+    assert corners_of(sine) == []
+
+
+def test_a_ring_after_a_corner_is_among_the_columns() -> None:
+    """change·exp(−ζωt)·sin(ωt√(1 − ζ²)), t from the corner: in the span of two columns."""
+    damping, corners = 0.05, corners_of(TURNING)
+    period = 15.0 * 1.12**6  # three rows of 5 s, and six steps of the grid
+    omega = 2 * np.pi / period
+    rung = np.zeros(len(TURNING))
+    for c in corners:
+        t = TURNING.time_s - c.time_s
+        wave = np.exp(-damping * omega * t) * np.sin(omega * np.sqrt(1 - damping**2) * t)
+        rung += c.change * np.where(t >= 0, wave, 0.0)
+    pairs = [columns for _, _, columns in ringing(Rig(PREDICTION, TURNING))]
+    left = min(
+        float(np.linalg.norm(rung - p @ np.linalg.lstsq(p, rung, rcond=None)[0])) for p in pairs
+    )
+    assert left < 1e-9 * np.linalg.norm(rung)
+    assert isinstance(corners[0], Corner)
+
+
+def test_a_lock_that_follows_beyond_its_capacity_is_among_the_columns() -> None:
+    """s = clip(s, T − C, T + C): it moves beyond the capacity C and stays where it is."""
+    capacity, at = YIELDS[2] * 2.0, 0.0
+    way = np.empty(len(HELD))
+    for k, torque in enumerate(HELD.torque_Nm):
+        at = min(max(at, torque - capacity), torque + capacity)
+        way[k] = at
+    columns = [c[:, 0] for _, _, c in giving_way(Rig(PREDICTION, HELD))]
+    assert min(np.abs(c - way).max() for c in columns) < 1e-12
+
+
+def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
+    """Held at 2 N·m it goes on by 0.04 arcsec a second for 500 s; creep would come back at zero."""
+    rng = np.random.default_rng(1)
+    T = HELD.torque_Nm
+    way = np.cumsum(5.0 * 0.1 * np.sign(T) * np.maximum(np.abs(T) - 1.6, 0.0))
+    outcome, _ = diagnose_sweep(
+        record(HELD, line(T) + way + rng.normal(0, 0.5, len(T))), PREDICTION
+    )
+    assert outcome.verdict == "unknown"
+    assert outcome.unexplained[0].channel == "torque_amplitude"
+    assert "gives way" in outcome.unexplained[0].what
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"), [("lock_slips", 2), ("lock_yields", 1), ("ringing", 1), ("stick_slip", 4)]
+)
+def test_hidden_in_a_made_up_record_it_has_no_name(kind: str, number: int) -> None:
+    assert diagnose(draw_case(71, number, "foreign", kind))["verdict"] == "unknown"
+
+
+def saw_tooth(sign: float) -> np.ndarray:
+    """(n,) 4 arcsec behind the motion, then there at once, at places drawn at random."""
+    rng, behind, limit = np.random.default_rng(6), 0.0, 4.0
+    out = np.empty(len(TURNING))
+    for k, step in enumerate(np.diff(TURNING.torque_Nm, prepend=0.0)):
+        behind -= 50.0 * step
+        if abs(behind) > limit:
+            behind, limit = 0.0, 4.0 * float(np.exp(0.4 * rng.normal()))
+        out[k] = sign * behind
+    return out
+
+
+def jumps(added: np.ndarray, step: float = 0.0) -> Jumps | None:
+    rng = np.random.default_rng(7)
+    angle = line(TURNING.torque_Nm) + added + rng.normal(0, 0.4, len(TURNING))
+    angle = np.round(angle / step) * step if step else angle
+    explained = run_race(prepare(record(TURNING, angle), PREDICTION))
+    return jumps_of(explained.prepared, explained.identified.fit)
+
+
+def test_random_stick_slip_jumps_with_the_motion() -> None:
+    found = jumps(saw_tooth(1.0))
+    assert found is not None
+    # ramps from 0 to heights h, log-normal about 4 with the log's deviation 0.4: E[h^k] = 4^k e^(0.08 k²)
+    mean, square, cube = (4**k * np.exp(0.08 * k * k) for k in (1, 2, 3))
+    variance = cube / (3 * mean) - (square / (2 * mean)) ** 2
+    # 110 ramps: √(2/110) of the variance, and as much again for their heights; two deviations of the rms
+    assert found.rms_arcsec == pytest.approx(np.sqrt(variance), rel=0.2)
+
+
+@pytest.mark.parametrize("step", [0.0, 0.8])
+def test_noise_and_an_encoder_s_steps_are_no_jumps(step: float) -> None:
+    assert jumps(np.zeros(len(TURNING)), step) is None
+
+
+def test_jumps_against_the_motion_are_none() -> None:
+    assert jumps(saw_tooth(-1.0)) is None
