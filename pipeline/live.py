@@ -17,11 +17,11 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
 from flexspline.pipeline.gear import GearCurve, curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.revolved import contact, lobes, stiffness, with_equivalent_ring
+from flexspline.pipeline.load_cases import CASES, RimCase
+from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
-RimCase = Literal["K_b_lobes", "K_b_lobes_contact", "K_b_lobes_unsupported"]
 
 
 def left_out(design: Design) -> tuple[str, ...]:
@@ -50,10 +50,7 @@ def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
 
 def rim(design: Design, case: RimCase) -> Stiffness:
     """K_b of a lobe case; errors as `torsion`."""
-    part, tolerance = with_equivalent_ring(design).part("flexspline"), _tolerance(design)
-    if case == "K_b_lobes_contact":
-        return contact(part, tolerance)
-    return lobes(part, case == "K_b_lobes", tolerance)
+    return CASES[case].fast(with_equivalent_ring(design).part("flexspline"), _tolerance(design))
 
 
 def gear(design: Design) -> GearCurve:

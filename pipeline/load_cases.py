@@ -1,4 +1,7 @@
-"""What the lobes and the wave generator do to the flexspline's rim: axisymmetric or solid."""
+"""What the lobes and the wave generator do to the flexspline's rim: axisymmetric, solid, or the fast model.
+
+Commands, studies and the live page take their load cases of the rim from `CASES`.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from flexspline.fea.deadline import Deadline
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
+from flexspline.geometry.part import Part
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.ellipse_peak import ellipse_peak
@@ -24,6 +28,7 @@ from flexspline.pipeline.enclosed_part import (
 )
 from flexspline.pipeline.enclosure import answered_within
 from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.revolved import contact, lobes
 from flexspline.pipeline.solid_lobes import solid_lobes
 
 RimCase = Literal["lobes", "lobes_contact", "lobes_unsupported"]
@@ -36,11 +41,18 @@ class LoadCase:
     """How one load case of the rim is solved, and what it is called while it is.
 
     `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part.
+    `fast` is for studies and the live page: of a part, to a relative tolerance, nothing written to the cache.
     """
 
     title: str
     revolved: Callable[[PartModel], Stiffness]
     solid: Callable[[PartModel], Stiffness] | None
+    fast: Callable[[Part, float], Stiffness]
+
+
+def figure_of(case: RimCase) -> str:
+    """result.json's name of a case's stiffness, without its unit."""
+    return f"K_b_{case}"
 
 
 @dataclass(frozen=True)
@@ -59,7 +71,7 @@ def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
     """By the model that the part's stiffness uses; `tried` hears what fails."""
     every = flexspline.axisymmetric or may_answer(flexspline)
     found = {
-        f"K_b_{case}": tried.get(f"K_b_{case}", partial(rim_stiffness, flexspline, case))
+        figure_of(case): tried.get(figure_of(case), partial(rim_stiffness, flexspline, case))
         for case in RIM_CASES
         if every or CASES[case].solid is not None
     }
@@ -105,7 +117,7 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
 def _of_case(
     flexspline: PartModel, case: RimCase, make: Callable[[Meridian, Deadline], Stiffness]
 ) -> Stiffness:
-    return by_harmonics(flexspline, f"K_b_{case}", CASES[case].title, make)
+    return by_harmonics(flexspline, figure_of(case), CASES[case].title, make)
 
 
 def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
@@ -133,12 +145,14 @@ CASES: Mapping[RimCase, LoadCase] = {
         "lobes",
         partial(_revolved_lobes, supported=True),
         partial(solid_lobes, supported=True),
+        lambda part, tolerance: lobes(part, True, tolerance),
     ),
-    "lobes_contact": LoadCase("lobes, rim resting on the seat", _revolved_contact, None),
+    "lobes_contact": LoadCase("lobes, rim resting on the seat", _revolved_contact, None, contact),
     "lobes_unsupported": LoadCase(
         "lobes, rim unsupported",
         partial(_revolved_lobes, supported=False),
         partial(solid_lobes, supported=False),
+        lambda part, tolerance: lobes(part, False, tolerance),
     ),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""

@@ -10,9 +10,9 @@ from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import series_stiffness
-from flexspline.pipeline.load_cases import RIM_CASES
+from flexspline.pipeline.load_cases import RIM_CASES, figure_of
 
-FIGURES = ("K_b", *(f"K_b_{case}" for case in RIM_CASES), "K_e")
+FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
 """In the order of the reports."""
 
 

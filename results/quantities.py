@@ -17,12 +17,14 @@ _STIFFNESS = "N·m/rad"
 
 
 def _stiffness(
-    key: str, digits: int, symbol: str, name: str, bounded: str, note: str
+    key: str, digits: int, symbol: str, name: str, short_name: str, bounded: str, note: str
 ) -> tuple[Quantity, Quantity]:
     """A stiffness and its bounds."""
     value, bounds = f"{key}_Nm_per_rad", f"{key}_bounds_Nm_per_rad"
     return (
-        Quantity(value, value, _STIFFNESS, name, symbol, digits=digits, note=note),
+        Quantity(
+            value, value, _STIFFNESS, name, symbol, digits=digits, note=note, short_name=short_name
+        ),
         Quantity(bounds, bounds, _STIFFNESS, f"Bounds of the {bounded}", symbol, "bounds", digits),
     )
 
@@ -35,6 +37,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         5,
         "K_b",
         "Flexspline stiffness, even torque on the ring (uniform)",
+        "flexspline, uniform",
         "flexspline stiffness (uniform)",
         "ring turned rigidly, mount held",
     ),
@@ -43,6 +46,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         4,
         "K_b,lobes",
         "Flexspline stiffness, torque at the two lobes (lobes)",
+        "load at two lobes",
         "flexspline stiffness (lobes)",
         "cos² traction within ±30° of the major axis, seat held radially",
     ),
@@ -51,6 +55,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         4,
         "K_b,contact",
         "Flexspline stiffness, torque at the two lobes, rim may lift off",
+        "lobes, rim may lift",
         "flexspline stiffness, lobes, rim may lift off",
         "same traction, the rim rests on the seat and may lift off",
     ),
@@ -59,6 +64,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         4,
         "K_b,free",
         "Flexspline stiffness, torque at the two lobes, rim unsupported",
+        "lobes, rim free",
         "flexspline stiffness, lobes, rim unsupported",
         "same traction, nothing on the seat",
     ),
@@ -67,6 +73,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         5,
         "K_e",
         "Output shaft stiffness",
+        "output shaft",
         "output shaft stiffness",
         "grip turned rigidly, mount held",
     ),
@@ -77,6 +84,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Series stiffness of flexspline and shaft",
         "K",
         digits=5,
+        short_name="both in series",
     ),
     Quantity(
         "wave_generator_peak_mises_MPa",
@@ -85,6 +93,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Peak von Mises stress, wave-generator ellipse",
         "σ_WG",
         digits=3,
+        short_name="wave generator",
     ),
     Quantity(
         "wave_generator_peak_half_seat_mises_MPa",
@@ -101,6 +110,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Peak von Mises stress, load torque",
         "σ_T",
         digits=3,
+        short_name="flexspline, load torque",
     ),
     Quantity(
         "shaft_torque_peak_mises_MPa",
@@ -109,6 +119,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Peak von Mises stress of the shaft, load torque",
         "σ_T,shaft",
         digits=3,
+        short_name="shaft, load torque",
     ),
     *(
         Quantity(

@@ -24,6 +24,7 @@ class Quantity:
     kind : what stands under the key; "bounds" is a pair of numbers.
     digits : significant digits in print (kind "number" and "bounds").
     decimals : fixed decimals instead of significant digits.
+    short_name : where there is room for a few words, as beside the live page's part; "" for none.
     note : beside it in the report: of a stiffness, what is held and what is driven.
     """
 
@@ -36,6 +37,7 @@ class Quantity:
     digits: int = 4
     decimals: int | None = None
     note: str = ""
+    short_name: str = ""
 
     @property
     def mathtext(self) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from flexspline.fea.shortfall import settled_peak
@@ -22,7 +23,8 @@ from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_s
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.revolved import contact, lobes, stiffness, with_equivalent_ring
+from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
+from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
 from flexspline.pipeline.study.holes import Factor, pierced, with_holes
@@ -79,12 +81,9 @@ def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None =
         design.solver.K_b_in_sum, design.w0_mm, design.load.torque_Nm,
     )  # fmt: skip
     asked: dict[str, Callable[[], Stiffness | StressPeak]] = {}
-    if "lobes" in solves or in_sum != "K_b":
-        asked["K_b_lobes"] = lambda: lobes(flexspline, True, LOBE_TOLERANCE)
-    if "unsupported" in solves:
-        asked["K_b_lobes_unsupported"] = lambda: lobes(flexspline, False, LOBE_TOLERANCE)
-    if "contact" in solves:
-        asked["K_b_lobes_contact"] = lambda: contact(flexspline, LOBE_TOLERANCE)
+    for case in RIM_CASES:
+        if case in solves or figure_of(case) == in_sum:
+            asked[figure_of(case)] = partial(CASES[case].fast, flexspline, LOBE_TOLERANCE)
     if "ellipse" in solves:
         asked["wave_generator_peak"] = lambda: ellipse_peak(flexspline, w0, STRESS_TOLERANCE)
     if "torque" in solves:

@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Literal
 
-Solve = Literal["torsion", "lobes", "unsupported", "contact", "ellipse", "torque", "gear"]
+from flexspline.pipeline.load_cases import RIM_CASES, RimCase, figure_of
+
+Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
 
 
 def _stiffness(name: str) -> tuple[str, ...]:
@@ -26,9 +28,7 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
         "backlash_arcsec.total",
         "backlash_arcsec.std",
     ),
-    "lobes": _stiffness("K_b_lobes"),
-    "unsupported": _stiffness("K_b_lobes_unsupported"),
-    "contact": _stiffness("K_b_lobes_contact"),
+    **{case: _stiffness(figure_of(case)) for case in RIM_CASES},
     "ellipse": ("wave_generator_peak_mises_MPa",),
     "torque": ("torque_peak_mises_MPa", "shaft_torque_peak_mises_MPa"),
     "gear": (

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
+from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
@@ -19,7 +20,8 @@ from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
-RIM = {*GIVEN_BY["lobes"], *GIVEN_BY["unsupported"], *GIVEN_BY["ellipse"]}
+SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)
+RIM = {key for case in SOLID_CASES for key in GIVEN_BY[case]} | {*GIVEN_BY["ellipse"]}
 
 
 def solid_outcome(task: Task, rim: bool) -> Outcome:
@@ -38,7 +40,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         "backlash_arcsec.flexspline": total.flexspline_arcsec,
         "backlash_arcsec.total": total.total_arcsec,
     }
-    for name in ("K_b", "K_e", "K_b_lobes", "K_b_lobes_unsupported"):
+    for name in ("K_b", "K_e", *map(figure_of, SOLID_CASES)):
         if name in found.solved:
             k = found[name]
             figures[f"{name}_Nm_per_rad"] = k.K_Nm_per_rad

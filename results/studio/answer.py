@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from flexspline.pipeline.backlash import (
     series_stiffness,
 )
 from flexspline.pipeline.linear_limit import linear_limit
-from flexspline.pipeline.live import RimCase, left_out
+from flexspline.pipeline.live import left_out
+from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import REACH, band
@@ -25,8 +26,8 @@ from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.records import backlash_record, peak_of
 from flexspline.results.style import PALETTE
 
-STIFFNESSES = ("K_b", *get_args(RimCase), "K_e", "K_series")
-PEAKS = ("wave_generator_peak", "torque_peak", "shaft_torque_peak")
+STIFFNESSES = (*FIGURES, "K_series")
+PEAKS = tuple(PART_OF)
 GEAR_ROWS = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
 )  # fmt: skip
@@ -88,7 +89,7 @@ def figure(key: str, value: float) -> Message:
     text = entry.text(value)
     return {
         "key": key, "value": value, "text": text, "unit": entry.unit, "symbol": entry.symbol,
-        "name": entry.name, "decimals": len(text.partition(".")[2]),
+        "name": entry.name, "short": entry.short_name, "decimals": len(text.partition(".")[2]),
     }  # fmt: skip
 
 
@@ -148,7 +149,10 @@ def _gear(found: Found) -> Message:
 
 def _waiting(key: str) -> Message:
     entry = quantity(key)
-    return {"key": key, "symbol": entry.symbol, "name": entry.name, "unit": entry.unit}
+    return {
+        "key": key, "symbol": entry.symbol, "name": entry.name, "short": entry.short_name,
+        "unit": entry.unit,
+    }  # fmt: skip
 
 
 def _budget(total: Backlash) -> Message:

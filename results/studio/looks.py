@@ -1,17 +1,30 @@
-"""Colours of the page's charts and of the stress: those of every other picture of this program."""
+"""What the page takes from the program: names of its views, colours of the charts and of the stress."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from flexspline.pipeline.live import View
 from flexspline.results.style import ACCENT, COLOUR_MAP, PALETTE
+
+VIEW_TITLES: Mapping[View, str] = {
+    "wave_generator": "On the wave generator",
+    "flexspline_torque": "Flexspline under torque",
+    "shaft_torque": "Shaft under torque",
+}
 
 
 @cache
 def looks() -> dict[str, Any]:
-    """Palette as hex, and the stress scale as 256 colours of three bytes each."""
+    """Views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
     from matplotlib import colormaps
 
     scale = colormaps[COLOUR_MAP](range(256), bytes=True)[:, :3]
-    return {"palette": list(PALETTE), "accent": ACCENT, "scale": scale.ravel().tolist()}
+    return {
+        "views": dict(VIEW_TITLES),
+        "palette": list(PALETTE),
+        "accent": ACCENT,
+        "scale": scale.ravel().tolist(),
+    }

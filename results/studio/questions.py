@@ -10,7 +10,6 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.live import (
-    RimCase,
     View,
     field,
     first_field,
@@ -19,19 +18,16 @@ from flexspline.pipeline.live import (
     rim,
     torsion,
 )
+from flexspline.pipeline.load_cases import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.revolved import revolved
+from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.records import bounded_record, gear_figures, peak_record
 from flexspline.results.studio.shape import field_message, profile_message
 from flexspline.results.studio.worker import Fault
 
 VIEWS: tuple[View, ...] = get_args(View)
-RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
-PEAK_KEYS: dict[View, str] = {
-    "flexspline_torque": "torque_peak",
-    "wave_generator": "wave_generator_peak",
-    "shaft_torque": "shaft_torque_peak",
-}
-"""result.json's name of the peak that a view shows."""
+RIM: Mapping[str, RimCase] = {figure_of(case): case for case in RIM_CASES}
+"""The load cases of the rim by the figure that each answers with."""
 FIRST = "first field wave_generator"
 """The stress on the wave generator before any refinement; its `PEAK_rough` says so."""
 GEAR = "gear"
@@ -58,8 +54,8 @@ def _torsion(design: Design) -> Found:
     return bounded_record("K_b", K_b) | bounded_record("K_e", K_e)
 
 
-def _rim(case: RimCase) -> Callable[[Design], Found]:
-    return lambda design: bounded_record(case, rim(design, case))
+def _rim(name: str) -> Callable[[Design], Found]:
+    return lambda design: bounded_record(name, rim(design, RIM[name]))
 
 
 def _gear(design: Design) -> Found:
@@ -81,7 +77,7 @@ def _first(design: Design) -> Found:
 
 
 def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
-    name = PEAK_KEYS[view]
+    name = PEAK_OF[view]
     return {
         **peak_record(name, solved.peak),
         f"{name}_rough": rough,
@@ -101,7 +97,7 @@ _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     "torsion": _torsion,
     GEAR: _gear,
     FIRST: _first,
-    **{case: _rim(case) for case in RIM_CASES},
+    **{name: _rim(name) for name in RIM},
     **{f"field {view}": _field(view) for view in VIEWS},
     **{f"profile {view}": _profile(view) for view in VIEWS},
 }

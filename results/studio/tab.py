@@ -17,16 +17,17 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.live import left_out
+from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.questions import FIRST, GEAR, PEAK_KEYS, RIM_CASES, VIEWS
+from flexspline.results.studio.questions import FIRST, GEAR, RIM, VIEWS
 from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
 STILL_S = 0.35
 """The slow questions wait until the hand has rested so long: they would only delay the others."""
 QUICK = ("torsion", "K_b_lobes")
-ROUGH = f"{PEAK_KEYS['wave_generator']}_rough"
+ROUGH = f"{PEAK_OF['wave_generator']}_rough"
 
 
 @dataclass(frozen=True)
@@ -177,4 +178,4 @@ def _slow(view: str) -> list[str]:
     view itself comes with its picture."""
     peaks = [f"field {v}" for v in VIEWS if v != view]
     peaks.sort(key=lambda question: question != "field wave_generator")
-    return [*peaks[:1], GEAR, *peaks[1:], *(case for case in RIM_CASES if case not in QUICK)]
+    return [*peaks[:1], GEAR, *peaks[1:], *(name for name in RIM if name not in QUICK)]

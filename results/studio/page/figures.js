@@ -5,18 +5,6 @@ import { el, symbol } from "./dom.js";
 import { gearPanel } from "./gear.js";
 import { state } from "./state.js";
 
-const SHORT = {
-  K_b_Nm_per_rad: "flexspline, uniform",
-  K_b_lobes_Nm_per_rad: "load at two lobes",
-  K_b_lobes_contact_Nm_per_rad: "lobes, rim may lift",
-  K_b_lobes_unsupported_Nm_per_rad: "lobes, rim free",
-  K_e_Nm_per_rad: "output shaft",
-  K_series_Nm_per_rad: "both in series",
-  wave_generator_peak_mises_MPa: "wave generator",
-  torque_peak_mises_MPa: "flexspline, load torque",
-  shaft_torque_peak_mises_MPa: "shaft, load torque",
-};
-
 const BRIEF = ["K_b_Nm_per_rad", "K_e_Nm_per_rad", "wave_generator_peak_mises_MPa"];
 const GEAR = "gear"; // its figures and its curve come together
 const DRAWN = "backlash"; // the sum and its line come together, and so have one number
@@ -143,7 +131,7 @@ export class Figures {
     const busy = this.stale(row.key) ? "stale" : "";
     const value = el("td", { class: `value ${row.rough ? "rough" : ""}` }, row.text ? `${row.rough ? "≈\u2009" : ""}${row.text}` : "…");
     value.dataset.value = row.value ?? "";
-    const cells = [el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name), value];
+    const cells = [el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, row.short || row.name), value];
     const below = (cell, text) => text && cell.append(el("br"), el("span", { class: "limit" }, text));
     const side = row.bounds ?? row.limit;
     if (this.narrow) below(value, side);

@@ -5,11 +5,6 @@ import { unpacked } from "./shape.js";
 import { state } from "./state.js";
 import { View } from "./view.js";
 
-const CASES = {
-  wave_generator: "On the wave generator",
-  flexspline_torque: "Flexspline under torque",
-  shaft_torque: "Shaft under torque",
-};
 const TICKS = 4;
 const PATIENCE_MS = 400; // so long may colours of the design before stay: no flicker while a slider moves
 
@@ -39,7 +34,7 @@ export class Stage {
     this.scale = document.getElementById("scale");
     this.caption = document.getElementById("caption");
     const choice = el("select", { id: "case", "aria-label": "Load case shown" },
-      ...Object.entries(CASES).map(([key, words]) => el("option", { value: key }, words)));
+      ...Object.entries(looks.views).map(([key, words]) => el("option", { value: key }, words)));
     choice.value = view;
     choice.addEventListener("change", () => {
       this.view = choice.value;
@@ -165,7 +160,7 @@ export class Stage {
     pen.font = `600 ${15 * k}px ${style.fontFamily}`;
     pen.fillText(this.shown.name, 16 * k, 28 * k);
     pen.font = `${12 * k}px ${style.fontFamily}`;
-    pen.fillText(`${CASES[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
+    pen.fillText(`${this.looks.views[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
     const bar = this.scale.querySelector("canvas");
     if (bar && !this.scale.hidden) {
       const [x, y, h] = [sheet.width - 92 * k, 70 * k, Math.min(220 * k, sheet.height - 110 * k)];
