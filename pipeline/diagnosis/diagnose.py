@@ -25,6 +25,7 @@ from flexspline.pipeline.diagnosis.against_gear import against_gear
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.gear_inputs import GearInputs, gear_inputs
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import (
     EndPoints,
@@ -58,6 +59,7 @@ class Diagnosis:
     outcome : the verdict, causes, gain. model : the extended model, None where nothing was fitted.
     sweep, end_points, specimens : what stands behind the verdict, of the kind that was measured; None
         where there are too few data.
+    gear_inputs : which input of the gear explains what its curve leaves; None of what is held against the sum.
     """
 
     design: Design
@@ -68,6 +70,7 @@ class Diagnosis:
     sweep: SweepAnalysis | None = None
     end_points: EndPointAnalysis | None = None
     specimens: SpecimenAnalysis | None = None
+    gear_inputs: GearInputs | None = None
 
     @property
     def kind(self) -> MeasurementKind:
@@ -132,7 +135,10 @@ def diagnose_file(
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
         model = behind.model if behind else None
-        return Diagnosis(design, measurement, prediction, outcome, model, sweep=behind)
+        inputs = gear_inputs(design, chain, behind) if chain and behind else None
+        return Diagnosis(
+            design, measurement, prediction, outcome, model, sweep=behind, gear_inputs=inputs
+        )
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model, end_points=analysis)

@@ -9,6 +9,7 @@ from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
+from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.reading import heads, reading_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
@@ -22,7 +23,9 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         "compared with the simulated curve of the whole gear, which leaves its chord by up to "
         f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec",
     )  # fmt: skip
-    return (*reading_notes(diagnosis.measurement.read_as), *against, *_of_kind(diagnosis))
+    found = diagnosis.gear_inputs
+    inputs = () if found is None else gear_inputs_notes(found)
+    return (*reading_notes(diagnosis.measurement.read_as), *against, *inputs, *_of_kind(diagnosis))
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import data_record
+from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.records import heading
@@ -38,6 +39,8 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         record["gain_at_levels"] = [
             {"channel": g.channel, **_gain(g)} for g in outcome.gains_at_levels
         ]
+    if diagnosis.gear_inputs is not None:
+        record["gear_inputs"] = gear_inputs_record(diagnosis.gear_inputs)
     if diagnosis.model is not None:
         record["extended_model"] = EXTENDED_MODEL
     if outcome.next_measurement is not None:

@@ -1,0 +1,251 @@
+"""Which input of the whole gear's model explains what a sweep leaves of its curve.
+
+Each input alone is moved from its nominal value until the curve fits the middle of the measured loop best,
+by chi square. One that fits is named, with those that fit as well as its rivals; where none fits, nothing is
+named. A torque that would tell the first two apart is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.stats import chi2
+
+from flexspline.fea.gear.model import GearModel
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.wave_generator import flexible_bearing
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.central_curve import CentralCurve, central_curve
+from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
+from flexspline.pipeline.gear_chain import Chain
+
+NUMERICAL = 0.005
+"""Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
+SURE = 0.01
+"""Probability of a chi square as large below which a curve does not fit."""
+RIVAL = 6.0
+"""Chi square by which a rival may fit worse: 2·3 nats, odds of 20 to 1."""
+ROUNDS = 4
+"""Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""
+BEYOND = (0.25, 0.5, 1.0, 1.5, 2.0)
+"""Torques at which rivals are compared, of the largest measured."""
+MEASURABLE = 3.0
+"""Deviations of a place by which two rivals must differ to be told apart there."""
+KNOTS = 16
+"""Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
+Outcome = Literal["consistent", "named", "unknown"]
+
+
+@dataclass(frozen=True)
+class Input:
+    """A value that the gear's model takes. `first`: the first step away from the nominal value."""
+
+    key: str
+    unit: str
+    nominal: float
+    low: float
+    high: float
+    first: float
+    changed: Callable[[Chain, float], Chain]
+
+
+@dataclass(frozen=True)
+class FittedInput:
+    """Where an input fits best, one standard deviation, and the chi square left with it."""
+
+    key: str
+    unit: str
+    nominal: float
+    value: float
+    std: float
+    chi_square: float
+    at_limit: bool
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A torque [N·m] at which the two best inputs differ by so much [arcsec]."""
+
+    torque_Nm: float
+    difference_arcsec: float
+
+
+@dataclass(frozen=True)
+class GearInputs:
+    """What the middle of the loop says of the gear's inputs.
+
+    Attributes
+    ----------
+    outcome : "consistent": the nominal curve fits; "named": an input alone explains the rest; "unknown":
+        none does.
+    remainder_arcsec : root mean square of measured less nominal curve.
+    chi_square, places : of the nominal curve, and how many torques it is of.
+    fitted : every input, the best first. rivals : keys of those that fit as well as the best, if that is
+        named.
+    left_arcsec : root mean square with the best input, on cycles that were not fitted, and `before_arcsec`
+        without it on the same; None of one cycle.
+    apart : None where nothing is named, or no torque up to twice the largest tells the first two apart.
+    """
+
+    outcome: Outcome
+    remainder_arcsec: float
+    chi_square: float
+    places: int
+    fitted: tuple[FittedInput, ...]
+    rivals: tuple[str, ...] = ()
+    before_arcsec: float | None = None
+    left_arcsec: float | None = None
+    apart: Apart | None = None
+
+
+def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearInputs | None:
+    """Of a sweep held against the gear; None of several units, or where a sign of torque is missing.
+
+    Raises
+    ------
+    EquilibriumError : no equilibrium at a measured torque with the nominal values.
+    """
+    if len(analysis.explained.prepared.sweep.units) > 1:
+        return None
+    curve = central_curve(analysis)
+    if curve is None:
+        return None
+    nominal = _angles(chain, curve)
+    curve = _with_numerical(curve, nominal)
+    off = curve.angle_arcsec - nominal
+    base = float(((off / curve.std_arcsec) ** 2).sum())
+    found = [fitted(one, chain, curve, nominal) for one in inputs_of(design, chain)]
+    found.sort(key=lambda one: one.chi_square)
+    plain = GearInputs("consistent", float(np.sqrt((off**2).mean())), base, len(off), tuple(found))
+    if chi2.sf(base, len(off)) > SURE:
+        return plain
+    best = found[0]
+    if chi2.sf(best.chi_square, len(off) - 1) < SURE:
+        return replace(plain, outcome="unknown")
+    rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL]
+    before, left = _on_other_cycles(design, chain, analysis, best.key)
+    return replace(
+        plain,
+        outcome="named",
+        rivals=tuple(f.key for f in rivals),
+        before_arcsec=before,
+        left_arcsec=left,
+        apart=_apart(design, chain, curve, best, rivals[0]) if rivals else None,
+    )
+
+
+def inputs_of(design: Design, chain: Chain) -> tuple[Input, ...]:
+    """Those that a drawing states least surely."""
+    bearing, gear = flexible_bearing(design), design.gear
+    play = design.bearing.radial_clearance_um
+
+    def with_model(
+        change: Callable[[GearModel, float], GearModel],
+    ) -> Callable[[Chain, float], Chain]:
+        return lambda chain, value: replace(chain, model=change(chain.model, value))
+
+    def flanks(model: GearModel, value: float) -> GearModel:
+        return replace(model, mesh=replace(model.mesh, clearance=value / 1e3))
+
+    def bearing_play(model: GearModel, value: float) -> GearModel:
+        return replace(model, wave_generator=replace(model.wave_generator, play=value / 1e3))
+
+    def stroke(model: GearModel, value: float) -> GearModel:
+        return replace(model, wave_generator=replace(model.wave_generator, deflection=value))
+
+    pair = chain.model.pair
+    return (
+        Input("gear.flank_clearance_um", "µm", gear.flank_clearance_um, 0.0,
+              1e3 * gear.module_mm, 1.0, with_model(flanks)),
+        Input("bearing.radial_clearance_um", "µm", play, 0.0,
+              1.9e3 * bearing.deflection, 2.0, with_model(bearing_play)),
+        Input("wave_generator.deflection_mm", "mm", bearing.deflection, 0.7 * bearing.deflection,
+              1.3 * bearing.deflection, 0.01 * bearing.deflection, with_model(stroke)),
+        Input("tooth pair compliance", "mm/N", pair, 0.0, 100 * pair, 3 * pair,
+              with_model(lambda model, value: replace(model, pair=value))),
+        Input("compliance in series", "rad/(N·m)", 0.0, -0.9 * chain.shaft, 1e3 * chain.shaft,
+              0.2 * chain.shaft, lambda chain, value: replace(chain, holes=chain.holes + value)),
+    )  # fmt: skip
+
+
+def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -> FittedInput:
+    """Its value of least chi square, by secants from the nominal curve (m,) [arcsec]."""
+    value, angles, trial = one.nominal, nominal, one.nominal + one.first
+    best = (value, _chi_square(curve, angles))
+    slope = np.zeros_like(nominal)
+    for _ in range(ROUNDS):
+        try:
+            other = _angles(one.changed(chain, trial), curve)
+        except ComputationError:  # no gear with that value
+            break
+        slope = (other - angles) / (trial - value)
+        value, angles = trial, other
+        best = min(best, (value, _chi_square(curve, angles)), key=lambda each: each[1])
+        weight = slope / curve.std_arcsec**2
+        if not weight @ slope > 0:  # it moves nothing
+            break
+        step = float(weight @ (curve.angle_arcsec - angles)) / float(weight @ slope)
+        trial = float(np.clip(value + step, one.low, one.high))
+        if abs(trial - value) < 0.01 * one.first:
+            break
+    information = float(((slope / curve.std_arcsec) ** 2).sum())
+    std = information**-0.5 if information > 0 else float("inf")
+    at_limit = best[0] in (one.low, one.high)
+    return FittedInput(one.key, one.unit, one.nominal, best[0], std, best[1], at_limit)
+
+
+def _angles(chain: Chain, curve: CentralCurve) -> np.ndarray:
+    """(m,) the gear's angle as the record has it [arcsec]: its mean over the torques of each place."""
+    known = np.geomspace(curve.smallest_Nm, curve.largest_Nm, KNOTS)
+    angle = PchipInterpolator(known, chain.angles(known.tolist()))
+    return ARCSEC_PER_RAD * np.array([float(angle(t).mean()) for t in curve.torques_Nm])
+
+
+def _chi_square(curve: CentralCurve, angles: np.ndarray) -> float:
+    return float((((curve.angle_arcsec - angles) / curve.std_arcsec) ** 2).sum())
+
+
+def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
+    wind_up = nominal - nominal[0]
+    return replace(curve, std_arcsec=np.hypot(curve.std_arcsec, NUMERICAL * wind_up))
+
+
+def _on_other_cycles(
+    design: Design, chain: Chain, analysis: SweepAnalysis, key: str
+) -> tuple[float | None, float | None]:
+    """Root mean square on every second cycle, without the input and with its value from the others."""
+    cycles = np.unique(analysis.explained.prepared.rig.history.cycle)
+    if len(cycles) < 2:
+        return None, None
+    learnt, other = (central_curve(analysis, cycles[start::2].tolist()) for start in (0, 1))
+    if learnt is None or other is None:
+        return None, None
+    nominal = _angles(chain, learnt)
+    one = next(i for i in inputs_of(design, chain) if i.key == key)
+    value = fitted(one, chain, _with_numerical(learnt, nominal), nominal).value
+    before, after = (
+        other.angle_arcsec - _angles(each, other) for each in (chain, one.changed(chain, value))
+    )
+    return float(np.sqrt((before**2).mean())), float(np.sqrt((after**2).mean()))
+
+
+def _apart(
+    design: Design, chain: Chain, curve: CentralCurve, best: FittedInput, rival: FittedInput
+) -> Apart | None:
+    """Where the two differ most, if a place as sure as those measured shows it."""
+    torques = curve.largest_Nm * np.array(BEYOND)
+    by_key = {one.key: one for one in inputs_of(design, chain)}
+    first, second = (
+        by_key[each.key].changed(chain, each.value).angles(torques.tolist()) * ARCSEC_PER_RAD
+        for each in (best, rival)
+    )
+    most = int(np.abs(first - second).argmax())
+    difference = abs(float(first[most] - second[most]))
+    if difference < MEASURABLE * float(curve.std_arcsec.max()):
+        return None
+    return Apart(float(torques[most]), difference)

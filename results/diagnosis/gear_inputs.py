@@ -1,0 +1,77 @@
+"""Which input of the whole gear explains what its curve leaves of a sweep: record and sentences."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexspline.pipeline.diagnosis.gear_inputs import FittedInput, GearInputs
+
+
+def gear_inputs_record(found: GearInputs) -> dict[str, Any]:
+    """As in docs/contract.md; what was not found is absent."""
+    record: dict[str, Any] = {
+        "outcome": found.outcome,
+        "remainder_arcsec": found.remainder_arcsec,
+        "chi_square": found.chi_square,
+        "places": found.places,
+        "fitted": [
+            {
+                "key": one.key, "unit": one.unit, "nominal": one.nominal, "value": one.value,
+                "value_std": one.std, "chi_square": one.chi_square,
+            }
+            for one in found.fitted
+        ],
+    }  # fmt: skip
+    if found.outcome == "named":
+        record |= {"named": found.fitted[0].key, "rivals": list(found.rivals)}
+    if found.left_arcsec is not None:
+        record |= {"rmse_before": found.before_arcsec, "rmse_after": found.left_arcsec}
+    if found.apart is not None:
+        record["told_apart_at_Nm"] = found.apart.torque_Nm
+        record["told_apart_by_arcsec"] = found.apart.difference_arcsec
+    return record
+
+
+def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
+    """One sentence a finding."""
+    best = found.fitted[0]
+    if found.outcome == "consistent":
+        return (
+            f"the gear's curve fits the middle of the loop: {found.remainder_arcsec:.2g} arcsec rms at "
+            f"{found.places} torques, chi square {found.chi_square:.0f}",
+        )
+    if found.outcome == "unknown":
+        return (
+            f"no single input of the gear explains the {found.remainder_arcsec:.3g} arcsec rms that its "
+            f"curve leaves at {found.places} torques; nearest is {_value(best)}, chi square {best.chi_square:.0f}",
+        )
+    said = [f"{_value(best)} explains what the gear's curve leaves{_gain(found)}"]
+    if found.rivals:
+        others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
+        said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
+    return tuple(said)
+
+
+def _value(one: FittedInput) -> str:
+    limit = ", the end of what is possible" if one.at_limit else ""
+    return (
+        f"{one.key} = {one.value:.4g} ± {one.std:.2g} {one.unit} (nominal {one.nominal:.4g}{limit})"
+    )
+
+
+def _gain(found: GearInputs) -> str:
+    if found.left_arcsec is None:
+        return f", {found.remainder_arcsec:.3g} arcsec rms"
+    return (
+        f": {found.before_arcsec:.3g} arcsec rms before, {found.left_arcsec:.2g} after, on cycles that were "
+        "not fitted"
+    )
+
+
+def _next(found: GearInputs) -> str:
+    if found.apart is None:
+        return "no torque up to twice the largest tells them apart, so measure one of them itself"
+    return (
+        f"at {found.apart.torque_Nm:.3g} N·m they differ by {found.apart.difference_arcsec:.2g} arcsec, "
+        "so measure there"
+    )
