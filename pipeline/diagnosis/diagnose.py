@@ -59,7 +59,7 @@ class Diagnosis:
     outcome : the verdict, causes, gain. model : the extended model, None where nothing was fitted.
     sweep, end_points, specimens : what stands behind the verdict, of the kind that was measured; None
         where there are too few data.
-    gear_inputs : which input of the gear explains what its curve leaves; None of what is held against the sum.
+    gear_inputs : which input of the gear explains what its curve leaves; None of a sweep against the sum.
     """
 
     design: Design

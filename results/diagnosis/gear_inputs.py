@@ -43,9 +43,12 @@ def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
     if found.outcome == "unknown":
         return (
             f"no single input of the gear explains the {found.remainder_arcsec:.3g} arcsec rms that its "
-            f"curve leaves at {found.places} torques; nearest is {_value(best)}, chi square {best.chi_square:.0f}",
+            f"curve leaves at {found.places} torques; nearest is {_value(best)}, "
+            f"chi square {best.chi_square:.0f}",
         )
-    said = [f"{_value(best)} explains what the gear's curve leaves{_gain(found)}"]
+    said = [
+        f"{_value(best)} explains what the gear's curve leaves, all else as drawn{_gain(found)}"
+    ]
     if found.rivals:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
         said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
