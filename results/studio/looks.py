@@ -1,4 +1,4 @@
-"""What the page takes from the program: names of its views, colours of the charts and of the stress."""
+"""What the page takes from the program: kinds of parts, names of views, colours of charts and stress."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from flexspline.geometry.shapes import KINDS
 from flexspline.pipeline.live import View
 from flexspline.results.style import ACCENT, COLOUR_MAP, PALETTE
 
@@ -18,11 +19,12 @@ VIEW_TITLES: Mapping[View, str] = {
 
 @cache
 def looks() -> dict[str, Any]:
-    """Views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
+    """Kinds; views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
     from matplotlib import colormaps
 
     scale = colormaps[COLOUR_MAP](range(256), bytes=True)[:, :3]
     return {
+        "kinds": list(KINDS),
         "views": dict(VIEW_TITLES),
         "palette": list(PALETTE),
         "accent": ACCENT,

@@ -50,8 +50,7 @@ for (const kind of ["step", "report"]) {
 figures.root.append(pins.list);
 
 document.getElementById("tools").append(
-  el("button", { id: "new-cup", onclick: () => open("open?kind=cup", "") }, "New cup"),
-  el("button", { id: "new-hat", onclick: () => open("open?kind=hat", "") }, "New hat"),
+  ...started.looks.kinds.map((kind) => el("button", { id: `new-${kind}`, onclick: () => open(`open?kind=${kind}`, "") }, `New ${kind}`)),
   el("button", { id: "load", onclick: () => pick(".toml", load) }, "Open"),
   el("button", { id: "save", onclick: save }, "Save"),
   works.step.button,
