@@ -15,11 +15,11 @@ from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import analysis_context, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
-from flexspline.pipeline.diagnosis.against_gear import refuse_given
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
+from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.gear_chain import chain_of

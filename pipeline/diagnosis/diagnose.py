@@ -21,11 +21,9 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.analysis import analysis_context
-from flexspline.pipeline.diagnosis.against_gear import against_gear
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.gear_inputs import GearInputs, gear_inputs
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import (
     EndPoints,
@@ -44,6 +42,8 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
+from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
+from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs, gear_inputs
 from flexspline.pipeline.gear_chain import Chain
 from flexspline.pipeline.parts import AnalysisContext
 

@@ -63,7 +63,7 @@ def diagnose(
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     with answered(design):
-        from flexspline.pipeline.diagnosis.against_gear import refuse_given
+        from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
 
         job = begin(design, out)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from flexspline.pipeline.diagnosis.gear_inputs import FittedInput, GearInputs
+from flexspline.pipeline.diagnosis.whole_gear.identification import FittedInput, GearInputs
 
 
 def gear_inputs_record(found: GearInputs) -> dict[str, Any]:

@@ -11,7 +11,6 @@ import pytest
 import flexspline
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.against_gear import against_gear
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
@@ -20,6 +19,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
 from flexspline.pipeline.gear_chain import Chain, chain_of
 
 ROOT = Path(__file__).parents[3]

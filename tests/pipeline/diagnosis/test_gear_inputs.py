@@ -16,7 +16,7 @@ import flexspline
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
-from flexspline.pipeline.diagnosis.gear_inputs import inputs_of
+from flexspline.pipeline.diagnosis.whole_gear.inputs import inputs_of
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
