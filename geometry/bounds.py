@@ -39,6 +39,11 @@ def step_up(level: float, step: float = LENGTH_mm.low) -> float:
     return level + step - 5e-10  # half of what `is_step` lets pass
 
 
+def step_down(level: float, step: float = LENGTH_mm.low) -> float:
+    """The largest length [mm] that is a step below another."""
+    return level - step + 5e-10  # as in `step_up`
+
+
 def span(low: float, high: float, digits: int = DIGITS) -> str | None:
     """``from LOW to HIGH``, no wider than the ends; None where nothing lies between.
 
@@ -73,7 +78,7 @@ def beside(
     if low <= level <= high or (zero and level == 0):
         found.append(repr(level) if float(f"{level:g}") != level else f"{level:g}")
         found[0] += f" ({name})"
-    under = min(level - step + 5e-10, high)
+    under = min(step_down(level, step), high)
     if zero and level >= step and under < LENGTH_mm.low:
         found.append("0")
     elif zero and level >= step:

@@ -8,6 +8,8 @@ from typing import Literal
 from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
 
 Kind = Literal["number", "count", "bounds", "text"]
+MOST_PLACES = 6
+"""Digits behind the point: ends that agree so far are printed alike."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,6 @@ class Quantity:
     def range_text(self, low: float, high: float) -> str:
         """Both ends with the same decimals, enough of them that unequal ends look unequal."""
         places = decimals_for(high, self.digits) if self.decimals is None else self.decimals
-        while low != high and grouped(low, places) == grouped(high, places) and places < 6:
+        while low != high and grouped(low, places) == grouped(high, places) and places < MOST_PLACES:
             places += 1
         return f"{grouped(low, places)} to {grouped(high, places)}"

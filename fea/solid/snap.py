@@ -15,6 +15,10 @@ ROUNDS = 40
 distance, so 40 reach rounding."""
 AGREED = 1e-8
 """[mm] Change of a round below which the surfaces agree: a hundredth of what counts as on a surface."""
+FLATTENED = 0.1
+"""Share of its volume: a tetrahedron that keeps less is a sliver, whose curved copy can turn inside out."""
+MOST_PASSES = 10
+"""Each takes back the nodes of what the one before flattened; a mesh that is not done then is refused."""
 SETTLED = 1e-6
 """[mm] Nearer than this to a surface is on it: a nanometre, where the smallest length of a design is 1 µm."""
 
@@ -104,11 +108,11 @@ def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -
 
 
 def undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Take back the moves of nodes whose tetrahedra they flattened (under a tenth of the volume)."""
+    """Take back the moves of nodes whose tetrahedra they flattened (below `FLATTENED`)."""
     before = signed_volumes(raw, tets)
     out = snapped.copy()
-    for _ in range(10):
-        bad = signed_volumes(out, tets) < 0.1 * before
+    for _ in range(MOST_PASSES):
+        bad = signed_volumes(out, tets) < FLATTENED * before
         if not bad.any():
             return out
         nodes = np.unique(tets[bad])

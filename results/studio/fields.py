@@ -33,6 +33,8 @@ SPAN = 0.5
 """A slider reaches from the nominal value less half of it to half of it more."""
 STEPS = 200
 """A slider has at least so many places."""
+MOST_HOLES = 12.0
+"""Where no bolts are stated the slider goes up to as many as the first hat has."""
 Tables = dict[str, Any]
 
 
@@ -140,14 +142,14 @@ def slider(
     if whole:
         # teeth differ by an even number between the gears: steps of two keep it so
         step = 2.0 if key.startswith("teeth") else max(1.0, float(round(step)))
-        low, high = (floor(low / step) * step, high) if value else (0.0, max(high, 12.0))
+        low, high = (floor(low / step) * step, high) if value else (0.0, max(high, MOST_HOLES))
         low += (value or 0) % step
     low = max(low, least) if least > 0 else max(low, 0.0)
     return _tidy(low, step), _tidy(min(high, most), step), step
 
 
 def _round_step(step: float) -> float:
-    """1, 2 or 5 times a power of ten, not above `step`."""
+    """1, 2 or 5 times a power of ten, not above `step`, but for rounding."""
     decade = 10.0 ** floor(log10(step))
     return float(f"{max(s * decade for s in (1.0, 2.0, 5.0) if s * decade <= 1.0001 * step):.1g}")
 
