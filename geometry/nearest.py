@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
+
 PAIRS_AT_ONCE = 4_000_000
 """Bounds the memory of the box test."""
 FACING = 0.5
@@ -32,7 +34,7 @@ def nearest_triangles(
     corners = vertices[triangles]
     low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
     facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
+    facing /= np.maximum(np.linalg.norm(facing, axis=1), ABOVE_ZERO)[:, None]
     step = max(1, PAIRS_AT_ONCE // len(triangles))
     found = np.full(len(points), -1)
     agrees = np.zeros(len(points), bool)

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.outline import Segment
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
@@ -40,7 +41,7 @@ class Swept:
     def project(self, points: np.ndarray) -> np.ndarray:
         r = np.hypot(points[:, 0], points[:, 1])
         rz = self.segment.nearest(np.column_stack([r, points[:, 2]]))
-        safe = np.maximum(r, 1e-300)
+        safe = np.maximum(r, ABOVE_ZERO)
         return np.column_stack([points[:, :2] * (rz[:, 0] / safe)[:, None], rz[:, 1]])
 
 
@@ -54,7 +55,7 @@ class HoleWall:
 
     def project(self, points: np.ndarray) -> np.ndarray:
         off = points[:, :2] - np.array(self.axis)
-        unit = off / np.maximum(np.linalg.norm(off, axis=1), 1e-300)[:, None]
+        unit = off / np.maximum(np.linalg.norm(off, axis=1), ABOVE_ZERO)[:, None]
         return np.column_stack([np.array(self.axis) + self.radius * unit, points[:, 2]])
 
 

@@ -72,6 +72,8 @@ class Quantity:
     def range_text(self, low: float, high: float) -> str:
         """Both ends with the same decimals, enough of them that unequal ends look unequal."""
         places = decimals_for(high, self.digits) if self.decimals is None else self.decimals
-        while low != high and grouped(low, places) == grouped(high, places) and places < MOST_PLACES:
+        while (
+            low != high and grouped(low, places) == grouped(high, places) and places < MOST_PLACES
+        ):
             places += 1
         return f"{grouped(low, places)} to {grouped(high, places)}"

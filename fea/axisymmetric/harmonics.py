@@ -30,6 +30,7 @@ from flexspline.fea.axisymmetric.couplings import (
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual, solved
 from flexspline.fea.types import Elastic
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME
 
@@ -169,7 +170,7 @@ class HarmonicModel:
         lost = abs(float(u[free] @ (inside @ u[free] - right)))
         if not lost < LOST_ENERGY_LIMIT * twice_energy:
             raise HarmonicError(
-                f"harmonic {wave.n}: {lost / max(twice_energy, 1e-300):.1e} of the energy is lost in "
+                f"harmonic {wave.n}: {lost / max(twice_energy, ABOVE_ZERO):.1e} of the energy is lost in "
                 f"the solve, allowed {LOST_ENERGY_LIMIT:.0e}; is the body held?"
             )
         residual = relative_residual(inside, u[free], right)

@@ -23,6 +23,7 @@ from flexspline.fea.axisymmetric.meridian_mesh import (
     edge_middles,
     signed_areas,
 )
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.outline import SAME, Meridian, Segment
 
 CHORD_ANGLE = pi / 12
@@ -160,7 +161,7 @@ def _improvements(
     corner = points[triangles]
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     area = signed_areas(points, triangles)
-    radius = sides.prod(axis=1) / (4 * np.maximum(area, 1e-300))
+    radius = sides.prod(axis=1) / (4 * np.maximum(area, ABOVE_ZERO))
     bad = radius > sides.min(axis=1) / (2 * sin(SMALLEST_ANGLE))
     if not bad.any():
         return np.empty((0, 2)), np.zeros(len(edges), bool)

@@ -24,10 +24,10 @@ NEAR_SHARE = 0.4
 """Smallest edge over the largest, in shafts. In flexsplines it is the wall: on the example's cup 0.4 → 2 mm,
 whose K is 0.7 % high (docs/decisions.md, Grading)."""
 NEAR_OF_RADIUS = 50
-"""The smallest edge in a flexspline is at most this share of its outer radius, as the example cup's wall is: a
+"""The smallest edge in a flexspline is at most its outer radius over this, as the example cup's wall is: a
 thicker wall is meshed as finely at its edges."""
 LEAST_GRADING = 2
-"""Largest over smallest edge of a flexspline, at least: edges grow away from the singular ones in every part."""
+"""Largest over smallest edge of a flexspline, at least: edges grow away from the singular ones in all."""
 GROWTH = 0.7
 """Of the edge length per distance from the singular edges, of that same mesh."""
 ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
@@ -61,7 +61,10 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         wall, outer = min(f.wall_thickness_mm, f.diaphragm_thickness_mm), f.ring_radius
         on_axis = getattr(f, "bore_diameter_mm", 1.0) == 0
         far = min(max(FAR_WALLS * wall, outer / FINEST_SHARE), part.length / 6, outer / 3)
-        near, envelope = min(wall, far / LEAST_GRADING, outer / NEAR_OF_RADIUS), wall / ENVELOPES_PER_WALL
+        near, envelope = (
+            min(wall, far / LEAST_GRADING, outer / NEAR_OF_RADIUS),
+            wall / ENVELOPES_PER_WALL,
+        )
     if edge_length_mm is not None:
         far = edge_length_mm
         refuse_beyond(outer * part.length / far**2, far)  # before CAD makes chords as fine

@@ -14,6 +14,7 @@ import numpy as np
 
 from flexspline.fea.solid.snap import undo_inverted
 from flexspline.fea.solid.unroll import MeshingMap
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.outline import SAME, Segment, distance
 from flexspline.geometry.surfaces import Surface, Swept
 
@@ -45,7 +46,7 @@ class PatchEdge:
         """The points (n, 3) moved along the meridian until they are neither beyond nor before it."""
         rz = _meridional(points)
         moved = rz - self.beyond(points)[:, None] * self.tangent
-        scale = moved[:, 0] / np.maximum(rz[:, 0], 1e-300)
+        scale = moved[:, 0] / np.maximum(rz[:, 0], ABOVE_ZERO)
         return np.column_stack([points[:, :2] * scale[:, None], moved[:, 1]])
 
 

@@ -15,6 +15,7 @@ from flexspline.fea.solid.snap import into_sector_planes, snap_to_surfaces, undo
 from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.nearest import nearest_triangles
 from flexspline.geometry.tagged import TaggedSurface
 
@@ -101,7 +102,7 @@ def _tag(
     corners = points[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(normals, axis=1)
-    normals /= np.maximum(areas, 1e-300)[:, None]
+    normals /= np.maximum(areas, ABOVE_ZERO)[:, None]
     centres = corners.mean(axis=1)
     triangle, agrees = np.full(len(faces), -1), np.zeros(len(faces), bool)
     for reach in (

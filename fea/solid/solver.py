@@ -13,6 +13,7 @@ from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.memory import SolverKind, choose_solver
 from flexspline.fea.solid.twolevel import iterate
+from flexspline.geometry.above_zero import ABOVE_ZERO
 
 LOST_ENERGY_LIMIT = 1e-6
 """Largest |u·(Ku − f)| over u·Ku, as in `fea.axisymmetric.harmonics`: the ‖Ku − f‖/‖f‖ of a thin part
@@ -66,9 +67,9 @@ def solve(
     else:
         u[free] = direct(inner, right)
     off = inner @ u[free] - right
-    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), 1e-300)
+    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
     forces = matrix @ u
-    energy = max(float(u @ forces), 1e-300)
+    energy = max(float(u @ forces), ABOVE_ZERO)
     for lost, limit in (
         (abs(float(u[free] @ off)) / energy, LOST_ENERGY_LIMIT),
         (error_energy / energy, ITERATION_ENERGY_LIMIT),

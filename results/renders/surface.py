@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.results.renders.whole import FACES, WholePart
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def crease_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
     edges = np.concatenate([facets[:, [0, 3, 1]], facets[:, [1, 4, 2]], facets[:, [2, 5, 0]]])
     a, b, c = (points[facets[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), ABOVE_ZERO)[:, None]
     owner = np.tile(np.arange(len(facets)), 3)
     order = np.argsort(edges[:, 1], kind="stable")
     _, begin, count = np.unique(edges[order, 1], return_index=True, return_counts=True)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
+
 
 def thinned(rim: np.ndarray, seen: np.ndarray) -> np.ndarray:
     """Edges (k, 2), each from its start to its end, with runs of them replaced by their chord.
@@ -47,7 +49,7 @@ def _kept(seen: np.ndarray) -> np.ndarray:
         if last - first < 2:
             continue
         inner = slice(first + 1, last)
-        share = (along[inner] - along[first]) / max(along[last] - along[first], 1e-300)
+        share = (along[inner] - along[first]) / max(along[last] - along[first], ABOVE_ZERO)
         chord = seen[first] + share[:, None] * (seen[last] - seen[first])
         off = np.abs(seen[inner] - chord).max(axis=1)
         worst = int(off.argmax())
