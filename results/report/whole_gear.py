@@ -21,7 +21,7 @@ from flexspline.results.report.document import (
     Table,
 )
 from flexspline.results.report.shown import shown
-from flexspline.results.report.spans import Words, bold, plain, symbol
+from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 
 FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
@@ -100,12 +100,12 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
                 name,
                 "–" if in_sum is None else grouped(in_sum, 1),
                 grouped(own, 1),
-                "–" if in_sum is None else grouped(own - in_sum, 1),
+                grouped(own - (in_sum or 0.0), 1),
             )
         )
     return Table(
         columns=(
-            Column("Twist between −T_L and +T_L, arcsec", grow=1), Column("Sum", "right"),
+            Column(worded("Twist between −T_L and +T_L, arcsec"), grow=1), Column("Sum", "right"),
             Column("Whole gear", "right"), Column("Difference", "right"),
         ),
         rows=tuple(rows),
