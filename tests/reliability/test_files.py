@@ -32,9 +32,11 @@ class Tried:
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working folder, where an injected path or command would leave its trace."""
+    """The working folder, where an injected path or command would leave its trace.
+
+    The cache is the suite's: it holds what FE says of the specimens that stay good.
+    """
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path.parent / f"{tmp_path.name}-cache"))
     monkeypatch.setattr("flexspline.pipeline.study.cluster.worker_pool", pool)
     return tmp_path
 

@@ -88,7 +88,7 @@ def test_several_objectives_give_a_front_that_nothing_beats(tmp_path: Path) -> N
             }
         )
 
-    result = found(text + 'method = "optimize"\nevaluations = 80\n', tmp_path, evaluation)
+    result = found(text + 'method = "optimize"\nevaluations = 60\n', tmp_path, evaluation)
     front = result.pareto
     points = np.array(
         [

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import time
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import in_process
 import pytest
 from studio_page import Page, Server, running, start, write_design
 
@@ -73,20 +72,14 @@ def test_the_figures_equal_the_command_line_s(page: Page, tmp_path: Path) -> Non
     saved = tmp_path / "saved.toml"
     waiting.value.save_as(saved)
     assert load_design(saved).flexspline.wall_thickness_mm == 0.43
-    command = [sys.executable, "-m", "flexspline.results.cli"]
-    done = subprocess.run(
-        [*command, "stiffness", str(saved), "--json", "--out", str(tmp_path / "out")],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    out = tmp_path / "out"
+    done = in_process.flexspline("stiffness", saved, "--json", "--out", out, folder=tmp_path)
     record = json.loads(done.stdout)
     assert page.values([*STIFFNESSES, "wave_generator_peak_mises_MPa"]) == pytest.approx(
         {key: record[key] for key in (*STIFFNESSES, "wave_generator_peak_mises_MPa")}, rel=SAME
     )
-    given = ["--Kb", str(record["K_b_Nm_per_rad"]), "--Ke", str(record["K_e_Nm_per_rad"])]
-    done = subprocess.run(
-        [*command, "backlash", str(saved), *given, "--json", "--out", str(tmp_path / "out")],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    given = ["--Kb", record["K_b_Nm_per_rad"], "--Ke", record["K_e_Nm_per_rad"]]
+    done = in_process.flexspline("backlash", saved, *given, "--json", "--out", out, folder=tmp_path)
     terms = json.loads(done.stdout)["backlash_arcsec"]
     for term in ("shaft", "flexspline", "flank_clearance", "bearing_play", "total"):
         assert page.value(f"backlash_arcsec.{term}") == pytest.approx(terms[term], rel=SAME)
