@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import whole_gear_contact_3d as contact_3d
 import whole_gear_figures as figures
 
 PAGE = Path(__file__).with_name("whole-gear.md")
@@ -26,11 +27,23 @@ def tables() -> dict[str, str]:
         "examples": of_examples,
         "terms": terms,
         "published cup": figures.published_table(),
+        **three_dimensional(),
         "classes": figures.by_class(found),
         "aims": aims(found),
         "rows": figures.catalogue_table(found),
         "ratio 100": figures.sensitivity(SIZE, 100, TORQUES),
         "ratio 30": figures.sensitivity(SIZE, 30, TORQUES),
+    }
+
+
+def three_dimensional() -> dict[str, str]:
+    """The tables that stand beside the recorded contact solution of benchmarks/gear_contact_3d.py."""
+    found = contact_3d.record()
+    return {
+        "three-dimensional curves": contact_3d.curves_table(found),
+        "three-dimensional meshes": contact_3d.meshes_table(found),
+        "three-dimensional surface contact": contact_3d.surface_table(found),
+        "three-dimensional assumptions": contact_3d.assumptions_table(found),
     }
 
 

@@ -23,7 +23,8 @@ from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
 LAST_HARMONIC = 48
 """96 move K1 to K3 of xb1-40 by 0.2 %, 144 by 0.3 %."""
 PLACES = 5
-"""Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %."""
+"""Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %. On a rigid plug, whose edge alone carries, 9 are 5 %
+softer, as a three-dimensional model is (docs/whole-gear.md)."""
 MOST_STATIONS = 128
 """Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K by 0.6 %."""
 BEARING_STEEL = Elastic(208e3, 0.3)
@@ -40,10 +41,11 @@ LEAST_LEVER = 0.2
 """Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
 
 
-def gear_model(design: Design, flexspline: Part) -> GearModel:
+def gear_model(design: Design, flexspline: Part, places: int | None = None) -> GearModel:
     """The gear without its shaft and bolt holes.
 
-    `flexspline` is the design's, but for drawn teeth, which are the plain ring as stiff.
+    `flexspline` is the design's, but for drawn teeth, which are the plain ring as stiff. `places`: along the
+    seat, at which the rim can touch; None: PLACES.
 
     Raises
     ------
@@ -72,13 +74,12 @@ def gear_model(design: Design, flexspline: Part) -> GearModel:
         height=(pitch - middle) / middle,
     )
     groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
+    seat, count = (shape.ring_start, shape.ring_end), places or PLACES
     return GearModel(
         mesh,
         _wave_generator(bearing, shape.inner_radius, play),
-        _rim(flexspline.without_holes(), pitch, (shape.ring_start, shape.ring_end)),
-        _race(
-            shape.inner_radius, bearing.race_thickness, (shape.ring_start, shape.ring_end), groove
-        ),
+        _rim(flexspline.without_holes(), pitch, seat, count),
+        _race(shape.inner_radius, bearing.race_thickness, seat, groove, count),
         pair_compliance(design),
         gear.teeth_flexspline,
         MOST_STATIONS,
@@ -86,20 +87,18 @@ def gear_model(design: Design, flexspline: Part) -> GearModel:
 
 
 @lru_cache(KEPT)
-def _rim(part: Part, pitch_radius: float, seat: tuple[float, float]) -> Condensed:
-    material, places = Elastic.of(part.material), places_along(*seat, PLACES)
+def _rim(part: Part, pitch_radius: float, seat: tuple[float, float], count: int) -> Condensed:
+    material, places = Elastic.of(part.material), places_along(*seat, count)
     with one_thread():
         return condensed_rim(part.meridian, material, pitch_radius, places, LAST_HARMONIC)
 
 
 @lru_cache(KEPT)
 def _race(
-    outer_radius: float, thickness: float, seat: tuple[float, float], groove: float
+    outer_radius: float, thickness: float, seat: tuple[float, float], groove: float, count: int
 ) -> Condensed:
-    outline, places = (
-        race_outline(outer_radius, thickness, *seat, groove),
-        places_along(*seat, PLACES),
-    )
+    outline = race_outline(outer_radius, thickness, *seat, groove)
+    places = places_along(*seat, count)
     with one_thread():
         return condensed_race(outline, BEARING_STEEL, places, LAST_HARMONIC)
 
