@@ -14,6 +14,7 @@ import numpy as np
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from, load_design
+from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.sized import sized_template
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline import revolved
@@ -228,7 +229,7 @@ def _figures(curve: GearCurve) -> str:
 def four_terms(name: str, design: Design, chain: Chain, K_b: float) -> str:
     """Each term of the sum at ± T_L, and what the contact model has in its place [arcsec]."""
     total = backlash(design, K_b, 1 / chain.shaft)
-    own = gear_terms(chain, design.load.torque_Nm)
+    own = gear_terms(chain, design.load.torque_Nm, rated_torque(design)[0])
     lines = []
     for key, words in (
         ("shaft", "shaft, 2T/K_e"),

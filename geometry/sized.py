@@ -8,13 +8,16 @@ scaled by the pitch radius.
 
 from __future__ import annotations
 
+import tomllib
 from typing import Any
 
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import design_from
 from flexspline.geometry.ranges import Range
 from flexspline.geometry.rated import RATED_WHY, rated_in_proportion
 from flexspline.geometry.schema import Location
 from flexspline.geometry.template import MODELS, Table, first_values, text_of
+from flexspline.geometry.wave_generator import flexible_bearing
 
 PITCH_RADIUS_PER_SIZE_mm = 1.27
 """Half of a tenth of an inch."""
@@ -84,8 +87,12 @@ def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
     why[("load", "torque_Nm")] = (
         f"{LOAD_SHARE:.0%} of rated torque, where makers measure lost motion"
     )
-    wave = values["wave_generator"]
-    wave["deflection_mm"] = module
+    whole = design_from(tomllib.loads(text_of("", values, kind, {})))
+    for assumed in flexible_bearing(whole).assumed:
+        table, key = assumed.key.split(".")
+        count = key == "ball_count"
+        values[table][key] = int(assumed.value) if count else _rounded(assumed.value)
+        why[(table, key)] = assumed.why
     return values, why
 
 

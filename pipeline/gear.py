@@ -9,7 +9,7 @@ and balls stand alike on both sides of them, so the curve is odd. Positive torqu
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees
 
@@ -26,6 +26,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY, even
 from flexspline.pipeline.gear_terms import gear_terms
+from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
@@ -42,7 +43,9 @@ LAWS = (
 )
 """What no key of the design file states."""
 LOW_RIM = 0.05
-"""Of the stroke: play that lowers the rim by more takes clearance from teeth off the major axis."""
+"""Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
+BEYOND_RATED = 5.0
+"""Times rated torque: more than any catalogue's peak torque, 2 to 4.5 times (HD, CSF)."""
 CARRIES = 1e-3
 """Of the largest force: a tooth below it is not counted as in contact."""
 
@@ -57,7 +60,8 @@ class GearCurve:
         has no angle of its own.
     compliance_shares : of flexspline, shaft, teeth and bearing in dθ/dT at rated torque; they add up to 1.
     assumed : each value that the design file does not state.
-    warnings : one line each.
+    warnings : one line each; `notes` : what was simplified.
+    preload_tooth_force_N : largest force of a pair of teeth without torque, where both flanks press; else 0.
     tooth_angle_deg, tooth_force_N : teeth within reach of one lobe at rated torque, front less back flank.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± T_L, in place of the backlash sum's terms (`pipeline.gear_terms`); empty where
@@ -77,6 +81,8 @@ class GearCurve:
     angle_arcsec: tuple[float, ...]
     assumed: tuple[Assumed, ...]
     warnings: tuple[str, ...]
+    notes: tuple[str, ...]
+    preload_tooth_force_N: float
     tooth_angle_deg: tuple[float, ...]
     tooth_force_N: tuple[float, ...]
     ball_angle_deg: tuple[float, ...]
@@ -94,15 +100,17 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
     """
     design, load = context.design, context.design.load
 
+    K_e = part_stiffness(context.part("shaft")).K_Nm_per_rad
+
     def solve() -> GearCurve:
-        chain = chain_of(context)
+        chain = chain_of(context, K_e)
         with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
-            terms = gear_terms(chain, load.torque_Nm)
+            terms = gear_terms(chain, load.torque_Nm, rated_torque(design)[0])
             return replace(curve_of(design, chain), terms_arcsec=terms)
 
     depends_on = {
         "flexspline": context.part("flexspline").revolved_key,
-        "shaft": context.part("shaft").torsion_key,
+        "K_e_Nm_per_rad": K_e,  # as it was found: more time finds another
         "others": [design.gear, design.bearing, design.wave_generator, load],
     }
     return context.cache.get("gear", depends_on, solve)[0]
@@ -120,6 +128,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     full = states[-1]
     model = chain.model
     teeth = model.pair_forces(full)
+    preload = _preload(model, states[0])
     carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
     return GearCurve(
         K1_Nm_per_rad=K1,
@@ -134,7 +143,9 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         torque_Nm=_loop(up),
         angle_arcsec=_loop(angles * ARCSEC_PER_RAD),
         assumed=(*assumed, *flexible_bearing(design).assumed, *LAWS),
-        warnings=tuple(_warnings(design, model, states)),
+        warnings=tuple(_warnings(design, model, preload)),
+        notes=tuple(_notes(design, model, teeth)),
+        preload_tooth_force_N=preload,
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
         tooth_force_N=tuple(teeth.tolist()),
         ball_angle_deg=tuple(np.degrees(model.wave_generator.angles).tolist()),
@@ -148,7 +159,46 @@ def _loop(up: np.ndarray) -> tuple[float, ...]:
     return (*there_and_back, *(-value for value in there_and_back))
 
 
-def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -> list[str]:
+def _preload(model: GearModel, unloaded: Equilibrium) -> float:
+    """Largest force of a pair of teeth where both flanks press without torque [N]; 0 where one is free."""
+    front, back = np.split(unloaded.loaded[model.flanks], 2)
+    if not (front.any() and back.any()):
+        return 0.0
+    return float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
+
+
+def _warnings(design: Design, model: GearModel, preload_N: float) -> list[str]:
+    """What makes the gear another one than was meant."""
+    lines = []
+    if preload_N:
+        lines.append(
+            f"teeth press on both flanks without torque, up to {_rounded(preload_N)} N each: "
+            f"{_why_both_press(design, model)}"
+        )
+    rated, _ = rated_torque(design)
+    if design.load.torque_Nm > BEYOND_RATED * rated:
+        lines.append(
+            f"load.torque_Nm = {design.load.torque_Nm:g} is {design.load.torque_Nm / rated:.3g} times the "
+            "rated torque: teeth and rim are not elastic there"
+        )
+    return lines
+
+
+def _why_both_press(design: Design, model: GearModel) -> str:
+    stroke, full = model.wave_generator.deflection, design.gear.centre_distance_mm
+    play = design.bearing.radial_clearance_um / 2e3
+    if abs(stroke / full - 1) > LOW_RIM:
+        return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
+    if play > LOW_RIM * stroke:
+        return (
+            f"half the play, {play:.3g} mm, lowers the rim's stroke of {stroke:.3g} mm, and teeth off the "
+            "major axis no longer clear"
+        )
+    return "the flank clearance is too small"
+
+
+def _notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
+    """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
     lines = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
@@ -156,27 +206,17 @@ def _warnings(design: Design, model: GearModel, states: Sequence[Equilibrium]) -
     mesh = model.mesh
     if mesh.largest_relief > 0:
         lines.append(
-            f"plain flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major "
-            f"axis: taken as relieved, by {1e3 * mesh.largest_relief:.2g} µm at {degrees(mesh.reach):.0f}°"
+            f"plain flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major axis: "
+            f"taken as relieved, by {_rounded(1e3 * mesh.largest_relief)} µm at {degrees(mesh.reach):.0f}°"
         )
-    unloaded = states[0]
-    front, back = np.split(unloaded.loaded[model.flanks], 2)
-    if front.any() and back.any():
-        force = float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
-        play = design.bearing.radial_clearance_um / 2e3
-        lowered = play > LOW_RIM * model.wave_generator.deflection
-        why = (
-            f"half the play, {play:.3g} mm, lowers the rim's stroke of "
-            f"{model.wave_generator.deflection:.3g} mm, and teeth off the major axis no longer clear"
-            if lowered
-            else "there is no clearance"
-        )
-        lines.append(f"teeth press on both flanks without torque, up to {force:.2g} N each: {why}")
-    teeth = np.abs(model.pair_forces(states[-1]))
-    most = int(teeth.argmax())
+    most = int(np.abs(teeth).argmax())
     if most in (0, len(teeth) - 1):
         lines.append(
             f"the pair of teeth that carries most stands {abs(degrees(model.tooth_angles[most])):.0f}° from "
             "the major axis, at the end of the working depth that is assumed: its force hangs on that end"
         )
     return lines
+
+
+def _rounded(value: float) -> str:
+    return f"{float(f'{value:.2g}'):g}"

@@ -69,8 +69,8 @@ class Chain:
         return {key: parts[key] / total for key in ("flexspline", "shaft", "teeth", "bearing")}
 
 
-def chain_of(context: AnalysisContext) -> Chain:
-    """A design's contact model, its shaft and its bolt holes.
+def chain_of(context: AnalysisContext, K_e_Nm_per_rad: float | None = None) -> Chain:
+    """A design's contact model, its shaft (of that stiffness, where it is known) and its bolt holes.
 
     Raises
     ------
@@ -81,7 +81,8 @@ def chain_of(context: AnalysisContext) -> Chain:
     with context.progress.stage("flexspline, condensed to its teeth and its seat"):
         model = gear_model(context.design, flexspline.part)
     holes = _of_holes(flexspline.part, tolerance_of(flexspline))
-    return Chain(model, 1 / part_stiffness(context.part("shaft")).K_Nm_per_rad, holes)
+    K_e = K_e_Nm_per_rad or part_stiffness(context.part("shaft")).K_Nm_per_rad
+    return Chain(model, 1 / K_e, holes)
 
 
 def fast_chain(design: Design, K_e_Nm_per_rad: float, tolerance: float) -> Chain:

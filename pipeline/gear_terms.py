@@ -10,12 +10,12 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain
 
 SMALL = 1e-3
-"""Of the load torque: what turns the gear through its gaps, and hardly winds it up."""
+"""Of load or rated torque, the smaller: it turns the gear through its gaps, and hardly winds it up."""
 TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
 
 
-def gear_terms(chain: Chain, load_Nm: float) -> Mapping[str, float]:
+def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, float]:
     """Twist [arcsec] by the sum's names: shaft, flexspline, flank_clearance, bearing_play, tight_gear, total.
 
     "flexspline" is the wind-up of flexspline, teeth and bearing together. A clearance is what the
@@ -30,16 +30,18 @@ def gear_terms(chain: Chain, load_Nm: float) -> Mapping[str, float]:
     no_flank = replace(model, mesh=replace(model.mesh, clearance=0.0))
     no_play = replace(no_flank, wave_generator=replace(model.wave_generator, play=0.0))
 
-    def twist(of: GearModel, torque_Nm: float) -> float:
-        """Without the shaft; the curve is odd."""
-        return 2 * ARCSEC_PER_RAD * float(Chain(of, 0.0, chain.holes).angles([torque_Nm])[0])
+    small = SMALL * min(load_Nm, rated_Nm)
 
-    gap, without_flank, without_any = (
-        twist(of, SMALL * load_Nm) for of in (model, no_flank, no_play)
-    )
+    def gap_of(of: GearModel) -> float:
+        """Where the curve's first tangent meets zero torque; the curve is odd."""
+        at = of.at_torque(small)
+        return 2 * ARCSEC_PER_RAD * (at.rotation - at.slope * at.torque)
+
+    loaded = float(Chain(model, 0.0, chain.holes).angles([load_Nm])[0])
+    gap, without_flank, without_any = (gap_of(of) for of in (model, no_flank, no_play))
     terms = {
         "shaft": 2 * load_Nm * chain.shaft * ARCSEC_PER_RAD,
-        "flexspline": twist(model, load_Nm) - gap,
+        "flexspline": 2 * ARCSEC_PER_RAD * loaded - gap,
         "flank_clearance": gap - without_flank,
         "bearing_play": without_flank - without_any,
         TIGHT: without_any,

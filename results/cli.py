@@ -159,12 +159,17 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """The whole gear, wave generator locked: torque-angle curve, K1, K2, K3, lost motion."""
     with answered(design):
         job = begin(design, out)
+        from flexspline.pipeline.analysis import stiffnesses
         from flexspline.pipeline.gear import gear_curve
         from flexspline.results.gear import RECORD, gear_record, write_gear
 
         curve = gear_curve(job.context)
+        shaft = stiffnesses(job.context, flexspline=False)
+        for line in curve.notes:
+            tell(f"note: {line}")
+        warn(job.design, shaft)
         tell_all(curve.warnings)
-        record = gear_record(job.design, curve, job.wall_s)
+        record = gear_record(job.design, curve, shaft, job.wall_s)
         write_gear(job.folder, curve)
         deliver(job.folder, record, json, RECORD)
 

@@ -10,22 +10,26 @@ from typing import Any
 from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.atomic import write_bytes
 from flexspline.results.figures.gear import CURVE, LOADS, write_gear_angle, write_gear_loads
 from flexspline.results.records import gear_figures, heading
+from flexspline.results.warned import shortfalls
 
 RECORD = "gear.json"
 """The folder may hold the result.json of a run of the same design."""
 CSV = "torque_angle.csv"
 
 
-def gear_record(design: Design, curve: GearCurve, wall_s: float) -> dict[str, Any]:
-    """The keys of docs/contract.md."""
+def gear_record(
+    design: Design, curve: GearCurve, shaft: Stiffnesses, wall_s: float
+) -> dict[str, Any]:
+    """The keys of docs/contract.md; `shaft`: how K_e was found."""
     return {
         **heading(design),
         **gear_figures(curve),
         "wall_s": round(wall_s, 3),
-        "warnings": [*warnings(design), *curve.warnings],
+        "warnings": [*warnings(design), *curve.warnings, *shortfalls(design, shaft)],
     }
 
 

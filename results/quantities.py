@@ -233,6 +233,14 @@ QUANTITIES: tuple[Quantity, ...] = (
         "z_c",
         kind="count",
     ),
+    Quantity(
+        "preload_tooth_force_N",
+        "preload_tooth_force_N",
+        "N",
+        "Largest tooth force without torque, where both flanks press",
+        "F_0",
+        digits=2,
+    ),
     *(
         Quantity(
             f"compliance_shares.{part}",

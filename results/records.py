@@ -172,7 +172,7 @@ def run_record(result: RunResult, wall_s: float) -> Record:
 
 GEAR_FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
-    "lost_motion_arcsec", "teeth_in_contact",
+    "lost_motion_arcsec", "teeth_in_contact", "preload_tooth_force_N",
 )  # fmt: skip
 """Of the record, by their names in `GearCurve`."""
 
@@ -184,6 +184,8 @@ def gear_figures(curve: GearCurve) -> Record:
         "compliance_shares": dict(curve.compliance_shares),
         "terms_arcsec": dict(curve.terms_arcsec),
         "assumed": [{"key": a.key, "value": a.value, "why": a.why} for a in curve.assumed],
+        "notes": list(curve.notes),
+        "warnings": list(curve.warnings),
     }
 
 

@@ -35,6 +35,7 @@ def all_warnings(result: RunResult) -> tuple[str, ...]:
         *result.warnings,
         *result.linear_limit.passed(result.design),
         *shortfalls(result.design, result.stiffnesses, result.fields),
+        *(f"whole gear: {line}" for line in (result.gear.warnings if result.gear else ())),
     )
 
 

@@ -37,6 +37,7 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
         "K3_Nm_per_rad",
         "lost_motion_arcsec",
         "teeth_in_contact",
+        "preload_tooth_force_N",
     ),
 }
 SIZES = ("flexspline_mass_g", "flexspline_length_mm", "shaft_mass_g", "shaft_length_mm")
@@ -57,7 +58,8 @@ def needed(asked: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
 
 def not_a_figure(key: str) -> str:
     """Why a key is refused: the nearest known one, or all of them."""
-    near = get_close_matches(key[:200], FIGURES, n=1, cutoff=0.6)
+    begins = [figure for figure in FIGURES if key and figure.startswith(key)]
+    near = begins or get_close_matches(key[:200], FIGURES, n=1, cutoff=0.6)
     if near:
         return f"unknown figure; did you mean {near[0]}?"
     return f"unknown figure; a study computes {', '.join(FIGURES)}"

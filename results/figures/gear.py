@@ -19,7 +19,7 @@ def write_gear_angle(path: Path, curve: GearCurve) -> None:
     torque, angle = np.array(curve.torque_Nm), np.array(curve.angle_arcsec)
     with styled():
         figure = new_figure(8.0, 4.6)
-        axes = figure.add_axes((0.11, 0.13, 0.86, 0.77))
+        axes = figure.add_axes((0.13, 0.13, 0.84, 0.77))
         axes.axhline(0, color=MUTED, lw=0.8)
         axes.axvline(0, color=MUTED, lw=0.8)
         axes.plot(torque, angle, color=PALETTE[0], lw=2.2)
@@ -39,6 +39,7 @@ def write_gear_angle(path: Path, curve: GearCurve) -> None:
         axes.set_title("Whole gear, wave generator locked")
         axes.set_xlabel("Torque in N·m")
         axes.set_ylabel("Angle in arcsec")
+        axes.margins(y=0.12)  # "rated" stands above the curve's end
         axes.grid(True)
         save_png(figure, path)
 

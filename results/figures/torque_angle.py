@@ -92,7 +92,7 @@ def _annotate(
     axes.plot([load, 1.16 * load], [high, high], color=MUTED, lw=0.8, ls=(0, (4, 3)))
     _span(axes, 1.13 * load, low, high)
     axes.annotate(
-        f"lost motion\n{_total(backlash)} {arcsec.unit}",
+        f"backlash\n{_total(backlash)} {arcsec.unit}",
         (0.97 * load, 0),
         (0, -24),
         textcoords="offset points",

@@ -100,7 +100,7 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
                 name,
                 "–" if in_sum is None else grouped(in_sum, 1),
                 grouped(own, 1),
-                grouped(own - (in_sum or 0.0), 1),
+                grouped(round(own, 1) - round(in_sum or 0.0, 1), 1),
             )
         )
     return Table(
@@ -120,6 +120,10 @@ def _assumed(curve: GearCurve) -> Iterable[Block]:
     each = "; ".join(f"{a.key} = {a.value:.4g} ({a.why})" for a in curve.assumed)
     yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
     if curve.warnings:
-        yield Callout(
-            "amber", items=tuple(f"{line[:1].upper()}{line[1:]}." for line in curve.warnings)
-        )
+        yield Callout("amber", items=_sentences(curve.warnings))
+    if curve.notes:
+        yield Callout("blue", items=_sentences(curve.notes))
+
+
+def _sentences(lines: Iterable[str]) -> tuple[str, ...]:
+    return tuple(f"{line[:1].upper()}{line[1:]}." for line in lines)

@@ -143,6 +143,7 @@ def _gear(found: Found) -> Message:
         ],
         "marks": [[symbol, found[key]] for symbol, key in GEAR_MARKS],
         "assumed": [f"{a['key']} = {a['value']:.4g}" for a in found["assumed"] if "." in a["key"]],
+        "warnings": found["warnings"],
         "line": found.get("line"),
     }
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.rated import rated_torque
+from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
@@ -13,6 +15,9 @@ from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.why import signed, unfollowed
 
+PRELOAD = "preload_tooth_force_N"
+LISTED = 5
+"""Best designs that the terminal and the report's table show."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
@@ -26,6 +31,7 @@ def notes(result: StudyResult) -> list[str]:
         _mass(result.study.design),
     ]
     said += _borders(result)
+    said += _whole_gear(result)
     if not result.verified:
         asked = result.study.file.run.verify
         why = (
@@ -61,6 +67,34 @@ def _used(result: StudyResult, key: str) -> str:
     roles = (("an objective", [*file.objective]), ("a constraint", [*file.constraint]))
     said = " and ".join(role for role, keys in roles if key in keys)
     return f"{said} of this study" if said else ""
+
+
+def preloaded(result: StudyResult) -> Iterable[str]:
+    """A line where teeth press on both flanks without torque in some designs: no gear runs like that."""
+    forces = [r.outcome.figures.get(PRELOAD, 0.0) for r in result.built]
+    if count := sum(force > 0 for force in forces):
+        best = [str(r.slot) for r in result.best(LISTED) if r.outcome.figures.get(PRELOAD, 0.0) > 0]
+        among = f"; among the best: {', '.join(best)}" if best else ""
+        yield (
+            f"in {count} of {len(forces)} designs teeth press on both flanks without torque ({PRELOAD} in "
+            f"study.csv; a constraint on it keeps them out){among}"
+        )
+
+
+def _whole_gear(result: StudyResult) -> Iterable[str]:
+    """What its figures leave out, and which designs do not run."""
+    if not any(PRELOAD in r.outcome.figures for r in result.built):
+        return
+    varied = result.study.keys
+    _, rated = rated_torque(result.study.design)
+    assumed = [*rated, *flexible_bearing(result.study.design).assumed]
+    keys = ", ".join(a.key for a in assumed if a.key not in varied)
+    yield (
+        "Whole gear: wave generator locked, no friction; T1 and T2 are 0.15 and 0.5 of rated torque; an odd "
+        "number of balls is computed as the next even one; run.verify does not solve it again."
+        + (f" Not stated, so in proportion: {keys}." if keys else "")
+    )
+    yield from (f"{line[:1].upper()}{line[1:]}." for line in preloaded(result))
 
 
 def _mass(design: Design) -> str:

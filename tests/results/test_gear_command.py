@@ -14,6 +14,7 @@ import flexspline
 from flexspline.geometry.template import design_text
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear import LAWS, GearCurve
+from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear
 
@@ -30,7 +31,7 @@ def curve() -> GearCurve:
 
 
 def test_the_contract_s_keys(curve: GearCurve) -> None:
-    record = json.loads(json.dumps(gear_record(DESIGN, curve, 1.0)))
+    record = json.loads(json.dumps(gear_record(DESIGN, curve, Stiffnesses({}), 1.0)))
     assert {
         "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "lost_motion_arcsec",
         "teeth_in_contact", "compliance_shares",
@@ -71,6 +72,33 @@ def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
     same = flexspline.gear(stated)
     assert same.K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
     assert same.assumed == LAWS  # what no key states
+
+
+def test_teeth_that_press_without_torque_are_said_with_the_reason() -> None:
+    """A plug whose stroke is no m(z2 - z1)/2 leaves the teeth where both flanks touch."""
+    short = flexspline.gear(DESIGN.changed({"wave_generator.deflection_mm": 0.13}))
+    assert short.preload_tooth_force_N > 0
+    (line,) = short.warnings
+    assert "press on both flanks" in line
+    assert "the plug's stroke of 0.13 mm is not m(z2 - z1)/2 = 0.2 mm" in line
+
+
+def test_the_gear_as_drawn_is_free_without_torque(curve: GearCurve) -> None:
+    assert curve.preload_tooth_force_N == 0
+    assert curve.warnings == ()
+    assert any("23 balls" in line for line in curve.notes)
+
+
+def test_the_free_angle_does_not_hang_on_the_load() -> None:
+    """Its parts are those of the gear without torque, whatever torque the backlash is asked at."""
+    small, large = (
+        flexspline.gear(DESIGN.changed({"load.torque_Nm": torque})).terms_arcsec
+        for torque in (0.5, 50.0)
+    )
+    for term in ("flank_clearance", "bearing_play", "tight_gear"):
+        # a gap is taken at a thousandth of load or rated torque, where Hertz's contacts have yielded a little
+        assert small[term] == pytest.approx(large[term], abs=0.2)
+    assert large["flexspline"] > 50 * small["flexspline"] / 3
 
 
 def test_files(curve: GearCurve, tmp_path: Path) -> None:

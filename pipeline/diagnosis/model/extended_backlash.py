@@ -27,7 +27,8 @@ class ExtendedBacklash:
 
     Attributes
     ----------
-    calibration_arcsec : from the nominal stiffness and gap to the measured ones.
+    calibration_arcsec : from the nominal stiffness and gap to the measured ones; of a model fitted against
+        the whole gear, from the sum to the gear's calibrated curve.
     causes_arcsec : what each cause adds between the two ends, by its id; may be negative.
     """
 
@@ -63,6 +64,8 @@ def extended_backlash(
         added[cause_id] = float(angle[high].mean() - angle[low])
     own = np.array(list(model.own.values()) or [(0.0, 0.0)]).mean(axis=0)
     twist = 2 * torque_Nm * (model.compliance + own[0])
+    if model.bend is not None:  # fitted against the gear's curve, which leaves its chord
+        twist += 2 * float(model.bend.at(np.array([torque_Nm]))[0])
     gap = model.gap_arcsec + own[1]
     windup = nominal.shaft_arcsec + nominal.flexspline_arcsec
     free = nominal.flank_clearance_arcsec + nominal.bearing_play_arcsec

@@ -90,7 +90,7 @@ export function chartLine(line, budget, looks, pinned, tall) {
   const total = budget.rows.find((row) => row.key.endsWith("total"));
   const std = budget.rows.find((row) => row.key.endsWith("std"));
   chart.append(svg("text", { x: W - EDGE.right - 4, y: H - EDGE.bottom - 7, "text-anchor": "end", class: "strong" },
-    `lost motion ${total.text}${std ? ` ± ${std.text}` : ""}`));
+    `backlash ${total.text}${std ? ` ± ${std.text}` : ""}`));
   return chart;
 }
 

@@ -94,10 +94,19 @@ export class Figures {
     this.drawGear(now.gear, pinned?.gear);
   }
 
+  // Why there is none of the design as it stands.
+  withoutGear({ number, text }) {
+    this.noGear = { number, text };
+    this.draw();
+  }
+
   drawGear(gear, pinned) {
     this.gear.className = this.stale(GEAR) ? "stale" : "";
     this.gear.replaceChildren();
-    if (gear) this.gear.append(this.heading("Whole gear, wave generator locked", "arcsec over N·m"), ...gearPanel(gear, pinned));
+    if (this.noGear && this.noGear.number === state.number) {
+      this.gear.className = "";
+      this.gear.append(this.heading("Whole gear, wave generator locked", ""), el("p", { class: "limit" }, `Not found: ${this.noGear.text}`));
+    } else if (gear) this.gear.append(this.heading("Whole gear, wave generator locked", ""), ...gearPanel(gear, pinned));
   }
 
   // Where the answers do not stand beside the sliders: four of them in a line that stays in sight.

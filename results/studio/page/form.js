@@ -58,7 +58,7 @@ export class Form {
         this.broke();
         return this.fault(entry.key, `${entry.key}: a number is needed${entry.unit ? ` in ${entry.unit}` : ""}`);
       }
-      if (typed !== undefined) slider.value = typed;
+      slider.value = typed ?? entry.usual ?? entry.low;
       this.put(entry, typed);
     });
     // what was taken of "1,5" or "1 000" is shown

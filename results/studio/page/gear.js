@@ -27,6 +27,7 @@ export function gearPanel(gear, pinned) {
     el("table", {}, el("tbody", {}, ...rows)),
     shares(gear.shares),
     gear.line ? curve(gear, pinned?.line) : null,
+    ...gear.warnings.map((line) => el("p", { class: "fault" }, `${line}.`)),
     gear.assumed.length ? el("p", { class: "limit" }, `Assumed, as the design does not state it: ${gear.assumed.join(", ")}.`) : null,
   ].filter(Boolean);
 }

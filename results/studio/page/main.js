@@ -143,6 +143,7 @@ function heardOfThis(note) {
   if (note.is === "answer" && note.beyond) stage.passed(note.beyond);
   if (note.is === "fault" || note.is === "failed") {
     form.fault(note.key, note.text);
+    if (note.question === "gear") figures.withoutGear(note);
     state.broken = note.is === "fault";
     mark();
     stage.working(false, state.broken ? "Shown: the last design that can be built." : "");

@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
@@ -94,6 +95,14 @@ def test_a_model_file_keeps_the_bend(tmp_path: Path) -> None:
         path.write_text(text.replace(old, new), encoding="utf-8")
         with pytest.raises(ModelFileError, match=r"\[bend\]"):
             read_model_file(path)
+
+
+def test_the_budget_of_an_extended_model_has_the_bend_in_it() -> None:
+    """What the sum becomes with the model is what the model itself predicts between the two torques."""
+    model = ExtendedModel(11.0, 70.0, {"": 5.0}, {}, {}, Bend((0.0, 1.0, 2.0), (0.0, 3.0, 0.0)))
+    nominal = flexspline.backlash(DESIGN, K_b, K_e)
+    high, low = model.angle_arcsec([1.0, -1.0])
+    assert extended_backlash(nominal, model, 1.0).total_arcsec == pytest.approx(high - low)
 
 
 def test_only_a_sweep_is_held_against_the_gear(chain: Chain) -> None:

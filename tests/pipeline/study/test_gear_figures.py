@@ -45,6 +45,11 @@ def test_a_gear_that_cannot_be_loaded_costs_only_its_own_figures() -> None:
     assert "K2_Nm_per_rad" not in row.figures
 
 
+def test_a_name_that_begins_like_figures_is_answered_with_the_first() -> None:
+    with pytest.raises(StudyError, match="did you mean K2_Nm_per_rad"):
+        study_of(GRID.replace('"K_b_Nm_per_rad"', '"K2"'))
+
+
 def test_it_is_solved_only_where_it_is_asked_for() -> None:
     assert "gear" not in needed(["K_b_Nm_per_rad"], ("torsion",))
     asked = study_of(GRID.replace('"K_b_Nm_per_rad"', '"K2_Nm_per_rad"'))
