@@ -27,6 +27,7 @@ from hidden.reading import draw_kinematic, draw_torque_offset
 from hidden.rig_faults import RIG_FAULTS
 from hidden.slow import draw_creep, draw_drift, draw_rate
 from hidden.surroundings import REFERENCE_C
+from hidden.thermal_mass import draw_thermal_mass
 from hidden.truth import CALIBRATED, standing
 
 CAUSES: dict[str, Callable[[Setting, np.random.Generator], Hidden]] = {
@@ -47,6 +48,7 @@ CAUSES: dict[str, Callable[[Setting, np.random.Generator], Hidden]] = {
 FORMS: dict[str, tuple[str, Callable[[Setting, np.random.Generator], Hidden]]] = {
     "friction_ahead": ("friction_hysteresis", draw_friction_ahead),
     "micro_slip": ("friction_hysteresis", draw_micro_slip),
+    "thermal_mass": ("thermal_clearance", draw_thermal_mass),
 }
 """Further forms of a cause, by name; drawn only where asked for, so that old seeds keep their records."""
 DECIDABLE = 6.0

@@ -37,6 +37,11 @@ FOR_FORM: dict[str, Plan] = {
     "micro_slip": Plan(
         several_rates=True, several_peaks=True, with_columns=("time_s",), cycles=(3, 8)
     ),
+    "thermal_mass": Plan(
+        air=("ramp", "heating", "swing", "oven"),
+        with_columns=("temperature_C", "time_s"),
+        cycles=(4, 8),
+    ),
 }
 """Of forms that only other programmes than their cause's show: micro-slip has no loop of one size."""
 

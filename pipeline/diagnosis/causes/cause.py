@@ -121,6 +121,10 @@ class Cause(ABC):
     def shapes(self, rig: Rig) -> list[Shape]:
         """Shapes worth trying on a rig's record; none where it lacks the channel."""
 
+    def stands_alone(self, shape: Shape) -> bool:
+        """Whether an element of this shape is all there is of the cause: no second one stands beside it."""
+        return False
+
     def possible(self, shape: Shape) -> bool:
         """Whether refining may go as far as this shape."""
         return True

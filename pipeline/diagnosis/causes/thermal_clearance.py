@@ -13,15 +13,28 @@ from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
 LAGS = (0.02, 0.05, 0.12, 0.3)
 """As shares of the record's duration; besides none."""
+STAGES = "stages"
+"""The parameter of a gear that warms through its housing: two lags of one time constant, one behind the
+other. Two unequal ones lie between that and a single one."""
+WARMER, COLDER = "warmer_K", "colder_K"
+"""Parameters of a gear that is not settled when its record begins: how far from the sensor's temperature."""
+MOST_OFF = "most_off_K"
+"""The parameter beside them: how far at most."""
+OFF_SHARE = 0.5
+"""Of the most, where tuning begins: it goes down to nothing and up to all of it."""
+SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
+"""How far a gear is off at most. Of what the air spans in the record, as it swung before it too: behind
+a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
+steady air: what it keeps of the last test or of the night."""
 
 
 class ThermalClearance(Cause):
-    """Gap k·(ϑ − 20 °C) with k [arcsec/K]; the gear may lag the sensor by a time constant."""
+    """Gap k·(ϑ − 20 °C) with k [arcsec/K]; ϑ may lag the sensor, in one or two stages, and start off it."""
 
     id = "thermal_clearance"
     title = "clearance that changes with temperature"
     unit = "arcsec/K"
-    tunable = ("lag_s",)
+    tunable = ("lag_s", WARMER, COLDER)
     vary = "temperature_C"
     shows_over = "temperature_C"
     shows_as = "gap"
@@ -31,19 +44,37 @@ class ThermalClearance(Cause):
         if rig.history.temperature_C is None:
             return []
         longest = LAGS[-1] * rig.duration_s
-        lags_s = [0.0, *(s * rig.duration_s for s in LAGS if rig.duration_s > 0)]
-        return [{"lag_s": lag, "longest_lag_s": longest} for lag in lags_s]
+        plain: list[Shape] = [{"lag_s": 0.0, "longest_lag_s": longest}]
+        if rig.duration_s <= 0:
+            return plain
+        lagging = [{"lag_s": s * rig.duration_s, "longest_lag_s": longest} for s in LAGS]
+        twice = [{**shape, STAGES: 2.0} for shape in lagging]
+        most = max(SWING_SHARE * float(np.ptp(rig.history.temperature_C)), LEAST_MOST_K)
+        off = [
+            {**shape, way: OFF_SHARE * most, MOST_OFF: most}
+            for shape in (*lagging[1:], *twice[1:]) for way in (WARMER, COLDER)
+        ]  # fmt: skip
+        return [*plain, *lagging, *twice, *off]
+
+    def stands_alone(self, shape: Shape) -> bool:
+        """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
+        return MOST_OFF in shape
 
     def possible(self, shape: Shape) -> bool:
         """A lag as long as the record makes any temperature a constant, which is another cause."""
-        return shape["lag_s"] <= shape["longest_lag_s"]
+        off = max(shape.get(WARMER, 0.0), shape.get(COLDER, 0.0))
+        return shape["lag_s"] <= shape["longest_lag_s"] and off <= shape.get(MOST_OFF, 0.0)
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         if history.temperature_C is None:
             raise ValueError("thermal clearance needs a temperature")
         temperature = history.temperature_C
         if shape["lag_s"] > 0:
-            temperature = lags(temperature, history, np.array([shape["lag_s"]]))[:, 0]
+            constant, stages = np.array([shape["lag_s"]]), int(shape.get(STAGES, 1))
+            for _ in range(stages):
+                temperature = lags(temperature, history, constant)[:, 0]
+            off = shape.get(WARMER, 0.0) - shape.get(COLDER, 0.0)
+            temperature = temperature + off * _still_there(history, shape["lag_s"], stages)
         return ((temperature - REFERENCE_C) * history.sign / 2)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
@@ -51,3 +82,16 @@ class ThermalClearance(Cause):
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)
+
+
+def _still_there(history: History, lag_s: float, stages: int) -> np.ndarray:
+    """(n,) share of what housing and gear were off at each unit's first row that is left of the gear's.
+
+    e^(−t/τ) of one stage, (1 + t/τ)·e^(−t/τ) of two: the gear follows a housing that comes back itself.
+    """
+    assert history.time_s is not None
+    out = np.empty(len(history))
+    for rows in history.unit_slices:
+        passed = (history.time_s[rows] - history.time_s[rows[0]]) / lag_s
+        out[rows] = np.exp(-passed) * (1 + passed if stages == 2 else 1.0)
+    return out

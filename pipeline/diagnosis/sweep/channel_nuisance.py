@@ -17,6 +17,8 @@ WAVES = range(3, 61)
 """Half periods over the time of the record."""
 STEADY_K = 0.3
 """A temperature that varies by less is constant to a usual sensor's ±0.3 K at 0 °C (IEC 60751, class B)."""
+LEAST_BENT = 0.02
+"""Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
 DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
@@ -83,7 +85,11 @@ def over_cycle(rig: Rig) -> Made:
 
 
 def over_temperature(rig: Rig) -> Made:
-    """What temperature can do beside a gap linear in it."""
+    """What temperature can do beside a gap linear in it.
+
+    Of a gap that is not linear only what no linear one can be: one that grew as (ϑ − 20 °C)² alone would not
+    change with temperature at 20 °C at all, and no material does that.
+    """
     temperature = rig.history.temperature_C
     if temperature is None or np.ptp(temperature) < STEADY_K:
         return
@@ -93,7 +99,12 @@ def over_temperature(rig: Rig) -> Made:
     yield "temperature_C", "a zero that changes with temperature", warm[:, None]
     yield "temperature_C", "a zero that changes with temperature", smooth(centred, 3)
     yield "temperature_C", "a stiffness that changes with temperature", (warm * torque)[:, None]
-    yield "temperature_C", "a gap not linear in temperature", (warm**2 * rig.history.sign)[:, None]
+    side = rig.history.sign
+    linear = np.column_stack([side, warm * side])
+    curved = warm**2 * side
+    bent = curved - linear @ np.linalg.lstsq(linear, curved, rcond=None)[0]
+    if np.std(bent) > LEAST_BENT * np.std(curved):
+        yield "temperature_C", "a gap not linear in temperature", bent[:, None]
 
 
 def over_position(rig: Rig) -> Made:

@@ -100,8 +100,9 @@ def design_matrix(
             spread = np.full(k, cause.spread(shape, rig))
             at = slice(width, width + k)
             share = -log(len(shapes))
+            against = frozenset({cause.id} if cause.stands_alone(shape) else ())
             terms.append(
-                Regressor(cause, shape, "", cause.title, at, spread, cause.positive, share)
+                Regressor(cause, shape, "", cause.title, at, spread, cause.positive, share, against)
             )
             blocks.append(block.astype(np.float32))
             width += k
