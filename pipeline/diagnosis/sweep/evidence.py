@@ -15,6 +15,10 @@ MOST_ROWS = 4000
 """Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
 
 
+AT_ONCE = 64
+"""Columns whitened together: 3 MB of 6000 rows."""
+
+
 @dataclass(frozen=True)
 class GaussianEvidence:
     """Products of whitened columns, with the base (zero, compliance, gap) marginalised.
@@ -66,9 +70,9 @@ def gaussian_evidence(
     y = bare.prepared(target[:, None])[:, 0]
     base = bare.prepared(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
-    step = 64
     wide = [
-        bare.prepared(columns.all[:, i : i + step]) for i in range(0, columns.all.shape[1], step)
+        bare.prepared(columns.all[:, i : i + AT_ONCE])
+        for i in range(0, columns.all.shape[1], AT_ONCE)
     ]
     x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
     block = max(1, int(kept.sum()) // MOST_ROWS)

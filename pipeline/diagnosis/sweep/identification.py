@@ -24,6 +24,9 @@ MINOR_SHARE = 0.045
 has but one shape."""
 MOST_WEAK = 4
 """Causes that are taken out again, one at a time, where they are not worth their place."""
+MORE_WITHOUT, MORE_OF_RIVAL = 2, 3
+"""Terms that a set without a cause, or with a rival in its place, may have more than the best set: another
+law takes two or three elements for one."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
 
@@ -107,11 +110,25 @@ def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
     return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
 
 
+def _cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
+    """Whether one cause's elements are large effects that together are small: that makes any curve."""
+    fit = fit_regressors(evidence, c.terms)
+    parts = np.array([
+        evidence.columns.all[evidence.kept][:, evidence.terms[i].at] @ amplitudes
+        for i, amplitudes in zip(c.terms, fit.posterior.amplitudes(evidence), strict=True)
+        if evidence.terms[i].owner == owner
+    ])  # fmt: skip
+    parts -= parts.mean(axis=1, keepdims=True)
+    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
+
+
 def _without(evidence: GaussianEvidence, best: Candidate, cause: str) -> Candidate:
     """The best set that does without a cause: nuisance terms and other causes may stand in."""
     start = [i for i in best.terms if evidence.terms[i].owner != cause]
     search = Search(evidence, lambda t: t.owner != cause)
-    return _plausible(evidence, search, search.run([start, ()], most=len(best.terms) + 2))
+    return _plausible(
+        evidence, search, search.run([start, ()], most=len(best.terms) + MORE_WITHOUT)
+    )
 
 
 def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
@@ -133,8 +150,8 @@ def _rivals(
     for other in sorted(others):
         allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
         search = Search(evidence, owned_by(allowed))
-        rival = search.run([start], most=len(best.terms) + 3)
-        if other not in rival.named(evidence):
+        rival = search.run([start], most=len(best.terms) + MORE_OF_RIVAL)
+        if other not in rival.named(evidence) or _cancels_itself(evidence, rival, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):

@@ -16,6 +16,8 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
+FEWEST_WEIGHT_LOGS = 6.0
+"""Sets that count by less than e^−6 = 0.25 % are left out."""
 CANCELLED_DOUBT = 0.003
 """Of what cancels between a cause's elements: two lags of opposite sign may stand for a delay. Of nine
 made-up records with one, two deviations hold the truth in five without this, one deviation in all with it."""
@@ -99,7 +101,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         }.values(),
         key=lambda c: -c.score,
     )[:MOST_SHAPES]
-    alike = [c for c in alike if c.score > identified.best.score - 6 * SHAPE_NATS]
+    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * SHAPE_NATS]
     weight = np.exp([(c.score - identified.best.score) / SHAPE_NATS for c in alike])
     weight /= weight.sum()
     each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]

@@ -26,6 +26,10 @@ WARMER_K = 20.0
 """From 20 to 40 °C; the separation of rivals by this plan grows in proportion to it."""
 POSITIONS_DEG = (0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0)
 """Steps of 50° tell the harmonics 1, 2 and 4 per turn apart; at steps of 60° 4 is an alias of 2."""
+LONG_HOLD = 20.0
+"""Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
+FASTER = 10.0
+"""Times faster and slower: what lags changes by a factor of 100 between the two, friction not at all."""
 MORE_CYCLES = 40
 """Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
 
@@ -72,12 +76,12 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         MeasurementPlan(
             "torque_rate",
             "repeat the sweep ten times slower and ten times faster",
-            cycles((1.0,) * 3, (1.0, 10.0, 0.1), (0.0,) * 3, (place0,) * 3, (last,) * 3),
+            cycles((1.0,) * 3, (1.0, FASTER, 1 / FASTER), (0.0,) * 3, (place0,) * 3, (last,) * 3),
         ),
         MeasurementPlan(
             "hold",
             "hold the torque at both ends for twenty ramps",
-            cycles(places=same, numbers=(last, last), hold=20.0),
+            cycles(places=same, numbers=(last, last), hold=LONG_HOLD),
         ),
         MeasurementPlan(
             "torque_amplitude",

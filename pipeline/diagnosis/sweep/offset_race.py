@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.noise import BAND_SIGMAS
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.first_offset import first_offset
@@ -85,7 +86,7 @@ def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
     """
     one, other = (e.prepared.rig.history for e in (found, plain))
     largest = plain.prepared.rig.torque_Nm
-    side = max(BESIDE_STEP * largest, 4 * torque_noise_Nm(plain.prepared.rig.history))
+    side = max(BESIDE_STEP * largest, BAND_SIGMAS * torque_noise_Nm(plain.prepared.rig.history))
     common = (np.abs(one.torque_Nm) > side) & (np.abs(other.torque_Nm) > side)
     common &= ~(found.prepared.outlier & plain.prepared.outlier)
     for history in (one, other):

@@ -39,6 +39,8 @@ TUNINGS, KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
+OF_BASE = 3
+"""Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
 """Of the best set's evidence: a cause that explains less by itself is not tuned alone."""
 WORTH_TUNING = 1.0
@@ -164,7 +166,9 @@ def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> Prepare
     outlier = np.zeros(len(left), bool)
     outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
     kept = inside & ~outlier
-    noise = estimated(left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + 3)
+    noise = estimated(
+        left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + OF_BASE
+    )
     return replace(prepared, noise=noise, kept=kept, outlier=outlier)
 
 

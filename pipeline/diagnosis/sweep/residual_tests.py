@@ -19,6 +19,10 @@ BINS = 12
 every third of 34)."""
 FEWEST_PER_BIN = 5
 """Usual least count of a bin in a χ² test (Cochran, Biometrics 10, 417 (1954))."""
+APART = 4.0
+"""Largest torques by which the two directions of loading are moved apart: each spans two."""
+STEADY_SIGMAS = 3.0
+"""Deviations of the torque's noise within which bins of torque do not follow the reading."""
 SIGNIFICANT = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested."""
 SURE = 1e-8
@@ -107,10 +111,10 @@ def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
     h = prepared.rig.history
     side = direction_of_loading(h)
     # bins of the raw reading would sort a hold's rows by the torque's noise, which the angle shows
-    torque = steadied(h, 3 * torque_noise_Nm(h))
+    torque = steadied(h, STEADY_SIGMAS * torque_noise_Nm(h))
     found: dict[str, np.ndarray] = {
         "torque_Nm": torque,
-        "direction": torque + 4 * prepared.rig.torque_Nm * side,
+        "direction": torque + APART * prepared.rig.torque_Nm * side,
         "cycle": h.cycle.astype(float),
     }
     if prepared.sweep.history.time_s is not None and h.time_s is not None:

@@ -46,7 +46,9 @@ def giving_way(rig: Rig) -> Made:
     load = _loads(history, limits[0])
     if 2 <= load.max() + 1 <= MOST_LOADS:
         yield "torque_amplitude", GIVES_WAY, _own(_ways(history, limits[0]), load)
-        for limit in limits[1:3]:
+        for limit in limits[
+            1:3
+        ]:  # the middle ones: amplitudes of each load's own fit those between
             yield "torque_amplitude", GIVES_WAY, _own(_highest(history, limit, load), load)
 
 

@@ -39,6 +39,15 @@ TEMPERATURE = _Kind("temperature_C", "temperature", "°C", ".1f", 4.0)
 """4 K: what an ordinary room, ±2 K, does not do by itself."""
 
 
+FEWEST_PLACES, FEWEST_UNITS = 4, 3
+"""Positions, or units, of which one can be spared: three show the two amplitudes of a harmonic and a zero,
+two what units have in common."""
+EVERY = 3
+"""Of cycles or positions, one in so many is held out."""
+MOST_NAMED = 6
+"""Positions that a label lists."""
+
+
 @dataclass(frozen=True)
 class Split:
     """What is held out, in words, and its rows (n,); `channel` where it is a whole level of one."""
@@ -58,7 +67,7 @@ def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Sp
     present = np.unique(history.cycle)
     count = len(present)
     if count >= 2:
-        places = [1] if count == 2 else [c for c in range(1, count - 1) if c % 3 == 1]
+        places = [1] if count == 2 else [c for c in range(1, count - 1) if c % EVERY == 1]
         chosen = present[places]
         own = names[0] if len(names[0]) == count else tuple(present + 1.0)
         label = ", ".join(f"{own[c]:g}" for c in places)
@@ -66,12 +75,12 @@ def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Sp
             f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
         )
     position = history.input_angle_deg
-    if position is not None and len(spots := np.unique(position)) >= 4:
-        chosen_places = spots[1::3]
-        label = ", ".join(f"{p:g}" for p in chosen_places[:6])
+    if position is not None and len(spots := np.unique(position)) >= FEWEST_PLACES:
+        chosen_places = spots[1::EVERY]
+        label = ", ".join(f"{p:g}" for p in chosen_places[:MOST_NAMED])
         return Split(f"input_angle_deg {label}", np.isin(position, chosen_places))
     units = history.unit_slices
-    if len(units) >= 3:
+    if len(units) >= FEWEST_UNITS:
         rows = np.zeros(len(history), bool)
         rows[units[1]] = True
         return Split("unit 2", rows)

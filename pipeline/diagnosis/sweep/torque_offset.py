@@ -31,6 +31,17 @@ UNSURE = 0.7
 """Of the variance (gap/2)²(1 − side²) of a row that lies on either side. Between 0.4 and 1 it hardly matters:
 of 60 made-up crossings (gap 72 arcsec, rows 0.033 N·m apart) the offset's error has an rms of 2.2 to 2.3 of
 its deviation, which is too small where rows are as sparse as that."""
+SEEN = 2.0
+"""Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
+FINE_STEPS = 81
+"""Offsets between two neighbours of the first search; their spacing is in the deviation."""
+UNSEEN_STEPS = 9
+"""Offsets within the torque's noise, each of which counts as none: a quarter of its reach apart."""
+LEAST_WIDTH = 1e-4
+"""Of the largest torque: a crossing without torque noise has this width, below any torque cell's digits."""
+SPIKE_REACH = 6.0
+"""Times the noise, beside twice the gap, over which a row may lie that the crossing's model does not claim:
+three deviations either way."""
 OUTLIER_SHARE = 0.01
 """Rows that the crossing's model does not claim."""
 
@@ -61,7 +72,7 @@ def crossing(
     Returns None where the gap is too small to see, or no rows lie near zero.
     """
     largest = float(np.abs(torque_Nm).max())
-    if gap_arcsec < 2 * noise_arcsec or largest == 0:
+    if gap_arcsec < SEEN * noise_arcsec or largest == 0:
         return None
     if not both_ways(torque_Nm):
         return None
@@ -71,7 +82,7 @@ def crossing(
     beside = np.abs(np.abs(left) - gap_arcsec / 2)
     noise_arcsec = max(noise_arcsec, MISFIT * SIGMA_PER_MAD * float(np.median(beside)))
     offsets = np.linspace(-REACH, REACH, STEPS) * largest * INSIDE
-    floor = max(torque_noise_Nm, 1e-4 * largest)
+    floor = max(torque_noise_Nm, LEAST_WIDTH * largest)
     best = [
         np.array(
             [_log_likelihood(o, w * floor, torque, left, gap_arcsec, noise_arcsec) for o in offsets]
@@ -80,7 +91,7 @@ def crossing(
     ]
     table = np.array(best)
     w, k = divmod(int(table.argmax()), STEPS)
-    fine = np.linspace(offsets[max(0, k - 1)], offsets[min(STEPS - 1, k + 1)], 81)
+    fine = np.linspace(offsets[max(0, k - 1)], offsets[min(STEPS - 1, k + 1)], FINE_STEPS)
     along = np.array(
         [
             _log_likelihood(o, WIDTHS[w] * floor, torque, left, gap_arcsec, noise_arcsec)
@@ -88,7 +99,9 @@ def crossing(
         ]
     )
     # an offset within the torque's noise is none
-    unseen = max(UNSEEN * torque_noise_Nm, offsets[1] - offsets[0]) * np.linspace(-1, 1, 9)
+    unseen = max(UNSEEN * torque_noise_Nm, offsets[1] - offsets[0]) * np.linspace(
+        -1, 1, UNSEEN_STEPS
+    )
     none = max(
         _log_likelihood(o, x * floor, torque, left, gap_arcsec, noise_arcsec)
         for o in unseen
@@ -114,5 +127,5 @@ def _log_likelihood(
     off = (left - gap / 2 * side) ** 2 / variance
     # a row that the model does not claim lies anywhere over twice the gap
     own = np.log(1 - OUTLIER_SHARE) - off / 2 - np.log(2 * np.pi * variance) / 2
-    other = np.log(OUTLIER_SHARE / (2 * gap + 6 * noise))
+    other = np.log(OUTLIER_SHARE / (2 * gap + SPIKE_REACH * noise))
     return float(np.logaddexp(own, other).sum())
