@@ -34,7 +34,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_stress import draw_best_stress
         from flexspline.results.study.figures import write_figures
-        from flexspline.results.study.notes import border_warnings
+        from flexspline.results.study.notes import border_warnings, preloaded
         from flexspline.results.study.progress import Watch
         from flexspline.results.study.record import summary, words
         from flexspline.results.study.report import write_study_reports
@@ -61,7 +61,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         if kept := len(store.rows()):
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
-        for line in border_warnings(result):
+        for line in (*border_warnings(result), *preloaded(result)):
             tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)

@@ -68,3 +68,15 @@ def test_what_the_design_file_leaves_to_its_default_can_be_varied_but_cannot_sca
         study_of(scattered)
     with pytest.raises(StudyError, match="is no number of the design file"):
         study_of(GRID.replace("flexspline.wall_thickness_mm", "shaft.keyway.depth_mm"))
+
+
+def test_jammed_teeth_are_in_the_row() -> None:
+    """So that a study which wants little lost motion can keep out gears that do not run."""
+    tables = HOLE_FREE.model_dump(mode="json", exclude_none=True)
+    short, full = (
+        evaluate(Task(tables, {"wave_generator.deflection_mm": stroke}, ("torsion", "gear")))
+        for stroke in (0.13, 0.2)
+    )
+    assert short.figures["preload_tooth_force_N"] > 0
+    assert full.figures["preload_tooth_force_N"] == 0
+    assert short.figures["lost_motion_arcsec"] < full.figures["lost_motion_arcsec"]
