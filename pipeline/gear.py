@@ -209,6 +209,10 @@ def _notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
             f"plain flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major axis: "
             f"taken as relieved, by {_rounded(1e3 * mesh.largest_relief)} µm at {degrees(mesh.reach):.0f}°"
         )
+    if design.flexspline.teeth == "drawn":
+        lines.append(
+            f"gaps are those of straight flanks of {design.gear.pressure_angle_deg:g}°, not of the drawn ones"
+        )
     most = int(np.abs(teeth).argmax())
     if most in (0, len(teeth) - 1):
         lines.append(

@@ -17,13 +17,16 @@ SCALE = 1.25
 
 
 def main() -> None:
-    """The example cup in light, complete, as at 1280 by 800."""
-    sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "results" / "studio")]
+    """The example cup in light, complete, at 1280 by 1000, so that the whole gear shows."""
+    sys.path.insert(0, str(ROOT / "tests" / "helpers"))
     from browser import chromium
     from studio_page import Page, running
 
     with running(ROOT / "examples" / "xb1-40.toml") as server, chromium() as browser:
-        page = Page(browser, server.url, color_scheme="light", device_scale_factor=SCALE)
+        room = {"width": 1280, "height": 1000}
+        page = Page(
+            browser, server.url, color_scheme="light", device_scale_factor=SCALE, viewport=room
+        )
         page.complete()
         page.tab.wait_for_timeout(1000)
         shot = Image.open(io.BytesIO(page.tab.screenshot())).convert("RGB")
