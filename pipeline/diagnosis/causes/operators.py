@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -25,11 +27,20 @@ def stops(
         state = np.clip(start * high + torque_Nm[rows[0]], low, high)
         steps = np.diff(torque_Nm[rows], prepend=torque_Nm[rows[0]])
         block = np.empty((len(rows), len(high)))
-        for i, step in enumerate(steps):
-            state = np.minimum(np.maximum(state + step, low), high)
-            block[i] = state
+        for first, last in _one_way(steps):  # along it nothing is lost but at one limit
+            moved = state + np.cumsum(steps[first:last])[:, None]
+            one = np.minimum(moved, high) if steps[first:last].sum() > 0 else np.maximum(moved, low)
+            block[first:last], state = one, one[-1]
         out[rows] = block
     return out
+
+
+def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:
+    """Stretches (first, after the last) along which no step turns back."""
+    moving = np.flatnonzero(steps)
+    turned = moving[1:][np.sign(steps[moving[1:]]) != np.sign(steps[moving[:-1]])]
+    edges = [0, *turned.tolist(), len(steps)]
+    return list(pairwise(edges))
 
 
 def play(history: History, width_Nm: float) -> np.ndarray:

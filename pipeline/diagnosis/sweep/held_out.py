@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 from flexspline.pipeline.diagnosis.sweep.splits import Split, between_others, whole_levels
 
+MOST_ROWS = 24_000
+"""Rows that all levels together may take, each with a search of its own: 1.5 ms of a processor a row."""
 FEWEST_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 
@@ -33,6 +35,7 @@ def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple
     prepared = explained.prepared
     timed = prepared.sweep.history.time_s is not None
     splits = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
+    splits = splits[-(MOST_ROWS // len(prepared.kept)) :] if len(prepared.kept) <= MOST_ROWS else []
     gains = (_gain(explained, causes, split) for split in splits)
     return tuple(g for g in gains if g is not None)
 
