@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Literal
 
 import numpy as np
@@ -30,6 +31,13 @@ class NamedCause:
     """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
     widest_arcsec: float | None = None
     """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
+
+    @property
+    def deviations(self) -> float:
+        """How many standard deviations the size is away from no effect; a hardening of 1 is none."""
+        none = 1.0 if self.id == "stiffness_hardening" else 0.0
+        off = abs(self.magnitude - none)
+        return off / self.magnitude_std if self.magnitude_std > 0 else inf
 
     @property
     def is_surplus(self) -> bool:

@@ -45,7 +45,9 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         lines += _wrapped(left, "  ", "    ")
     if diagnosis.calibration is not None:
         lines += _wrapped(
-            calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome.verdict)
+            calibrated_sentences(
+                diagnosis.calibration, diagnosis.prediction, bool(outcome.unexplained)
+            )
         )
     lines += _errors(outcome)
     if outcome.next_measurement is not None:

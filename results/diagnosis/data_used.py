@@ -6,7 +6,6 @@ from typing import Any
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.outcome import Verdict
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.results.diagnosis.reading import columns_record, form_record
@@ -60,8 +59,11 @@ def _calibrated(calibration: Calibration) -> dict[str, float]:
     return record
 
 
-def calibrated_sentences(calibration: Calibration, prediction: Prediction, verdict: Verdict) -> str:
-    """Gap and compliance as fitted to the record, each with the simulated one."""
+def calibrated_sentences(
+    calibration: Calibration, prediction: Prediction, unexplained: bool
+) -> str:
+    """Gap and compliance as fitted to the record, each with the simulated one; `unexplained`: structure is
+    left over."""
     gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
@@ -71,7 +73,7 @@ def calibrated_sentences(calibration: Calibration, prediction: Prediction, verdi
         parts.append(f"compliance {compliance} arcsec per N·m")
     beside = ", without the effects found" if calibration.beside_effects else ""
     said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
-    if verdict == "unknown":
+    if unexplained:
         said += " An effect is unexplained and may have moved them by more than ± says."
     return said
 

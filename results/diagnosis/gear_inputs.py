@@ -43,7 +43,7 @@ def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
     if found.outcome == "unknown":
         return (
             f"no single input of the gear explains the {found.remainder_arcsec:.3g} arcsec rms that its "
-            f"curve leaves at {found.places} torques; nearest is {_value(best)}, "
+            f"curve leaves at {found.places} torques; nearest is {best.key} = {best.value:.3g} {best.unit}, "
             f"chi square {best.chi_square:.0f}",
         )
     said = [

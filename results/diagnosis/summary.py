@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
-from flexspline.results.diagnosis.words import cause_title, magnitude_words, title_of
+from flexspline.results.diagnosis.words import cause_title, channel_words, magnitude_words, title_of
 
 AGREES = {
     "sweep": "The measurement agrees",
     "end_points": "Every unit's total agrees",
     "specimens": "The specimens agree",
 }
+STANDS_OUT = 2.0
+"""Times the noise, from which structure without a name is a part of the summary."""
 LISTED = 12
 """Units that are spelt out; so many fill two lines."""
 
@@ -31,7 +33,7 @@ def summary(diagnosis: Diagnosis) -> str:
         case "named" if specimens:
             return f"The simulation is wrong in one thing or more: {_listed(outcome.causes)}."
         case "named":
-            return left_out(outcome.causes)
+            return f"{left_out(outcome.causes)}{_left_over(outcome)}"
         case "ambiguous" if points is not None:
             return _ambiguous_end_points(outcome, points)
         case "ambiguous":
@@ -42,6 +44,17 @@ def summary(diagnosis: Diagnosis) -> str:
             return "The totals depend on torque in a way that no known cause explains."
         case _:
             return _unknown(outcome, specimens)
+
+
+def _left_over(outcome: DiagnosisOutcome) -> str:
+    """Beside what is named: the largest structure without a name, where it stands out of the noise."""
+    if outcome.gain is None or not outcome.unexplained:
+        return ""
+    most = max(outcome.unexplained, key=lambda u: u.rms)
+    if most.rms < STANDS_OUT * outcome.gain.noise_floor:
+        return ""
+    channel = channel_words(most.channel)
+    return f" Without a name: {most.what} in {channel}, {most.rms:.2g} {outcome.gain.unit} rms."
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:

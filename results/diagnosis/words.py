@@ -38,6 +38,8 @@ VERDICTS = {
     "unknown": "An effect that no known cause explains",
     "insufficient": "Too little data for a verdict",
 }
+SIZE_KNOWN = 2.0
+"""Deviations from no effect: below, that something is there may be sure, but how much is not."""
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
@@ -56,7 +58,8 @@ def sure_words(cause: NamedCause) -> str:
     """How sure a cause is, in words, from its evidence; rivals lower it."""
     if cause.alternatives:
         return "not decided"
-    return next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
+    words = next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
+    return words if cause.deviations >= SIZE_KNOWN else f"{words}, its size is not"
 
 
 def odds_words(nats: float) -> str:

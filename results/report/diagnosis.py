@@ -87,7 +87,7 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Paragraph(worded(compared(diagnosis, used)))
     if diagnosis.calibration is not None:
         sentence = calibrated_sentences(
-            diagnosis.calibration, diagnosis.prediction, diagnosis.outcome.verdict
+            diagnosis.calibration, diagnosis.prediction, bool(diagnosis.outcome.unexplained)
         )
         yield Paragraph(worded(sentence))
 

@@ -20,6 +20,6 @@ def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
 def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
     prediction = Prediction(10.0, 0.0, 70.0, 0.0)
     calibration = Calibration(Estimate(70.0, 0.1), False, Estimate(10.0, 0.01))
-    unknown = calibrated_sentences(calibration, prediction, "unknown")
-    assert calibrated_sentences(calibration, prediction, "named") in unknown
+    unknown = calibrated_sentences(calibration, prediction, True)
+    assert calibrated_sentences(calibration, prediction, False) in unknown
     assert "unexplained and may have moved them" in unknown
