@@ -15,7 +15,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "contract.md").read_text(encoding="
 RECORD = json.loads(re.search(r"```json\n(\{\"design\".*?)```", PAGE, re.S)[1])
 SUFFIXES = {
     "N·m/rad": "_Nm_per_rad", "MPa": "_MPa", "arcsec": "_arcsec", "s": "_s", "mm": "_mm", "%": "_pct",
-    "g": "_g", "N·m": "_Nm",
+    "g": "_g", "N·m": "_Nm", "N": "_N",
 }  # fmt: skip
 
 
