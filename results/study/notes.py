@@ -7,17 +7,17 @@ from collections.abc import Iterable
 from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
+from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
+from flexspline.results.study.record import SHOWN
 from flexspline.results.study.why import signed, unfollowed
 
 PRELOAD = "preload_tooth_force_N"
-LISTED = 5
-"""Best designs that the terminal and the report's table show."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
@@ -73,7 +73,7 @@ def preloaded(result: StudyResult) -> Iterable[str]:
     """A line where teeth press on both flanks without torque in some designs: no gear runs like that."""
     forces = [r.outcome.figures.get(PRELOAD, 0.0) for r in result.built]
     if count := sum(force > 0 for force in forces):
-        best = [str(r.slot) for r in result.best(LISTED) if r.outcome.figures.get(PRELOAD, 0.0) > 0]
+        best = [str(r.slot) for r in result.best(SHOWN) if r.outcome.figures.get(PRELOAD, 0.0) > 0]
         among = f"; among the best: {', '.join(best)}" if best else ""
         yield (
             f"in {count} of {len(forces)} designs teeth press on both flanks without torque ({PRELOAD} in "
@@ -90,7 +90,8 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
     assumed = [*rated, *flexible_bearing(result.study.design).assumed]
     keys = ", ".join(a.key for a in assumed if a.key not in varied)
     yield (
-        "Whole gear: wave generator locked, no friction; T1 and T2 are 0.15 and 0.5 of rated torque; an odd "
+        "Whole gear: wave generator locked, no friction; T1 and T2 are "
+        f"{T1_SHARE:g} and {T2_SHARE:g} of rated torque; an odd "
         "number of balls is computed as the next even one; run.verify does not solve it again."
         + (f" Not stated, so in proportion: {keys}." if keys else "")
     )

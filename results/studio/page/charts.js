@@ -46,7 +46,7 @@ function withValue(row) {
   return cell;
 }
 
-function dot(colour) {
+export function dot(colour) {
   return svg("svg", { viewBox: "0 0 10 10", class: "dot" }, svg("rect", { width: 10, height: 10, rx: 2, fill: colour }));
 }
 

@@ -1,6 +1,6 @@
 // The whole gear: its figures, who yields how much, and its curve.
 
-import { differenceCell, ticks } from "./charts.js";
+import { differenceCell, dot, ticks } from "./charts.js";
 import { el, grouped, svg, symbol } from "./dom.js";
 
 const SHORT = {
@@ -40,12 +40,8 @@ function shares(parts) {
     bar.append(svg("rect", { x: from, y: 0.5, width: 100 * part.value, height: 6, fill: part.colour }));
     from += 100 * part.value;
   }
-  const names = parts.map((part) => el("span", { class: "share" }, swatch(part.colour), ` ${part.name} ${Math.round(100 * part.value)} % `));
+  const names = parts.map((part) => el("span", { class: "share" }, dot(part.colour), ` ${part.name} ${Math.round(100 * part.value)} % `));
   return el("div", { class: "budget" }, bar, el("p", { class: "limit" }, "Of the compliance at rated torque: ", ...names));
-}
-
-function swatch(colour) {
-  return svg("svg", { viewBox: "0 0 10 10", class: "dot" }, svg("rect", { width: 10, height: 10, rx: 2, fill: colour }));
 }
 
 // θ(T) from 0 to rated torque; the other way round it is the same.
