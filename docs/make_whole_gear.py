@@ -1,4 +1,4 @@
-"""Writes the tables of docs/whole-gear.md; its words are written by hand. Under a minute.
+"""Writes the tables of docs/whole-gear.md; its words are written by hand. Some five minutes.
 
 python3 docs/make_whole_gear.py
 """
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import whole_gear_contact_3d as contact_3d
 import whole_gear_figures as figures
+import whole_gear_ratcheting as ratcheting
 
 PAGE = Path(__file__).with_name("whole-gear.md")
 MARK = "<!-- made by docs/make_whole_gear.py: {} -->\n"
@@ -33,6 +34,9 @@ def tables() -> dict[str, str]:
         "rows": figures.catalogue_table(found),
         "ratio 100": figures.sensitivity(SIZE, 100, TORQUES),
         "ratio 30": figures.sensitivity(SIZE, 30, TORQUES),
+        "ratcheting": ratcheting.by_ratio(),
+        "ratcheting rows": ratcheting.each(),
+        "ratcheting sensitivity": ratcheting.sensitivity(SIZE),
     }
 
 

@@ -13,10 +13,10 @@ import numpy as np
 
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.design import Design
+from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from, load_design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.sized import sized_template
-from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline import revolved
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import backlash
@@ -84,9 +84,14 @@ def rows() -> Iterator[Row]:
 
 def sized(size: float, ratio: int) -> tuple[GearModel, float]:
     """The contact model of `flexspline init cup`, and its shaft's compliance [rad/(N·m)]."""
-    design = design_from(tomllib.loads(sized_template("cup", size, ratio)))
+    design = sized_design(size, ratio)
     shaft = revolved.stiffness(design, "shaft", TOLERANCE).K_Nm_per_rad
     return gear_model(design, design.part("flexspline")), 1 / shaft
+
+
+def sized_design(size: float, ratio: int) -> Design:
+    """That `flexspline init cup` prints."""
+    return design_from(tomllib.loads(sized_template("cup", size, ratio)))
 
 
 def slopes(chain: Chain, torques: tuple[float, ...]) -> tuple[float, ...]:
@@ -147,8 +152,17 @@ def proportion(key: str, factor: float = STEP) -> Change:
         table, name = key.split(".")
         value = getattr(getattr(design, table), name)
         if value is None:
-            value = next(a.value for a in flexible_bearing(design).assumed if a.key == key)
-        other = design.changed({key: value * factor})
+            value = next(a.value for a in gear_assumptions(design) if a.key == key)
+        return setting(key, value * factor)(design, _)
+
+    return changed
+
+
+def setting(key: str, value: object) -> Change:
+    """Another value of the design file."""
+
+    def changed(design: Design, _: GearModel) -> GearModel:
+        other = design.changed({key: value})
         return gear_model(other, other.part("flexspline"))
 
     return changed
@@ -178,6 +192,12 @@ CHANGES: tuple[tuple[str, Change], ...] = (
         proportion("gear.pressure_angle_deg", 1.5),
     ),
     ("teeth three times softer", lambda d, m: replace(m, pair=3 * m.pair)),
+    ("straight teeth along the face", setting("gear.tooth_face", "straight")),
+    ("rigid circular spline", lambda d, m: replace(m, spline=None)),
+    (
+        "`gear.circular_spline_outer_diameter_mm` / 1.1",
+        proportion("gear.circular_spline_outer_diameter_mm", 1 / 1.1),
+    ),
     ("plain flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="plain"))),
     ("conjugate flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="conjugate"))),
     ("working depth 1.0 strokes for 1.34", lambda d, m: replace(m, mesh=replace(m.mesh, depth=1.0))),
@@ -186,8 +206,7 @@ CHANGES: tuple[tuple[str, Change], ...] = (
 
 def sensitivity(size: float, ratio: int, torques: tuple[float, ...]) -> str:
     """K1, K2, K3 with one assumption changed over those without, the largest change first."""
-    text = sized_template("cup", size, ratio)
-    design = design_from(tomllib.loads(text)).changed({"flexspline.bolt_count": 0})
+    design = sized_design(size, ratio).changed({"flexspline.bolt_count": 0})
     own = gear_model(design, design.part("flexspline"))
     base = np.array(slopes(Chain(own, 0.0, 0.0), torques))
     found = [
@@ -240,7 +259,7 @@ def four_terms(name: str, design: Design, chain: Chain, K_b: float) -> str:
         ("total", "sum"),
     ):
         theirs = 0.0 if key == TIGHT else getattr(total, f"{key}_arcsec")
-        lines.append(f"| {name} | {words} | {theirs:.1f} | {own[key]:.1f} |")
+        lines.append(f"| {name} | {words} | {theirs:.1f} | {round(own[key], 1) + 0.0:.1f} |")
     return "\n".join(lines)
 
 
@@ -267,7 +286,7 @@ def published_table() -> str:
     lines, last = [], None
     for torque in (1.0, 5.0, 10.0, 20.0, 40.0, 80.0, 120.0):
         at = model.at_torque(torque, last)
-        last = at.forces
+        last = at
         parts = model.compliance_of(at)
         total = sum(parts.values())
         K = " | ".join(f"{1e-6 / parts[k]:.1f}" for k in ("flexspline", "bearing", "teeth"))

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from flexspline.geometry.bounds import span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
+from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import TEETH
@@ -42,6 +43,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from _play_faults(design)
     yield from wave_generator_faults(design)
     yield from rated_faults(design)
+    yield from circular_spline_faults(design)
     yield from _solver_faults(design)
 
 

@@ -13,7 +13,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from flexspline.geometry import ranges
-from flexspline.geometry.fields import Micrometre, Percent, Table, within
+from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
+from flexspline.geometry.fields import Length, Micrometre, Percent, Table, within
 from flexspline.geometry.material import Material
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
@@ -45,6 +46,21 @@ class Gear(Table):
     flank_clearance_um: Micrometre = Field(description="µm, j_bn0, along the flank's normal")
     rated_torque_Nm: Annotated[float, within(ranges.TORQUE_Nm)] | None = Field(
         default=None, description="N·m, T_N; default in proportion to the pitch radius cubed"
+    )
+    flanks: Literal["relieved", "plain", "conjugate", "drawn"] = Field(
+        default="relieved",
+        description="of the teeth, in the whole gear: relieved, plain (straight), conjugate or drawn",
+    )
+    tooth_face: Literal["relieved", "straight"] = Field(
+        default="relieved",
+        description="along the teeth, in the whole gear: relieved for the rim's cone, or straight",
+    )
+    working_depth_mm: Length | None = Field(
+        default=None,
+        description=f"mm, withdrawal at which teeth part; default {DEEPEST:g} m(z2 - z1)/2",
+    )
+    circular_spline_outer_diameter_mm: Length | None = Field(
+        default=None, description=f"mm, of its rim; default {OUTER_SHARE:g} pitch diameters"
     )
 
     @property

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.wave_generator import Assumed
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design

@@ -11,6 +11,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
+from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.ranges import Range
@@ -88,7 +89,7 @@ def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
         f"{LOAD_SHARE:.0%} of rated torque, where makers measure lost motion"
     )
     whole = design_from(tomllib.loads(text_of("", values, kind, {})))
-    for assumed in flexible_bearing(whole).assumed:
+    for assumed in (*circular_spline(whole).assumed, *flexible_bearing(whole).assumed):
         table, key = assumed.key.split(".")
         count = key == "ball_count"
         values[table][key] = int(assumed.value) if count else _rounded(assumed.value)

@@ -19,6 +19,8 @@ OPTIONAL: frozenset[Location] = frozenset(
         ("shaft", "keyway"),
         ("material", "shaft"),
         ("gear", "rated_torque_Nm"),
+        ("gear", "working_depth_mm"),
+        ("gear", "circular_spline_outer_diameter_mm"),
         ("wave_generator",),
         ("solver", "edge_length_mm"),
     }
@@ -154,6 +156,10 @@ def first_values(kind: str) -> Table:
             "pressure_angle_deg": 20.0,
             "flank_clearance_um": 3.0,
             "rated_torque_Nm": 23.0,
+            "flanks": "relieved",
+            "tooth_face": "relieved",
+            "working_depth_mm": 0.268,
+            "circular_spline_outer_diameter_mm": 54.5,
         },
         "bearing": {"radial_clearance_um": 12.0, "bearing_play_model": "involute"},
         "wave_generator": {

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import acos, asin, cos, inf, pi, radians, sin, tan
+from typing import Literal
 
 from flexspline.geometry.bounds import beside, span
 from flexspline.geometry.check_flexspline import thickest_ring
@@ -96,7 +97,14 @@ def half_thickness(design: Design, pressure_angle: float | None = None) -> Calla
     """
     gear = design.gear
     alpha = radians(gear.pressure_angle_deg) if pressure_angle is None else pressure_angle
-    pitch, at_pitch = gear.module_mm * gear.teeth_flexspline / 2, pi / (2 * gear.teeth_flexspline)
+    return flank(design.flexspline.tooth_flank, gear.module_mm, gear.teeth_flexspline, alpha)
+
+
+def flank(
+    kind: Literal["involute", "trapezoid"], module_mm: float, teeth: int, pressure_angle: float
+) -> Callable[[float], float]:
+    """The same of any number of teeth: an internal gear's spaces are the teeth of an external one [rad]."""
+    alpha, pitch, at_pitch = pressure_angle, module_mm * teeth / 2, pi / (2 * teeth)
     base = pitch * cos(alpha)
 
     def involute(r: float) -> float:
@@ -106,7 +114,7 @@ def half_thickness(design: Design, pressure_angle: float | None = None) -> Calla
     def trapezoid(r: float) -> float:
         return at_pitch - alpha + asin(min(1.0, pitch * sin(alpha) / r))
 
-    return involute if design.flexspline.tooth_flank == "involute" else trapezoid
+    return involute if kind == "involute" else trapezoid
 
 
 def tip_radius(design: Design) -> float:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
+from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM, Length, Table
@@ -47,15 +48,6 @@ class WaveGenerator(Table):
         default=None,
         description=f"mm, outer race at its groove; default {RACE_SHARE:g} of the tube's inner radius",
     )
-
-
-@dataclass(frozen=True)
-class Assumed:
-    """A value [mm, or none] that the design file does not state, and where it comes from."""
-
-    key: str
-    value: float
-    why: str
 
 
 @dataclass(frozen=True)

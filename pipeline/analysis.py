@@ -10,10 +10,10 @@ from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.peak import stress_field
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
+from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.sanity import warnings
-from flexspline.geometry.wave_generator import Assumed
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.cache import Cache

@@ -46,7 +46,10 @@ def with_plain_ring(design: Design, ring: EquivalentRing) -> Design:
     DesignError : the thicker ring, with its 45° shoulder, does not fit the part.
     """
     changes = {"ring_thickness_mm": ring.bending_mm, "teeth": "none"}
-    plain = design.model_copy(update={"flexspline": design.flexspline.model_copy(update=changes)})
+    undrawn = design.gear.model_copy(update={"flanks": "plain"})
+    plain = design.model_copy(
+        update={"flexspline": design.flexspline.model_copy(update=changes), "gear": undrawn}
+    )
     try:
         check(plain)
     except DesignError as error:

@@ -11,20 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import degrees
 
 import numpy as np
 
-from flexspline.fea.gear.equilibrium import Equilibrium
-from flexspline.fea.gear.kinematics import LARGEST_WITHDRAWAL
-from flexspline.fea.gear.model import GearModel
+from flexspline.fea.gear.engagement import Engagement
 from flexspline.fea.threads import one_thread
+from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
+from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.rated import rated_torque
-from flexspline.geometry.wave_generator import Assumed, flexible_bearing
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
-from flexspline.pipeline.gear_model import CONFORMITY, even
+from flexspline.pipeline.gear_model import CONFORMITY
+from flexspline.pipeline.gear_notes import RATCHETING, both_press_N, notes, warnings
 from flexspline.pipeline.gear_terms import gear_terms
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -39,13 +38,8 @@ LAWS = (
     Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),
     Assumed("T2 over rated torque", T2_SHARE, "makers': 0.39 to 0.69"),
     Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
-    Assumed("working depth over m(z2 - z1)/2", LARGEST_WITHDRAWAL, "teeth of full height"),
 )
 """What no key of the design file states."""
-LOW_RIM = 0.05
-"""Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
-BEYOND_RATED = 5.0
-"""Times rated torque: more than any catalogue's peak torque, 2 to 4.5 times (HD, CSF)."""
 CARRIES = 1e-3
 """Of the largest force: a tooth below it is not counted as in contact."""
 
@@ -66,6 +60,8 @@ class GearCurve:
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± T_L, in place of the backlash sum's terms (`pipeline.gear_terms`); empty where
         nobody asked.
+    ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces
+        (`fea.gear.engagement`); None where nobody asked, or where they hold beyond a thousand rated torques.
     """
 
     K1_Nm_per_rad: float
@@ -88,6 +84,7 @@ class GearCurve:
     ball_angle_deg: tuple[float, ...]
     ball_force_N: tuple[float, ...]
     terms_arcsec: Mapping[str, float] = field(default_factory=dict)
+    ratcheting_torque_Nm: float | None = None
 
 
 def gear_curve(context: AnalysisContext) -> GearCurve:
@@ -105,8 +102,13 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
     def solve() -> GearCurve:
         chain = chain_of(context, K_e)
         with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
-            terms = gear_terms(chain, load.torque_Nm, rated_torque(design)[0])
-            return replace(curve_of(design, chain), terms_arcsec=terms)
+            rated, _ = rated_torque(design)
+            terms = gear_terms(chain, load.torque_Nm, rated)
+            curve = curve_of(design, chain)
+        with context.progress.stage("torque at which no tooth is left in its space"), one_thread():
+            limit = Engagement(chain.model).limit(rated)
+        lines = (*curve.notes, RATCHETING) if limit else curve.notes
+        return replace(curve, terms_arcsec=terms, ratcheting_torque_Nm=limit, notes=lines)
 
     depends_on = {
         "flexspline": context.part("flexspline").revolved_key,
@@ -118,7 +120,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
 
 def curve_of(design: Design, chain: Chain) -> GearCurve:
     """K1 to K3, lost motion, the loop, and what carries at rated torque."""
-    rated, assumed = rated_torque(design)
+    rated, _ = rated_torque(design)
     up = rated * np.array(LOADING)
     states = chain.along(up.tolist())
     angles = np.array([chain.angle(s) for s in states])
@@ -128,7 +130,7 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     full = states[-1]
     model = chain.model
     teeth = model.pair_forces(full)
-    preload = _preload(model, states[0])
+    preload = both_press_N(model, states[0])
     carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
     return GearCurve(
         K1_Nm_per_rad=K1,
@@ -142,9 +144,9 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         compliance_shares=chain.shares(full),
         torque_Nm=_loop(up),
         angle_arcsec=_loop(angles * ARCSEC_PER_RAD),
-        assumed=(*assumed, *flexible_bearing(design).assumed, *LAWS),
-        warnings=tuple(_warnings(design, model, preload)),
-        notes=tuple(_notes(design, model, teeth)),
+        assumed=(*gear_assumptions(design), *LAWS),
+        warnings=tuple(warnings(design, model, preload)),
+        notes=tuple(notes(design, model, teeth)),
         preload_tooth_force_N=preload,
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
         tooth_force_N=tuple(teeth.tolist()),
@@ -157,70 +159,3 @@ def _loop(up: np.ndarray) -> tuple[float, ...]:
     """0 → full → −full → 0 from its first quarter."""
     there_and_back = [*up.tolist(), *up[-2::-1].tolist()]
     return (*there_and_back, *(-value for value in there_and_back))
-
-
-def _preload(model: GearModel, unloaded: Equilibrium) -> float:
-    """Largest force of a pair of teeth where both flanks press without torque [N]; 0 where one is free."""
-    front, back = np.split(unloaded.loaded[model.flanks], 2)
-    if not (front.any() and back.any()):
-        return 0.0
-    return float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
-
-
-def _warnings(design: Design, model: GearModel, preload_N: float) -> list[str]:
-    """What makes the gear another one than was meant."""
-    lines = []
-    if preload_N:
-        lines.append(
-            f"teeth press on both flanks without torque, up to {_rounded(preload_N)} N each: "
-            f"{_why_both_press(design, model)}"
-        )
-    rated, _ = rated_torque(design)
-    if design.load.torque_Nm > BEYOND_RATED * rated:
-        lines.append(
-            f"load.torque_Nm = {design.load.torque_Nm:g} is {design.load.torque_Nm / rated:.3g} times the "
-            "rated torque: teeth and rim are not elastic there"
-        )
-    return lines
-
-
-def _why_both_press(design: Design, model: GearModel) -> str:
-    stroke, full = model.wave_generator.deflection, design.gear.centre_distance_mm
-    play = design.bearing.radial_clearance_um / 2e3
-    if abs(stroke / full - 1) > LOW_RIM:
-        return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
-    if play > LOW_RIM * stroke:
-        return (
-            f"half the play, {play:.3g} mm, lowers the rim's stroke of {stroke:.3g} mm, and teeth off the "
-            "major axis no longer clear"
-        )
-    return "the flank clearance is too small"
-
-
-def _notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
-    """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
-    lines = []
-    balls = flexible_bearing(design).ball_count
-    if even(balls) != balls:
-        lines.append(f"{balls} balls are computed as {even(balls)}: both lobes have the same")
-    mesh = model.mesh
-    if mesh.largest_relief > 0:
-        lines.append(
-            f"plain flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major axis: "
-            f"taken as relieved, by {_rounded(1e3 * mesh.largest_relief)} µm at {degrees(mesh.reach):.0f}°"
-        )
-    if design.flexspline.teeth == "drawn":
-        lines.append(
-            f"gaps are those of straight flanks of {design.gear.pressure_angle_deg:g}°, not of the drawn ones"
-        )
-    most = int(np.abs(teeth).argmax())
-    if most in (0, len(teeth) - 1):
-        lines.append(
-            f"the pair of teeth that carries most stands {abs(degrees(model.tooth_angles[most])):.0f}° from "
-            "the major axis, at the end of the working depth that is assumed: its force hangs on that end"
-        )
-    return lines
-
-
-def _rounded(value: float) -> str:
-    return f"{float(f'{value:.2g}'):g}"

@@ -53,7 +53,7 @@ class Chain:
         """
         found: list[Equilibrium] = []
         for torque in torques_Nm:
-            found.append(self.model.at_torque(torque, found[-1].forces if found else None))
+            found.append(self.model.at_torque(torque, found[-1] if found else None))
         return found
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:

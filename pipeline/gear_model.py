@@ -5,19 +5,26 @@ from __future__ import annotations
 from functools import lru_cache
 from math import pi, radians
 
+import numpy as np
+
 from flexspline.fea.gear.ball import ball_between_races
+from flexspline.fea.gear.circular_spline import condensed_spline, spline_outline
 from flexspline.fea.gear.condensed import Condensed
+from flexspline.fea.gear.drawn_flanks import DrawnFlanks
 from flexspline.fea.gear.kinematics import Mesh
-from flexspline.fea.gear.model import GearModel, WaveGenerator
+from flexspline.fea.gear.model import GearModel
+from flexspline.fea.gear.plug import WaveGenerator
 from flexspline.fea.gear.race import condensed_race, race_outline
-from flexspline.fea.gear.rim import condensed_rim, places_along
+from flexspline.fea.gear.rim import Rim, condensed_rim, places_along
 from flexspline.fea.gear.tooth_pair import flank_contact, tooth
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic
+from flexspline.geometry.circular_spline import GROUND, circular_spline
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.tooth import ADDENDUM, flank
 from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
 
 LAST_HARMONIC = 48
@@ -25,6 +32,11 @@ LAST_HARMONIC = 48
 PLACES = 5
 """Along the seat; 7 move K by 0.15 %, 3 move K1 by 2 %. On a rigid plug, whose edge alone carries, 9 are 5 %
 softer, as a three-dimensional model is (docs/whole-gear.md)."""
+FACE_PLACES = {"relieved": 3, "straight": 9}
+"""Along a tooth. Relieved: 5 move K by 0.4 %. Straight, whose open end carries first: 6 move it by 2 %,
+12 by 0.5 %."""
+FLANK_POINTS = 65
+"""Of a drawn flank; a chord's error is the flank's curvature over 65² of its length, below 0.01 µm."""
 MOST_STATIONS = 128
 """Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K by 0.6 %."""
 BEARING_STEEL = Elastic(208e3, 0.3)
@@ -41,18 +53,20 @@ LEAST_LEVER = 0.2
 """Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
 
 
-def gear_model(design: Design, flexspline: Part, places: int | None = None) -> GearModel:
+def gear_model(
+    design: Design, flexspline: Part, places: int | None = None, face_places: int | None = None
+) -> GearModel:
     """The gear without its shaft and bolt holes.
 
     `flexspline` is the design's, but for drawn teeth, which are the plain ring as stiff. `places`: along the
-    seat, at which the rim can touch; None: PLACES.
+    seat, at which the rim can touch; None: PLACES. `face_places`: along a tooth; None: FACE_PLACES.
 
     Raises
     ------
     DesignError : the bearing's play takes the whole stroke.
     ComputationError : no mesh or no solution.
     """
-    bearing, gear = flexible_bearing(design), design.gear
+    bearing, spline, gear = flexible_bearing(design), circular_spline(design), design.gear
     play = design.bearing.radial_clearance_um / 1e3
     if play / 2 >= bearing.deflection:
         raise DesignError(
@@ -72,14 +86,22 @@ def gear_model(design: Design, flexspline: Part, places: int | None = None) -> G
         clearance=gear.flank_clearance_um / 1e3,
         pressure_angle=radians(gear.pressure_angle_deg),
         height=(pitch - middle) / middle,
+        flanks=gear.flanks,
+        depth=spline.working_depth / gear.centre_distance_mm,
+        face=gear.tooth_face,
+        drawn=drawn_flanks(design) if gear.flanks == "drawn" else None,
     )
     groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
-    seat, count = (shape.ring_start, shape.ring_end), places or PLACES
+    ring, count = (shape.ring_start, shape.ring_end), places or PLACES
+    face = face_places or FACE_PLACES[gear.tooth_face]
+    steel = Elastic.of(design.material.flexspline)
+    inside = gear.module_mm * gear.teeth_circular_spline / 2
     return GearModel(
         mesh,
         _wave_generator(bearing, shape.inner_radius, play),
-        _rim(flexspline.without_holes(), pitch, seat, count),
-        _race(shape.inner_radius, bearing.race_thickness, seat, groove, count),
+        _rim(flexspline.without_holes(), pitch, ring, count, face),
+        _race(shape.inner_radius, bearing.race_thickness, ring, groove, count),
+        _spline(spline.ground, spline.outer, steel, inside, ring, face),
         pair_compliance(design),
         gear.teeth_flexspline,
         MOST_STATIONS,
@@ -87,10 +109,27 @@ def gear_model(design: Design, flexspline: Part, places: int | None = None) -> G
 
 
 @lru_cache(KEPT)
-def _rim(part: Part, pitch_radius: float, seat: tuple[float, float], count: int) -> Condensed:
-    material, places = Elastic.of(part.material), places_along(*seat, count)
+def _rim(
+    part: Part, pitch_radius: float, ring: tuple[float, float], count: int, face_count: int
+) -> Rim:
+    material, seat = Elastic.of(part.material), places_along(*ring, count)
+    face = np.linspace(*ring, face_count)
     with one_thread():
-        return condensed_rim(part.meridian, material, pitch_radius, places, LAST_HARMONIC)
+        return condensed_rim(part.meridian, material, pitch_radius, face, seat, LAST_HARMONIC)
+
+
+@lru_cache(KEPT)
+def _spline(
+    ground: float,
+    outer: float,
+    material: Elastic,
+    pitch_radius: float,
+    ring: tuple[float, float],
+    face_count: int,
+) -> Condensed:
+    outline, face = spline_outline(ground, outer, *ring), np.linspace(*ring, face_count)
+    with one_thread():
+        return condensed_spline(outline, material, pitch_radius, face, LAST_HARMONIC)
 
 
 @lru_cache(KEPT)
@@ -113,6 +152,29 @@ def _wave_generator(bearing: FlexibleBearing, inner_radius: float, play: float) 
 def even(balls: int) -> int:
     """The next even number: two lobes share the balls evenly."""
     return balls + balls % 2
+
+
+def drawn_flanks(design: Design) -> DrawnFlanks:
+    """Of the drawn tooth, and of the space that the same basic rack cuts into the circular spline.
+
+    An internal gear's space is the tooth of an external one. Both reach from a module inside the pitch circle
+    (the circular spline's tip; a tooth's root may be nearer) to one outside.
+    """
+    gear, kind = design.gear, design.flexspline.tooth_flank
+    alpha = radians(gear.pressure_angle_deg)
+
+    def half(teeth: int, heights: np.ndarray) -> np.ndarray:
+        angle = flank(kind, gear.module_mm, teeth, alpha)
+        radii = gear.module_mm * teeth / 2 + heights
+        return np.array([r * angle(r) for r in radii.tolist()])
+
+    module = gear.module_mm
+    pitch = module * gear.teeth_flexspline / 2
+    root = max(design.flexspline.ring_radius - pitch, -ADDENDUM * module)
+    heights = np.linspace(root, ADDENDUM * module, FLANK_POINTS)
+    levels = np.linspace(-ADDENDUM * module, GROUND * module, FLANK_POINTS)
+    tooth, space = half(gear.teeth_flexspline, heights), half(gear.teeth_circular_spline, levels)
+    return DrawnFlanks(heights, tooth, levels, space, alpha)
 
 
 def pair_compliance(design: Design) -> float:

@@ -241,6 +241,14 @@ QUANTITIES: tuple[Quantity, ...] = (
         "F_0",
         digits=2,
     ),
+    Quantity(
+        "ratcheting_torque_Nm",
+        "ratcheting_torque_Nm",
+        "N·m",
+        "Ratcheting torque, estimate from above by loss of engagement",
+        "T_r",
+        digits=2,
+    ),
     *(
         Quantity(
             f"compliance_shares.{part}",

@@ -172,7 +172,7 @@ def run_record(result: RunResult, wall_s: float) -> Record:
 
 GEAR_FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
-    "lost_motion_arcsec", "teeth_in_contact", "preload_tooth_force_N",
+    "lost_motion_arcsec", "teeth_in_contact", "preload_tooth_force_N", "ratcheting_torque_Nm",
 )  # fmt: skip
 """Of the record, by their names in `GearCurve`."""
 
@@ -180,7 +180,7 @@ GEAR_FIGURES = (
 def gear_figures(curve: GearCurve) -> Record:
     """The whole gear; no friction is modelled, so there is no hysteresis loss."""
     return {
-        **{key: getattr(curve, key) for key in GEAR_FIGURES},
+        **{key: v for key in GEAR_FIGURES if (v := getattr(curve, key)) is not None},
         "compliance_shares": dict(curve.compliance_shares),
         "terms_arcsec": dict(curve.terms_arcsec),
         "assumed": [{"key": a.key, "value": a.value, "why": a.why} for a in curve.assumed],

@@ -63,11 +63,15 @@ class Condensed:
 
 
 def condensed(
-    model: HarmonicModel, ports: Sequence[Port], last: int, loose: Sequence[Fixed] = ()
+    model: HarmonicModel,
+    ports: Sequence[Port],
+    last: int,
+    held: Sequence[Fixed] = (),
+    loose: Sequence[Fixed] = (),
 ) -> Condensed:
     """Condense the even harmonics up to `last`; `mount` is held.
 
-    `loose`: what else is fixed in the harmonic 0, for a body without a mount.
+    `held`: what else is fixed; `loose`: in the harmonic 0 only, for a body without a mount.
 
     Raises
     ------
@@ -89,7 +93,7 @@ def condensed(
                 continue
             pushes = loads[:, mine]
             # a density of 1 N/rad times cos nφ has the nodal amplitude ∫ cos² nφ dφ
-            fixed = [] if n or wave.torsion else list(loose)
+            fixed = [*held, *(() if n or wave.torsion else loose)]
             moved = responses(model, wave, wave.around * pushes, fixed)
             block = pushes.T @ moved
             matrix[np.ix_(mine, mine)] = (block + block.T) / 2
@@ -103,19 +107,27 @@ def even(model: HarmonicModel, patch: str, component: int) -> Port:
     return Port(component, own / own.sum())
 
 
-def along(model: HarmonicModel, patch: str, at: np.ndarray) -> list[Port]:
-    """Radial pressures on a cylinder, each a hat over z from one of `at` (m,) [mm], rising, to the next.
+def along(model: HarmonicModel, patch: str, at: np.ndarray, component: int = RADIAL) -> list[Port]:
+    """Tractions on a cylinder, each a hat over z from one of `at` (m,) [mm], rising, to the next.
 
     Raises
     ------
     ValueError : the mesh has no node under a hat.
     """
+    return [Port(component, hat / hat.sum()) for hat in _hats(model, patch, at)]
+
+
+def shares_along(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray:
+    """(m,) of the patch's area, that each of the hats of `along` stands for; errors as there."""
+    areas = _hats(model, patch, at).sum(axis=1)
+    return areas / areas.sum()
+
+
+def _hats(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray:
+    """(m, count) area [mm²] under each hat by P2 number; together they are the patch."""
     own = model.pressed(patch, RADIAL, Wave(0))[RADIAL::3]
     z = model.space.places[:, 1]
-    ports = []
-    for one in np.eye(len(at)):
-        weights = own * np.interp(z, at, one)
-        if not weights.sum() > 0:
-            raise ValueError(f"{patch} has too few nodes for {len(at)} places")
-        ports.append(Port(RADIAL, weights / weights.sum()))
-    return ports
+    hats = np.array([own * np.interp(z, at, one) for one in np.eye(len(at))])
+    if not (hats.sum(axis=1) > 0).all():
+        raise ValueError(f"{patch} has too few nodes for {len(at)} places")
+    return hats

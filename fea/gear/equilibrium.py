@@ -3,7 +3,8 @@
 The forces minimise the complementary energy ½ F·S F + Φ(F) + g·F over F ≥ 0 with −c·F = T; the rotation θ is
 the multiplier. So they are unique, and the gaps are g + c θ + S F + δ(F) ≥ 0. Solved as
 `fea.axisymmetric.lift_off` does, by Mehrotra's predictor and corrector (SIAM J. Optim. 2 (1992) 575-601),
-with the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope.
+with the one equation beside; δ(F) = C F^(2/3) enters each Newton step by its slope. Beside an equilibrium
+that is known only places that are near are solved for; then all gaps are looked at.
 """
 
 from __future__ import annotations
@@ -24,6 +25,11 @@ BACK = 0.99
 """Share of the way to the nearest bound that a step may go."""
 LOADED = 1e-5
 """Of the largest force: what is below is not in contact. Where gaps are open some 1e-8 is left."""
+
+
+NEAR = 0.1
+"""Of the largest gap: places that open by more in the state before are left out at first. Which ones only
+costs time: of 618 contacts of xb1-40 some 250 stay."""
 
 
 class EquilibriumError(ComputationError):
@@ -47,6 +53,21 @@ class Contacts:
     turning: np.ndarray
     hertz: np.ndarray
 
+    def gaps(self, forces: np.ndarray, rotation: float) -> np.ndarray:
+        """(k,) [mm]; `forces` are 0 at most places."""
+        on = np.flatnonzero(forces)
+        pushed = self.compliance[:, on] @ forces[on]
+        return self.free + rotation * self.turning + pushed + self.hertz * forces ** (2 / 3)
+
+    def among(self, places: np.ndarray) -> Contacts:
+        """Of these places alone (j,)."""
+        return Contacts(
+            self.free[places],
+            self.compliance[np.ix_(places, places)],
+            self.turning[places],
+            self.hertz[places],
+        )
+
 
 @dataclass(frozen=True)
 class Equilibrium:
@@ -64,8 +85,8 @@ class Equilibrium:
         return self.forces > LOADED * self.forces.max()
 
 
-def equilibrium(at: Contacts, torque: float, start: np.ndarray | None = None) -> Equilibrium:
-    """At a torque [N·mm]; `start`: forces near the answer, or none.
+def equilibrium(at: Contacts, torque: float, start: Equilibrium | None = None) -> Equilibrium:
+    """At a torque [N·mm]; `start`: an equilibrium near the answer, or none.
 
     Raises
     ------
@@ -73,9 +94,28 @@ def equilibrium(at: Contacts, torque: float, start: np.ndarray | None = None) ->
     """
     if torque and not (at.turning * torque < 0).any():
         raise EquilibriumError("no tooth within reach can carry a torque")
-    forces, rotation = _settled(at, torque, start)
+    if start is None or not start.forces.max() > 0:
+        forces, rotation = _settled(at, torque, None)
+    else:
+        forces, rotation = _beside(at, torque, start)
     slope, forces_slope = _tangent(at, forces)
     return Equilibrium(torque, rotation, forces, slope, forces_slope)
+
+
+def _beside(at: Contacts, torque: float, start: Equilibrium) -> tuple[np.ndarray, float]:
+    """Forces (k,) and rotation, solved for among ever more places until no gap is below 0."""
+    size = float(np.abs(at.free).max())
+    here = at.gaps(np.where(start.loaded, start.forces, 0.0), start.rotation)
+    kept = start.loaded | (here < NEAR * size)
+    while True:
+        places = np.flatnonzero(kept)
+        forces = np.zeros(len(at.free))
+        few, rotation = _settled(at.among(places), torque, start.forces[places])
+        forces[places] = few
+        crossed = ~kept & (at.gaps(forces, rotation) < 0)
+        if not crossed.any():
+            return forces, rotation
+        kept = kept | crossed
 
 
 def _settled(at: Contacts, torque: float, start: np.ndarray | None) -> tuple[np.ndarray, float]:

@@ -13,9 +13,11 @@ from typing import Literal
 
 import numpy as np
 
-LARGEST_WITHDRAWAL = 1.34
-"""Of the stroke: y = w0 (1 − cos 2φ) at 55°, where plain flanks of 20° begin to cut into each other."""
-Flanks = Literal["plain", "relieved", "conjugate"]
+from flexspline.fea.gear.drawn_flanks import DrawnFlanks
+from flexspline.geometry.circular_spline import DEEPEST
+
+Flanks = Literal["plain", "relieved", "conjugate", "drawn"]
+Face = Literal["relieved", "straight"]
 STEPS = 1000
 """Of the search for a gap's largest value: a parabola's is met to 1e-6 of it."""
 
@@ -33,8 +35,10 @@ class Mesh:
     pressure_angle : of the flanks.
     height : of the pitch circle over the rim's middle line, over the radius of that line.
     flanks : "plain": straight; "relieved": straight, but no gap of the unloaded gear is smaller than one that
-        is nearer to the major axis; "conjugate": shaped so that all gaps of the front flanks are alike.
+        is nearer to the major axis; "conjugate": shaped so that all gaps of the front flanks are alike;
+        "drawn": by the shapes in `drawn`.
     depth : largest withdrawal at which teeth touch, of the stroke.
+    face : "relieved": shaped so that the ideal rim's cone leaves all of the face the same gap; "straight".
     """
 
     pitch_radius: float
@@ -44,7 +48,9 @@ class Mesh:
     pressure_angle: float
     height: float
     flanks: Flanks = "relieved"
-    depth: float = LARGEST_WITHDRAWAL
+    depth: float = DEEPEST
+    face: Face = "relieved"
+    drawn: DrawnFlanks | None = None
 
     def offset(self, phi: np.ndarray) -> np.ndarray:
         """x [mm], along the pitch circle, of the tooth at φ in its space, before the rim moves."""
@@ -70,6 +76,14 @@ class Mesh:
         """The same on the ideal rim, w0 = `deflection`."""
         return self.gaps(phi, deflection * np.cos(2 * phi), self.shift(phi, deflection))
 
+    def closing(
+        self, phi: np.ndarray, outwards: np.ndarray, along: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What u_r = outwards cos 2φ, u_θ = along sin 2φ take off front and back gaps [mm]."""
+        s, c = sin(self.pressure_angle), cos(self.pressure_angle)
+        level, across = s * outwards * np.cos(2 * phi), c * along * np.sin(2 * phi)
+        return level + across, level - across
+
     @property
     def reach(self) -> float:
         """φ [rad] at which teeth leave the working depth."""
@@ -79,19 +93,34 @@ class Mesh:
         """What is taken off the front and the back flanks at φ [mm], for the ideal rim; less than 0: added.
 
         Plain flanks come closer again far from the major axis. Teeth that should run are relieved there: as
-        much as it takes that no gap is smaller than one nearer to the axis.
+        much as it takes that no gap is smaller than one nearer to the axis. Drawn ones: what their shapes and
+        the tooth's turn in its space change.
         """
         if self.flanks == "plain":
             return np.zeros_like(phi), np.zeros_like(phi)
         grid = np.linspace(0, self.reach, STEPS)
         front, back = self.free_gaps(grid, self.stroke)
-        if self.flanks == "conjugate":
+        if self.flanks == "drawn":
+            off = [self.drawn_gap(grid) - front, self.drawn_gap(-grid) - back]
+        elif self.flanks == "conjugate":
             off = [front[0] - front, np.zeros_like(back)]
         else:
             off = [np.maximum.accumulate(gap) - gap for gap in (front, back)]
         ahead, behind = (np.interp(np.abs(phi), grid, each) for each in off)
         # the mirror of a front flank is the back flank on the other side
         return np.where(phi >= 0, ahead, behind), np.where(phi >= 0, behind, ahead)
+
+    def drawn_gap(self, phi: np.ndarray) -> np.ndarray:
+        """Of front flanks on the ideal rim [mm]; teeth that meet nowhere stand off by the stroke.
+
+        A tooth turns in its space by φ (z2 − z1)/z2 and by the section's (v − w′)/R.
+        """
+        assert self.drawn is not None
+        x = self.offset(phi) + self.shift(phi, self.stroke)
+        y = self.stroke * (1 - np.cos(2 * phi))
+        section = 1.5 * self.stroke * (1 + self.height) / self.pitch_radius * np.sin(2 * phi)
+        gap = self.drawn.gap(x, y, phi * self.lag + section)
+        return np.minimum(self.clearance / 2 + gap, self.stroke)
 
     @property
     def largest_relief(self) -> float:

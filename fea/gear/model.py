@@ -1,7 +1,8 @@
 """The gear as one contact problem: teeth on both flanks, the rim on its race, balls between race and plug.
 
-Places that can touch, in this order: front flanks, back flanks, seat (angle by angle, place by place), balls.
-All stand twice, at φ and φ + π; forces are those of one of the two, so half the torque is theirs.
+Places that can touch, in this order: front flanks (tooth by tooth, place by place along the face), back
+flanks, seat (angle by angle, place by place), balls. All stand twice, at φ and φ + π; forces are those of one
+of the two, so half the torque is theirs.
 """
 
 from __future__ import annotations
@@ -15,31 +16,9 @@ import numpy as np
 from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.equilibrium import Contacts, Equilibrium, equilibrium
 from flexspline.fea.gear.kinematics import Mesh
-from flexspline.fea.gear.rim import FIRST_PLACE, TOOTH_RADIAL, TOOTH_TANGENTIAL
+from flexspline.fea.gear.plug import WaveGenerator
+from flexspline.fea.gear.rim import Rim
 from flexspline.fea.types import NMM_PER_NM
-
-
-@dataclass(frozen=True)
-class WaveGenerator:
-    """A rigid plug, w0 cos 2φ larger than a circle, and its balls.
-
-    Attributes
-    ----------
-    deflection : w0 [mm].
-    play : c [mm]: each ball has half of it.
-    balls : how many, even.
-    hertz : C of each ball [mm/N^(2/3)].
-    """
-
-    deflection: float
-    play: float
-    balls: int
-    hertz: float
-
-    @property
-    def angles(self) -> np.ndarray:
-        """Of the balls over half a turn [rad], one on the major axis."""
-        return 2 * pi / self.balls * np.arange(self.balls // 2)
 
 
 @dataclass(frozen=True)
@@ -49,14 +28,16 @@ class GearModel:
     Attributes
     ----------
     race : the outer race; None: the rim rests on the rigid plug itself.
-    pair : compliance of one pair of teeth [mm/N].
+    spline : the circular spline's rim, port by port as the rim's pitch point; None: rigid.
+    pair : compliance of one pair of teeth over its whole face [mm/N].
     teeth : z1; `most_stations` stand for them at most.
     """
 
     mesh: Mesh
     wave_generator: WaveGenerator
-    rim: Condensed
+    rim: Rim
     race: Condensed | None
+    spline: Condensed | None
     pair: float
     teeth: int
     most_stations: int
@@ -70,26 +51,21 @@ class GearModel:
     def teeth_per_station(self) -> float:
         return self.mesh.stations(self.teeth, self.most_stations)[1]
 
-    @property
-    def places(self) -> int:
-        """Along the seat."""
-        return len(self.rim.tangential) - FIRST_PLACE
-
     @cached_property
     def seat_angles(self) -> np.ndarray:
         """As many as harmonics can tell apart [rad]."""
-        return np.arange(self.rim.last) * pi / self.rim.last
+        return np.arange(self.rim.body.last) * pi / self.rim.body.last
 
     @cached_property
     def flanks(self) -> slice:
         """Of the contacts: front flanks, then back flanks."""
-        return slice(0, 2 * len(self.tooth_angles))
+        return slice(0, 2 * len(self.tooth_angles) * len(self.rim.face))
 
     @cached_property
     def seat(self) -> slice:
         """Of the contacts."""
         first = self.flanks.stop
-        return slice(first, first + len(self.seat_angles) * self.places)
+        return slice(first, first + len(self.seat_angles) * len(self.rim.seat))
 
     @cached_property
     def balls(self) -> slice:
@@ -99,36 +75,34 @@ class GearModel:
 
     @cached_property
     def shares(self) -> dict[str, np.ndarray]:
-        """(k, k) gap per force [mm/N] of flexspline, teeth and race."""
+        """(k, k) gap per force [mm/N] of flexspline, teeth with the circular spline, and race."""
         k = self.balls.stop
-        found = {
-            "flexspline": self._of_rim(),
-            "teeth": np.zeros((k, k)),
-            "bearing": np.zeros((k, k)),
-        }
-        flanks = np.arange(k)[self.flanks]
-        found["teeth"][flanks, flanks] = self.pair / self.teeth_per_station
-        if self.race:
-            found["bearing"] = self._of_race(self.race)
-        return found
+        bearing = self._of_race(self.race) if self.race else np.zeros((k, k))
+        return {"flexspline": self._of_rim(), "teeth": self._of_teeth(), "bearing": bearing}
 
     @cached_property
     def contacts(self) -> Contacts:
-        phi, wave = self.tooth_angles, self.wave_generator
-        still = np.zeros_like(phi)
-        plain, relief = self.mesh.gaps(phi, still, still), self.mesh.relief(phi)
-        k = self.balls.stop
+        wave, k = self.wave_generator, self.balls.stop
         free, turning, hertz = np.zeros(k), np.zeros(k), np.zeros(k)
-        free[self.flanks] = np.concatenate(plain) + np.concatenate(relief)
+        free[self.flanks] = self._flank_gaps().ravel()
         arm = self.mesh.pitch_radius * cos(self.mesh.pressure_angle)
-        turning[: len(phi)], turning[len(phi) : self.flanks.stop] = -arm, arm
+        turning[self.flanks] = np.repeat([-arm, arm], self.flanks.stop // 2)
         if self.race:
-            free[self.balls] = wave.play / 2 - wave.deflection * np.cos(2 * wave.angles)
+            free[self.balls] = wave.gap(wave.angles)
             hertz[self.balls] = wave.hertz
         else:
-            plug = wave.play / 2 - wave.deflection * np.cos(2 * self.seat_angles)
-            free[self.seat] = np.repeat(plug, self.places)
+            free[self.seat] = np.repeat(wave.gap(self.seat_angles), len(self.rim.seat))
         return Contacts(free, sum(self.shares.values(), np.zeros((k, k))), turning, hertz)
+
+    def _flank_gaps(self) -> np.ndarray:
+        """Front, then back (2, t, f) [mm], with the rim undeformed."""
+        phi = self.tooth_angles
+        still = np.zeros_like(phi)
+        gaps = np.array(self.mesh.gaps(phi, still, still)) + self.mesh.relief(phi)
+        cone = np.zeros((2, len(phi), len(self.rim.face)))
+        if self.mesh.face == "relieved":
+            cone[:] = self.mesh.closing(phi[:, None], *self.rim.cone(self.mesh.stroke))
+        return gaps[..., None] + cone
 
     def compliance_of(self, at: Equilibrium) -> dict[str, float]:
         """Parts of dθ/dT [rad/(N·mm)] at an equilibrium, while the same places stay in contact; they add up.
@@ -143,7 +117,7 @@ class GearModel:
         found["bearing"] += 2 * float(ball[on] ** 2 @ yields)
         return found
 
-    def at_torque(self, torque_Nm: float, start: np.ndarray | None = None) -> Equilibrium:
+    def at_torque(self, torque_Nm: float, start: Equilibrium | None = None) -> Equilibrium:
         """At a torque on the whole gear [N·m]; `Equilibrium.torque` is that of one half [N·mm].
 
         Raises
@@ -154,31 +128,47 @@ class GearModel:
 
     def pair_forces(self, at: Equilibrium) -> np.ndarray:
         """Of a pair of teeth at each of `tooth_angles` (t,) [N]: front flank less back flank."""
-        front, back = np.split(at.forces[self.flanks], 2)
-        return (front - back) / self.teeth_per_station
+        front, back = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
+        return np.asarray(front - back) / self.teeth_per_station
 
     def _of_rim(self) -> np.ndarray:
-        phi, a, m = self.tooth_angles, len(self.seat_angles), self.places
-        t = len(phi)
-        port = np.concatenate(
-            [
-                np.full(t, TOOTH_RADIAL),
-                np.full(t, TOOTH_TANGENTIAL),
-                np.tile(FIRST_PLACE + np.arange(m), a),
-            ]
-        )
-        angle = np.concatenate([phi, phi, np.repeat(self.seat_angles, m)])
-        s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)
+        t, a = len(self.tooth_angles), len(self.seat_angles)
+        f, m = len(self.rim.face), len(self.rim.seat)
+        port = np.concatenate([self.pitch_points[0], np.tile(self.rim.on_seat, a)])
+        angle = np.concatenate([self.pitch_points[1], np.repeat(self.seat_angles, m)])
         gap = np.zeros((self.balls.stop, len(port)))  # per displacement
-        i = np.arange(t)
-        gap[i, i], gap[i, t + i] = -s, -c
-        gap[t + i, i], gap[t + i, t + i] = -s, c
-        j = np.arange(a * m)
-        gap[2 * t + j, 2 * t + j] = 1
-        return gap @ self.rim.compliance(port, angle) @ gap.T
+        gap[: 2 * t * f, : 2 * t * f] = self.gap_per_pitch_point
+        j = np.arange(2 * t * f, len(port))
+        gap[j, j] = 1
+        return gap @ self.rim.body.compliance(port, angle) @ gap.T
+
+    def _of_teeth(self) -> np.ndarray:
+        k, flanks = self.balls.stop, self.flanks.stop
+        found = np.zeros((k, k))
+        i = np.arange(flanks)
+        face = np.tile(self.rim.face, 2 * len(self.tooth_angles))
+        found[i, i] = self.pair / self.teeth_per_station / face
+        if self.spline:
+            gap = self.gap_per_pitch_point
+            found[:flanks, :flanks] += gap @ self.spline.compliance(*self.pitch_points) @ gap.T
+        return found
+
+    @cached_property
+    def pitch_points(self) -> tuple[np.ndarray, np.ndarray]:
+        """Ports and angles [rad]: radial tooth by tooth, place by place, then tangential."""
+        rim, t = self.rim, len(self.tooth_angles)
+        port = np.concatenate([np.tile(rim.radial, t), np.tile(rim.tangential, t)])
+        return port, np.tile(np.repeat(self.tooth_angles, len(rim.face)), 2)
+
+    @cached_property
+    def gap_per_pitch_point(self) -> np.ndarray:
+        """Of each flank, per displacement of `pitch_points`; of the spline's, the other way."""
+        one = np.eye(len(self.tooth_angles) * len(self.rim.face))
+        s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)
+        return np.block([[-s * one, -c * one], [-s * one, c * one]])
 
     def _of_race(self, race: Condensed) -> np.ndarray:
-        a, m, at = len(self.seat_angles), self.places, self.wave_generator.angles
+        a, m, at = len(self.seat_angles), len(self.rim.seat), self.wave_generator.angles
         port = np.concatenate([np.tile(np.arange(m), a), np.full(len(at), m)])
         angle = np.concatenate([np.repeat(self.seat_angles, m), at])
         sign = np.concatenate([-np.ones(a * m), np.ones(len(at))])

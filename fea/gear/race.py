@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL
 from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
 from flexspline.fea.gear.condensed import Condensed, along, condensed, even
-from flexspline.fea.gear.rim import fine_enough
+from flexspline.fea.gear.rim import fine_enough, triangulated
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import Meridian, Segment
 
@@ -46,7 +46,7 @@ def condensed_race(
     ------
     MeshingError, HarmonicError
     """
-    model = HarmonicModel(fine_enough(outline, "seat", len(places)), material)
+    model = HarmonicModel(fine_enough(triangulated(outline), "seat", len(places)), material)
     still = Fixed(model.on("groove")[:1], AXIAL)  # else it could drift along the axis
     ports = [*along(model, "seat", places), even(model, "groove", RADIAL)]
-    return condensed(model, ports, last, [still])
+    return condensed(model, ports, last, loose=[still])

@@ -3,11 +3,12 @@
 Teeth push at the pitch point, h outside the `mesh` patch, where the tooth goes with the rim's section: with
 the rim's rotation ω = (u_θ − ∂u_r/∂φ)/R, the pitch point moves by u_θ + h ω and u_r. Forces
 there act on the rim by the transpose, a couple included. (Thin ring without shear: Timoshenko, Strength of
-Materials II, art. 14.)
+Materials II, art. 14.) The rim opens as a cone, so a tooth is loaded place by place along its face.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -17,12 +18,49 @@ from flexspline.fea.axisymmetric.couplings import RADIAL, TANGENTIAL
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.gear.condensed import Condensed, along, condensed, even
+from flexspline.fea.gear.condensed import Condensed, along, condensed, shares_along
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import Meridian
 
-TOOTH_RADIAL, TOOTH_TANGENTIAL, FIRST_PLACE = 0, 1, 2
-"""Ports of a rim: the tooth's pitch point, then the places along the seat."""
+
+@dataclass(frozen=True)
+class Rim:
+    """The flexspline at f places along the teeth's face and m places along its seat.
+
+    Attributes
+    ----------
+    body : ports: pitch point radial (f), pitch point tangential (f), seat radial (m).
+    face, seat : (f,), (m,) share of the tooth's face and of the seat that each place stands for.
+    """
+
+    body: Condensed
+    face: np.ndarray
+    seat: np.ndarray
+
+    @property
+    def radial(self) -> np.ndarray:
+        """Ports of the pitch point (f,)."""
+        return np.arange(len(self.face))
+
+    @property
+    def tangential(self) -> np.ndarray:
+        """Ports of the pitch point (f,)."""
+        return len(self.face) + np.arange(len(self.face))
+
+    @property
+    def on_seat(self) -> np.ndarray:
+        """Ports (m,)."""
+        return 2 * len(self.face) + np.arange(len(self.seat))
+
+    def cone(self, stroke: float) -> tuple[np.ndarray, np.ndarray]:
+        """How far places of the face stand from its mean while the seat is bent by stroke cos 2φ, evenly.
+
+        Amplitudes (f,) [mm] of u_r, with cos 2φ, and of the pitch point's u_θ, with sin 2φ.
+        """
+        moved = self.body.harmonics[1][:, self.on_seat] @ self.seat
+        moved = moved * stroke / (self.seat @ moved[self.on_seat])
+        outwards, along_pitch = moved[self.radial], moved[self.tangential]
+        return outwards - self.face @ outwards, along_pitch - self.face @ along_pitch
 
 
 def places_along(low: float, high: float, count: int) -> np.ndarray:
@@ -33,40 +71,55 @@ def places_along(low: float, high: float, count: int) -> np.ndarray:
 
 
 def condensed_rim(
-    outline: Meridian, material: Elastic, pitch_radius: float, places: np.ndarray, last: int
-) -> Condensed:
-    """Ports: tooth radial, tooth tangential, seat at each of `places` (z, mm) radial.
+    outline: Meridian,
+    material: Elastic,
+    pitch_radius: float,
+    face: np.ndarray,
+    seat: np.ndarray,
+    last: int,
+) -> Rim:
+    """`face`, `seat`: z [mm] of the places; `last` harmonic.
 
     Raises
     ------
     MeshingError, HarmonicError
     """
-    model = HarmonicModel(fine_enough(outline, "seat", len(places)), material)
-    ports = [even(model, "mesh", RADIAL), even(model, "mesh", TANGENTIAL)]
-    found = condensed(model, [*ports, *along(model, "seat", places)], last)
+    mesh = fine_enough(triangulated(outline), "seat", len(seat))
+    model = HarmonicModel(fine_enough(mesh, "mesh", len(face)), material)
+    ports = [
+        *along(model, "mesh", face, RADIAL),
+        *along(model, "mesh", face, TANGENTIAL),
+        *along(model, "seat", seat),
+    ]
+    shares = (shares_along(model, patch, z) for patch, z in (("mesh", face), ("seat", seat)))
     surface = float(model.space.places[model.on("mesh"), 0].mean())
-    return _at_pitch_point(found, (pitch_radius - surface) / surface)
+    rim = Rim(condensed(model, ports, last), *shares)
+    lift = (pitch_radius - surface) / surface
+    return replace(rim, body=at_pitch_point(rim.body, rim.radial, rim.tangential, lift))
 
 
-def _at_pitch_point(surface: Condensed, lift: float) -> Condensed:
-    """`lift`: height of the pitch point over the radius of the surface."""
-    harmonics = surface.harmonics.copy()
+def at_pitch_point(
+    body: Condensed, radial: np.ndarray, tangential: np.ndarray, lift: float
+) -> Condensed:
+    """Ports of a toothed surface, (f,) each, moved to the pitch point `lift` surface radii over it."""
+    harmonics = body.harmonics.copy()
     for i, part in enumerate(harmonics):
         lever = np.eye(len(part))
         # u_r = U cos nφ, u_θ = V sin nφ: u_θ − ∂u_r/∂φ = (V + n U) sin nφ
-        lever[TOOTH_TANGENTIAL, TOOTH_TANGENTIAL] = 1 + lift
-        lever[TOOTH_TANGENTIAL, TOOTH_RADIAL] = lift * 2 * i
+        lever[tangential, tangential] = 1 + lift
+        lever[tangential, radial] = lift * 2 * i
         harmonics[i] = lever @ part @ lever.T
-    return Condensed(surface.tangential, harmonics)
+    return Condensed(body.tangential, harmonics)
 
 
-def fine_enough(outline: Meridian, patch: str, places: int) -> MeridianMesh:
-    """The first mesh refined once, then along the patch until that has two edges for each place.
-
-    A further refinement moves K1 to K3 of xb1-40 by 0.1 to 0.3 %.
-    """
+def triangulated(outline: Meridian) -> MeridianMesh:
+    """The first mesh, refined once. A further refinement moves K1 to K3 of xb1-40 by 0.1 to 0.3 %."""
     mesh = triangulate(outline)
-    mesh = refined(mesh, np.ones(mesh.elements, bool))
+    return refined(mesh, np.ones(mesh.elements, bool))
+
+
+def fine_enough(mesh: MeridianMesh, patch: str, places: int) -> MeridianMesh:
+    """Refined along the patch until that has two edges for each place."""
     while True:
         ends = mesh.edges[np.isin(mesh.edge_segment, mesh.segments_of(patch))]
         if len(ends) >= 2 * places:

@@ -25,6 +25,7 @@ from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 
 FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
+    "ratcheting_torque_Nm",
 )  # fmt: skip
 """By their keys in result.json, in the order of the table."""
 
@@ -62,7 +63,7 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Column("Value", "right"),
             Column("Unit"),
         ),
-        rows=tuple(_figure(curve, key) for key in FIGURES),
+        rows=tuple(_figure(curve, key) for key in FIGURES if getattr(curve, key) is not None),
         caption=plain("The whole gear. ") + _shares(curve),
     )
     slopes = "Angle of the output over torque, and the torques between which the slopes are taken."

@@ -12,10 +12,9 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from
-from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.schema import UNITS, Location, Node, dotted, node_at
-from flexspline.geometry.wave_generator import flexible_bearing
 
 GROUPS: tuple[tuple[str, Location], ...] = (
     ("Flexspline", ("flexspline",)),
@@ -74,8 +73,7 @@ def _at(tables: Tables, location: Location) -> Tables | None:
 
 def assumed_values(design: Design) -> dict[str, float]:
     """What stands for keys of the gear that the design leaves out, by key."""
-    every = (*rated_torque(design)[1], *flexible_bearing(design).assumed)
-    return {assumed.key: assumed.value for assumed in every}
+    return {assumed.key: assumed.value for assumed in gear_assumptions(design)}
 
 
 def _group(

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.rated import rated_torque
-from flexspline.geometry.wave_generator import flexible_bearing
+from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
@@ -86,8 +85,7 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
     if not any(PRELOAD in r.outcome.figures for r in result.built):
         return
     varied = result.study.keys
-    _, rated = rated_torque(result.study.design)
-    assumed = [*rated, *flexible_bearing(result.study.design).assumed]
+    assumed = gear_assumptions(result.study.design)
     keys = ", ".join(a.key for a in assumed if a.key not in varied)
     yield (
         "Whole gear: wave generator locked, no friction; T1 and T2 are "

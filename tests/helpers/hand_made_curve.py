@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexspline.geometry.wave_generator import Assumed
+from flexspline.geometry.assumed import Assumed
 from flexspline.pipeline.gear import LOADING, GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
 

@@ -36,6 +36,21 @@ def test_stiffness_turn_and_teeth(bearing: str, places: int) -> None:
     assert np.abs(np.subtract(both.own_teeth, both.teeth)).max() <= 2
 
 
+@pytest.mark.parametrize(
+    ("curve", "places"),
+    [("race, 3 slices, relieved", 5), ("race, 3 slices", 5), ("plug, 3 slices", 9)],
+)
+def test_faces_that_are_not_loaded_evenly(curve: str, places: int) -> None:
+    """Thirds of a tooth's face as springs of their own: hats over z here, thirds with sharp ends there.
+
+    On the coarse mesh, which moves K by 1 % on the race and by 4 % on the plug.
+    """
+    both = contact_3d.beside(RECORD, "coarse", curve, places)
+    assert both.own_chords == pytest.approx(both.chords, rel=K_WITHIN)
+    arm = 17.78 * np.cos(np.radians(20))  # mm
+    assert np.abs(arm * (both.own_turn - both.turn)).max() < 3 * GAP_WITHIN * 0.3556  # mm: m
+
+
 def test_five_places_are_too_few_on_a_plug_alone() -> None:
     """What docs/whole-gear.md says: an edge that carries by itself needs more of them than a race does."""
     five, nine = (contact_3d.beside(RECORD, contact_3d.FINEST, "plug", n) for n in (5, 9))

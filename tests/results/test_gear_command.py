@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import flexspline
+from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.template import design_text
-from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear import LAWS, GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
@@ -65,10 +65,13 @@ def test_lost_motion_holds_the_clearance_of_the_flanks(curve: GearCurve) -> None
 
 def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
     of_the_file = [a for a in curve.assumed if "." in a.key]
-    assert [a.key for a in of_the_file] == [f"wave_generator.{key}" for key in (
-        "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")]  # fmt: skip
+    assert [a.key for a in of_the_file] == [
+        "gear.circular_spline_outer_diameter_mm", "gear.working_depth_mm",
+        *(f"wave_generator.{key}" for key in (
+            "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")),
+    ]  # fmt: skip
     stated = DESIGN.changed({a.key: a.value for a in of_the_file})
-    assert flexible_bearing(stated).assumed == ()
+    assert gear_assumptions(stated) == ()
     same = flexspline.gear(stated)
     assert same.K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
     assert same.assumed == LAWS  # what no key states
@@ -188,3 +191,31 @@ def test_the_ends_of_rated_torque_still_have_a_curve(rated_Nm: float) -> None:
     assert 0 < found.K3_Nm_per_rad < 1e6
     up = np.array(found.angle_arcsec[:10])
     assert np.diff(up).min() > 0
+
+
+def test_the_ratcheting_torque_is_an_estimate_from_above(curve: GearCurve) -> None:
+    """Far beyond any catalogue's, 5 to 10 times rated torque, and said to be so."""
+    assert curve.ratcheting_torque_Nm is not None
+    assert curve.ratcheting_torque_Nm > 10 * curve.rated_torque_Nm
+    assert any("estimate from above" in line for line in curve.notes)
+
+
+def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
+    """Less lost motion by the cone's part of the clearance, and no word of a relief."""
+    straight = flexspline.gear(DESIGN.changed({"gear.tooth_face": "straight"}))
+    assert straight.lost_motion_arcsec < curve.lost_motion_arcsec - 30
+    assert any("opens as a cone" in line for line in curve.notes)
+    assert not any("opens as a cone" in line for line in straight.notes)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "says"),
+    [
+        ("working_depth_mm", 0.3, "to 0.268 mm"),
+        ("circular_spline_outer_diameter_mm", 40.0, "the ground of the tooth spaces"),
+        ("tooth_face", "crowned", "relieved"),
+    ],
+)
+def test_a_circular_spline_that_cannot_be_is_refused(key: str, value: object, says: str) -> None:
+    with pytest.raises(flexspline.FlexsplineError, match=says):
+        DESIGN.changed({f"gear.{key}": value})

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import griddata
 
-from flexspline.fea.gear.rim import FIRST_PLACE, condensed_rim, places_along
+from flexspline.fea.gear.rim import condensed_rim, places_along
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.mesh import mesh_surface
@@ -82,6 +82,7 @@ def test_forces_at_three_teeth() -> None:
         design().part("flexspline").meridian,
         Elastic.of(design().material.flexspline),
         shape.ring_radius,  # teeth push on the surface itself, as there
+        np.array([shape.ring_start]),  # evenly
         places,
         120,
     )
@@ -92,8 +93,8 @@ def test_forces_at_three_teeth() -> None:
     angle = np.concatenate([np.radians(centre) + steps for centre, _, _ in PUSHES])
     force = np.concatenate([push * weights for _, _, push in PUSHES])
     seen = np.radians(np.arange(5.0, 90.0, 10.0))
-    middle = FIRST_PLACE + len(places) // 2
-    matrix = rim.compliance(
+    middle = rim.on_seat[len(places) // 2]
+    matrix = rim.body.compliance(
         np.concatenate([port, np.full(len(seen), middle)]), np.concatenate([angle, seen])
     )
     work = float(force @ matrix[: len(force), : len(force)] @ force)

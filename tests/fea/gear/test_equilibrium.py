@@ -93,7 +93,7 @@ def test_both_ways_alike_and_unloading_is_loading(model: GearModel) -> None:
     up = model.at_torque(8.0)
     assert model.at_torque(-8.0).rotation == pytest.approx(-up.rotation, rel=1e-6)
     beyond = model.at_torque(20.0)
-    assert model.at_torque(8.0, beyond.forces).rotation == pytest.approx(up.rotation, rel=1e-6)
+    assert model.at_torque(8.0, beyond).rotation == pytest.approx(up.rotation, rel=1e-6)
 
 
 def test_the_tangent_is_the_curve_s_slope_and_the_shares_are_its_parts(model: GearModel) -> None:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from flexspline.fea.gear.ball import ball_between_races, point_contact
-from flexspline.fea.gear.kinematics import LARGEST_WITHDRAWAL, Mesh
+from flexspline.fea.gear.kinematics import Mesh
 from flexspline.fea.gear.tooth_pair import flank_contact, tooth
 from flexspline.fea.types import Elastic
+from flexspline.geometry.circular_spline import DEEPEST
 
 STEEL = Elastic(206e3, 0.3)
 
@@ -81,7 +82,7 @@ def test_gaps_of_plain_flanks_by_hand() -> None:
     # the hand calculation has φ for φ z1/z2: 1 % of φ
     assert (front[1] - front[0]) / w0 == pytest.approx(0.07, abs=0.015)
     assert (front[2] - front[0]) / w0 == pytest.approx(-0.064, abs=0.015)
-    assert 1 - np.cos(2 * at.reach) == pytest.approx(LARGEST_WITHDRAWAL)
+    assert 1 - np.cos(2 * at.reach) == pytest.approx(DEEPEST)
     assert np.degrees(at.reach) == pytest.approx(55.0, abs=0.1)
 
 

@@ -1,0 +1,105 @@
+"""The circular spline: its rim, how deep its teeth work, and proportions where a design states none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flexspline.geometry.assumed import Assumed
+from flexspline.geometry.bounds import span
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.ranges import LENGTH_mm
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+
+OUTER_SHARE = 1.35
+"""Outer over pitch diameter: median of one maker's component sets (CSF, sizes 14 to 58: 50, 60, 70, 85, 110,
+135, 170, 195 mm, that is 1.32 to 1.41)."""
+GROUND = 1.25
+"""Modules from the pitch circle to the ground of the spaces (ISO 53)."""
+THINNEST_RIM = 0.02
+"""Of the pitch radius, outside the ground of the spaces: below, it is a foil."""
+DEEPEST = 1.34
+"""Of m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into each other."""
+SHALLOWEST = 0.1
+"""Of m(z2 − z1)/2: teeth that touch within 13° of the major axis only."""
+
+ROUNDED = 1e-3
+"""By which a depth that was written with four digits may pass its end."""
+
+
+@dataclass(frozen=True)
+class CircularSpline:
+    """Lengths in mm.
+
+    Attributes
+    ----------
+    ground : radius of the ground of the tooth spaces.
+    outer : radius.
+    working_depth : largest withdrawal from full depth at which teeth touch.
+    """
+
+    ground: float
+    outer: float
+    working_depth: float
+    assumed: tuple[Assumed, ...]
+
+
+def circular_spline(design: Design) -> CircularSpline:
+    """What the design states, and proportions for the rest."""
+    gear = design.gear
+    pitch, stroke = gear.module_mm * gear.teeth_circular_spline / 2, gear.centre_distance_mm
+    assumed: list[Assumed] = []
+
+    def taken(key: str, value: float, why: str) -> float:
+        stated = getattr(gear, key)
+        if stated is not None:
+            return float(stated)
+        assumed.append(Assumed(f"gear.{key}", value, why))
+        return value
+
+    diameter = taken(
+        "circular_spline_outer_diameter_mm",
+        2 * max(OUTER_SHARE * pitch, _least_outer(design)),
+        f"{OUTER_SHARE:g} pitch diameters, the median of eight catalogue sizes",
+    )
+    depth = taken(
+        "working_depth_mm", DEEPEST * stroke, f"{DEEPEST:g} m(z2 - z1)/2, teeth of full height"
+    )
+    return CircularSpline(_ground(design), diameter / 2, depth, tuple(assumed))
+
+
+def _ground(design: Design) -> float:
+    gear = design.gear
+    return gear.module_mm * (gear.teeth_circular_spline / 2 + GROUND)
+
+
+def _least_outer(design: Design) -> float:
+    gear = design.gear
+    return _ground(design) + THINNEST_RIM * gear.module_mm * gear.teeth_circular_spline / 2
+
+
+def circular_spline_faults(design: Design) -> Iterator[DesignError]:
+    """A rim that does not hold its teeth, teeth that do not meet, flanks that are not drawn."""
+    gear = design.gear
+    if gear.flanks == "drawn" and design.flexspline.teeth != "drawn":
+        yield DesignError("gear.flanks", "drawn", 'needs flexspline.teeth = "drawn"')
+    outer, least = gear.circular_spline_outer_diameter_mm, 2 * _least_outer(design)
+    if outer is not None and outer < least:
+        yield DesignError(
+            "gear.circular_spline_outer_diameter_mm",
+            outer,
+            f"must be {span(least, LENGTH_mm.high, 4)} mm: the ground of the tooth spaces has a diameter of "
+            f"{2 * _ground(design):.4g} mm",
+        )
+    depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
+    low, high = SHALLOWEST * stroke, DEEPEST * stroke
+    if depth is not None and not low <= depth <= high * (1 + ROUNDED):
+        yield DesignError(
+            "gear.working_depth_mm",
+            depth,
+            f"must be {span(low, high, 4)} mm, {SHALLOWEST:g} to {DEEPEST:g} of "
+            f"m(z2 - z1)/2 = {stroke:.4g} mm",
+        )

@@ -1,0 +1,79 @@
+"""Teeth that the load presses out of their spaces."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexspline.fea.gear.engagement import WITHIN, Engagement
+from flexspline.fea.gear.model import GearModel
+from flexspline.geometry.load import load_design
+from flexspline.geometry.rated import rated_torque
+from flexspline.pipeline.gear_model import gear_model
+
+DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+RATED = rated_torque(DESIGN)[0]
+
+
+@pytest.fixture(scope="module")
+def model() -> GearModel:
+    return gear_model(DESIGN, DESIGN.part("flexspline"))
+
+
+def test_withdrawal_is_what_opens_both_gaps(model: GearModel) -> None:
+    """g+ + g− = j + 2 y sin α: by the contacts' own gaps, less what flanks were relieved and teeth yield."""
+    at = model.at_torque(RATED)
+    contacts, mesh, face = model.contacts, model.mesh, model.rim.face
+    shape = (2, len(model.tooth_angles), len(face))
+    still = np.zeros_like(model.tooth_angles)
+    relieved = contacts.free[model.flanks].reshape(shape) - np.array(
+        mesh.gaps(model.tooth_angles, still, still)
+    ).reshape(2, -1, 1)
+    forces = at.forces[model.flanks].reshape(shape)
+    yields = model.pair / model.teeth_per_station * forces / face
+    gaps = contacts.gaps(at.forces, at.rotation)[model.flanks].reshape(shape)
+    both = (gaps - relieved - yields).sum(axis=0) @ face
+    y = (both - mesh.clearance) / (2 * sin(mesh.pressure_angle))
+    assert Engagement(model).withdrawal(at) == pytest.approx(y, abs=1e-6 * mesh.stroke)
+
+
+def test_unloaded_teeth_all_hold(model: GearModel) -> None:
+    """Up to one at the end of the working depth, where the rim is no ideal ellipse."""
+    held = Engagement(model).held(1e-3 * RATED)
+    assert held is not None
+    assert held.rotation == pytest.approx(model.at_torque(1e-3 * RATED).rotation, rel=1e-3)
+
+
+def test_without_balls_twice_the_modulus_holds_twice_the_torque(model: GearModel) -> None:
+    """All else is linear: the same gaps close at the same displacements."""
+    rigid = replace(model, race=None)
+    body, spline = rigid.rim.body, rigid.spline
+    assert spline is not None
+    stiff = replace(
+        rigid,
+        rim=replace(rigid.rim, body=replace(body, harmonics=body.harmonics / 2)),
+        spline=replace(spline, harmonics=spline.harmonics / 2),
+        pair=rigid.pair / 2,
+    )
+    limits = [Engagement(each).limit(RATED) for each in (rigid, stiff)]
+    assert limits[0] is not None
+    assert limits[1] == pytest.approx(2 * limits[0], rel=2 * WITHIN)
+
+
+def test_deeper_teeth_hold_longer(model: GearModel) -> None:
+    shallow = replace(model, mesh=replace(model.mesh, depth=0.8))
+    limits = [Engagement(each).limit(RATED) for each in (shallow, model)]
+    assert None not in limits
+    assert limits[0] < limits[1]  # type: ignore[operator]
+
+
+def test_what_lets_go_is_beyond_and_what_holds_below(model: GearModel) -> None:
+    engagement = Engagement(model)
+    limit = engagement.limit(RATED)
+    assert limit is not None
+    assert engagement.held(limit * (1 - 2 * WITHIN)) is not None
+    assert engagement.held(limit * (1 + 2 * WITHIN)) is None
