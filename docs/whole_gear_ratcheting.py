@@ -18,8 +18,6 @@ from flexspline.pipeline.gear_model import gear_model
 
 PITCH_RADIUS = 1.27
 """Of a catalogue's size [mm]: half of a tenth of an inch."""
-AIM = 1.5
-"""A factor that the median was hoped to be within."""
 CHANGED = (
     "`gear.pressure_angle_deg` 30 for 20", "working depth 1.0 strokes for 1.34",
     "`gear.circular_spline_outer_diameter_mm` / 1.1", "rigid circular spline",
