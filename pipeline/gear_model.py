@@ -184,6 +184,7 @@ def pair_compliance(design: Design) -> float:
     material = Elastic.of(design.material.flexspline)
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
     one = tooth(
-        lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), f.ring_width_mm, material
-    )
+        lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
+        f.ring_width_mm, material,
+    )  # fmt: skip
     return 2 * one + flank_contact(f.ring_width_mm, material)
