@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flexspline.geometry.assumed import Assumed
+from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 OUTER_SHARE = 1.35
 """Outer over pitch diameter: median of one maker's component sets (CSF, sizes 14 to 58: 50, 60, 70, 85, 110,
 135, 170, 195 mm, that is 1.32 to 1.41)."""
-GROUND = 1.25
-"""Modules from the pitch circle to the ground of the spaces (ISO 53)."""
 THINNEST_RIM = 0.02
 """Of the pitch radius, outside the ground of the spaces: below, it is a foil."""
 DEEPEST = 1.34
@@ -73,7 +72,7 @@ def circular_spline(design: Design) -> CircularSpline:
 
 def _ground(design: Design) -> float:
     gear = design.gear
-    return gear.module_mm * (gear.teeth_circular_spline / 2 + GROUND)
+    return gear.module_mm * (gear.teeth_circular_spline / 2 + DEDENDUM)
 
 
 def _least_outer(design: Design) -> float:

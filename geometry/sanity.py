@@ -7,18 +7,22 @@ hats.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import pi
 
+from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 
 ROOT_TOLERANCE = 0.15
 """Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""
-DEDENDUM = 1.25
-"""Of the standard basic rack (ISO 53), in modules."""
 WALL_RATIO = (0.005, 0.025)
 """Usual wall / inner diameter."""
 SMALLEST_CLEARANCE_um = 0.1
 """Of flanks and bearings, but for none at all: below what a coordinate measuring machine resolves."""
+LARGEST_CLEARANCE = 0.1
+"""Of a tooth's thickness: makers aim at none, and worn gears have a few per cent."""
+BALL_RATIO = (0.1, 0.35)
+"""Usual ball / inner radius of the tube: flexible bearings in papers have 0.15 to 0.25."""
 LENGTH_RATIO = (0.2, 1.4)
 """Usual length / inner diameter."""
 
@@ -34,6 +38,8 @@ def warnings(design: Design) -> tuple[str, ...]:
         _bolts,
         _play_edge,
         _micrometres,
+        _clearance,
+        _balls,
     )
     return tuple(line for rule in rules for line in rule(design))
 
@@ -148,3 +154,22 @@ def _micrometres(design: Design) -> Iterator[str]:
     ):
         if 0 < value < SMALLEST_CLEARANCE_um:
             yield f"{key} = {value:g} is below {SMALLEST_CLEARANCE_um:g} µm: was it given in mm?"
+
+
+def _clearance(design: Design) -> Iterator[str]:
+    clearance, thick = design.gear.flank_clearance_um, 1e3 * pi * design.gear.module_mm / 2
+    if clearance > LARGEST_CLEARANCE * thick:
+        yield (
+            f"gear.flank_clearance_um = {clearance:g} is {clearance / thick:.0%} of a tooth's thickness, "
+            f"{thick:.4g} µm; usually below {LARGEST_CLEARANCE:.0%}"
+        )
+
+
+def _balls(design: Design) -> Iterator[str]:
+    ball, radius = design.wave_generator.ball_diameter_mm, design.flexspline.inner_radius
+    low, high = BALL_RATIO
+    if ball is not None and not low <= ball / radius <= high:
+        yield (
+            f"wave_generator.ball_diameter_mm = {ball:g} is {ball / radius:.3g} of the tube's inner radius, "
+            f"usually {low:g} to {high:g}"
+        )

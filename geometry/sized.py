@@ -11,6 +11,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
+from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
@@ -26,8 +27,6 @@ SIZES = Range(3, 200)
 """Catalogues go from 3 to 100; twice that is the largest built."""
 RATIOS = Range(30, 320)
 """As catalogues; with fewer teeth the rim must bend too far, with more a module is beyond making."""
-DEDENDUM = 1.25
-"""Of the standard basic rack (ISO 53), in modules: where the ring ends."""
 DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
 LOAD_SHARE = 0.04

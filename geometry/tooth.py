@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import acos, asin, cos, inf, pi, radians, sin, tan
 from typing import Literal
 
+from flexspline.geometry.basic_rack import ADDENDUM
 from flexspline.geometry.bounds import beside, span
 from flexspline.geometry.check_flexspline import thickest_ring
 from flexspline.geometry.design import Design
@@ -20,8 +21,6 @@ from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.outline import SAME, Meridian, Point, Segment
 from flexspline.geometry.ranges import MODULE_mm, PRESSURE_ANGLE_deg
 
-ADDENDUM = 1.0
-"""Of the standard basic rack (ISO 53), in modules."""
 SMALLEST_LAND = 0.02
 """Half width of tip and root, in modules, below which a tooth counts as pointed."""
 CHORD_ERROR = 3e-4

@@ -19,12 +19,13 @@ from flexspline.fea.gear.rim import Rim, condensed_rim, places_along
 from flexspline.fea.gear.tooth_pair import flank_contact, tooth
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic
-from flexspline.geometry.circular_spline import GROUND, circular_spline
+from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
+from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
-from flexspline.geometry.tooth import ADDENDUM, flank
+from flexspline.geometry.tooth import flank
 from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
 
 LAST_HARMONIC = 48
@@ -172,7 +173,7 @@ def drawn_flanks(design: Design) -> DrawnFlanks:
     pitch = module * gear.teeth_flexspline / 2
     root = max(design.flexspline.ring_radius - pitch, -ADDENDUM * module)
     heights = np.linspace(root, ADDENDUM * module, FLANK_POINTS)
-    levels = np.linspace(-ADDENDUM * module, GROUND * module, FLANK_POINTS)
+    levels = np.linspace(-ADDENDUM * module, DEDENDUM * module, FLANK_POINTS)
     tooth, space = half(gear.teeth_flexspline, heights), half(gear.teeth_circular_spline, levels)
     return DrawnFlanks(heights, tooth, levels, space, alpha)
 

@@ -37,6 +37,21 @@ def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
         assert words in lines[0]
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "says"),
+    [
+        # a tooth is 0.2 π/2 = 314.2 µm thick
+        ("gear.flank_clearance_um", 60.0, ("= 60", "19%", "314.2 µm")),
+        # 19.2 mm inside the tube
+        ("wave_generator.ball_diameter_mm", 1.0, ("= 1", "0.0521", "0.1 to 0.35")),
+    ],
+)
+def test_what_hardly_any_gear_has_is_warned_of(key: str, value: float, says: tuple[str]) -> None:
+    (line,) = warnings(load_design(EXAMPLES / "xb1-40.toml").changed({key: value}))
+    for words in says:
+        assert words in line
+
+
 def test_no_ring_thinner_than_the_wall_is_advised() -> None:
     """Wall 0.6 and a ring of 0.7 mm: one of 0.55, the root less the inner radius, would be no ring."""
     thick = {"flexspline.wall_thickness_mm": "0.6", "flexspline.ring_thickness_mm": "0.7"}

@@ -1,0 +1,6 @@
+"""The standard basic rack of gears (ISO 53), in modules."""
+
+ADDENDUM = 1.0
+"""From the pitch circle to the tip."""
+DEDENDUM = 1.25
+"""From the pitch circle to the root, or to the ground of a space."""
