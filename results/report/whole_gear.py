@@ -111,8 +111,8 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         ),
         rows=tuple(rows),
         caption="The backlash sum beside the whole gear. In the gear the flexspline’s wind-up has teeth and "
-        "bearing in it, and a clearance is what the free angle loses without it. Without any clearance balls, "
-        "race and rim still give way, so teeth stand short of full depth; the sum has no term for it.",
+        "bearing in it, and a clearance is what the free angle loses without it. Without any clearance "
+        "balls, race and rim still give way, so teeth stand short of full depth; the sum has no term for it.",
         strong=len(rows) - 1,
     )  # fmt: skip
 
