@@ -10,13 +10,12 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.model.span import (
-    MeasuredSpan,
-    beyond,
-    clipped,
+from flexspline.pipeline.diagnosis.model.friction_memory import (
+    half_loop_arcsec,
+    memory_variance,
     smaller_loops,
 )
-from flexspline.pipeline.diagnosis.sweep.row_selection import before_far_turn
+from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, beyond, clipped
 
 BEYOND_THE_EDGE = 0.5
 """Of what a cause adds beyond the most that it adds within what was measured: laws that agree inside go apart
@@ -94,12 +93,12 @@ def deviation_of(
 ) -> Deviation:
     """How far readings of a history may be from the model's angles: one standard deviation.
 
-    Independent parts: the error on rows that were held out; the parameters' posterior covariance; until
-    torque first turns far from zero, and in cycles smaller than any of the record, half the width of the
-    friction's loop, whose state there is not known; near T = 0 the torque's noise, which puts a row on the
-    wrong side of the gap g with the probability Φ(−|T|/σ_T), a square of g²Φ on average; beyond what was
-    measured a share of what the causes add there. Outside, all but the last grow in proportion to the
-    distance.
+    Independent parts: the error on rows that were held out; the parameters' posterior covariance; what
+    friction may remember from before the first row, until torque has wiped it out; in loops smaller than any
+    of the record half the width of the friction's loop, whose state there is not known; near T = 0 the
+    torque's noise, which puts a row on the wrong side of the gap g with the probability Φ(−|T|/σ_T), a
+    square of g²Φ on average; beyond what was measured a share of what the causes add there. Outside, all
+    but the last grow in proportion to the distance. No row's deviation hangs on the rows after it.
     """
     from scipy.special import ndtr
 
@@ -116,15 +115,9 @@ def deviation_of(
     variance += model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong)
     smaller = np.zeros(len(history), bool)
     if FRICTION in model.elements:
-        width = known_causes()[FRICTION].angle_arcsec(model.elements[FRICTION], true)
-        width = width + model.compliance * carried
-        new = before_far_turn(read)
+        variance += memory_variance(model, read, doubt.span.torque_Nm)
         smaller = smaller_loops(doubt.span, history)
-        variance += (new | smaller) * np.abs(width).max() ** 2
-        # friction ahead of the gap may hold the output on either side of it
-        variance += (
-            (new & (np.abs(read.torque_Nm) < np.abs(carried).max())) * model.gap_arcsec**2 / 2
-        )
+        variance += smaller * half_loop_arcsec(model, max(map(abs, doubt.span.torque_Nm))) ** 2
     outside = beyond(doubt.span, history)
     counts = {channel: int((far > 0).sum()) for channel, far in outside.items()}
     counts["torque_amplitude"] = int(smaller.sum())
@@ -134,10 +127,10 @@ def deviation_of(
 
 
 def _over(model: ExtendedModel, span: MeasuredSpan, true: History) -> np.ndarray:
-    """(n,) angle [arcsec] that the causes add beyond the most that each adds within the span."""
+    """(n,) angle [arcsec] that the causes add beyond the most that each has added so far within the span."""
     inside, total = clipped(span, true), np.zeros(len(true))
     for cause_id, elements in model.elements.items():
         cause = known_causes()[cause_id]
-        most = np.abs(cause.angle_arcsec(elements, inside)).max()
+        most = np.maximum.accumulate(np.abs(cause.angle_arcsec(elements, inside)))
         total += np.maximum(np.abs(cause.angle_arcsec(elements, true)) - most, 0.0)
     return total

@@ -19,8 +19,6 @@ MOST_TRAVEL = 0.95
 """Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
 SLACK = 0.05
 """Of a channel's range: noise and rounding are no extrapolation."""
-SMALLER = 0.8
-"""Of the smallest cycle's torque: what friction does in smaller loops was not seen."""
 RATE_SLACK = 0.5
 """Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
 LEAST_RANGE_K = 10.0
@@ -76,12 +74,6 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     if span.input_angle_deg is not None and history.input_angle_deg is not None:
         found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
     return found
-
-
-def smaller_loops(span: MeasuredSpan, history: History) -> np.ndarray:
-    """(n,) rows of cycles that reach much less torque than any of the record."""
-    least = span.smallest_loop_Nm or 0.0
-    return _loops_Nm(history) < SMALLER * least
 
 
 def _loops_Nm(history: History) -> np.ndarray:

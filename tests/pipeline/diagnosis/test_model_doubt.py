@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -91,14 +92,47 @@ def test_half_of_what_a_cause_adds_beyond_the_edge() -> None:
     np.testing.assert_allclose(std(warm, of, model)[far], expected, rtol=1e-9)
 
 
-def test_friction_s_state_is_unknown_until_torque_has_turned_far_from_zero() -> None:
-    shape = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=0, loaded=0, held=1, start=1)
-    model = replace(PLAIN, elements={"friction_hysteresis": (Element(shape, (2.0,)),)})
-    wide = std(RECORD, doubt(np.empty((0, 0))), model)
-    turn = int(np.argmax(RECORD.torque_Nm))
-    assert wide[:turn].min() > 1.9  # the half width of the loop
-    loaded = RECORD.torque_Nm[turn + 10 :] != 0
-    np.testing.assert_allclose(wide[turn + 10 :][loaded], 0.3, rtol=1e-12)
+STOP = replace(PLAIN, elements={"friction_hysteresis": (Element(
+    shape_of("friction_hysteresis", threshold_Nm=0.3, spread=0, loaded=0, held=1, start=0,
+             deadband_Nm=0.0), (2.0,)
+),)})  # fmt: skip
+"""One elastic-perfectly plastic element: 0.3 N·m, 2 arcsec to either side."""
+
+
+def triangles(*peaks_Nm: float) -> History:
+    """0 → +A → −A → 0 of each peak, 0.02 N·m a row."""
+    ways = [(0.0, a, -a, 0.0) for a in peaks_Nm]
+    corners = [0.0, *(end for way in ways for end in way[1:])]
+    torque = np.concatenate([
+        np.arange(1, round(abs(b - a) / 0.02) + 1) * 0.02 * np.sign(b - a) + a
+        for a, b in pairwise(corners)
+    ])  # fmt: skip
+    none = np.zeros(len(torque), int)
+    return History(torque, none, none)
+
+
+def test_what_friction_remembers_is_unknown_until_torque_has_wiped_it_out() -> None:
+    """By hand: come to the first row from above a stop stands at −r, from below at r; a new one at T.
+
+    From there it follows torque up to r: the past from above is wiped out after 2r = 0.6 N·m.
+    """
+    read = triangles(2.0, 2.0)
+    torque = np.arange(1, 101) * 0.02
+    new = np.minimum(torque / 0.3, 1)
+    above = np.minimum((torque - 0.02) / 0.3 - 1, 1)
+    expected = 0.3**2 + 2.0**2 * ((new - above) ** 2 + (new - 1) ** 2) / 2
+    found = std(read, doubt(np.empty((0, 0))), STOP)
+    np.testing.assert_allclose(found[:100] ** 2, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found[100:][read.torque_Nm[100:] != 0], 0.3, rtol=1e-9)
+
+
+@pytest.mark.parametrize("after", [(2.0,), (0.4, 2.0), (3.0, 3.0)])
+def test_no_row_s_deviation_hangs_on_the_rows_after_it(after: tuple[float, ...]) -> None:
+    """Ten loops of 1 N·m that wipe out 0.3 N·m: as sure whatever is measured afterwards."""
+    alone, longer = triangles(*(1.0,) * 10), triangles(*(1.0,) * 10, *after)
+    of = doubt(np.empty((0, 0)), span=span_of(triangles(1.0, 2.0)))
+    n = len(alone)
+    np.testing.assert_allclose(std(longer, of, STOP)[:n], std(alone, of, STOP), rtol=1e-9)
 
 
 def test_the_file_holds_it_exactly(tmp_path: Path) -> None:
@@ -163,4 +197,5 @@ def test_friction_in_smaller_loops_than_any_measured_is_not_known() -> None:
         found = deviation_of(model, doubt(np.empty((0, 0))), loops, ("",))
         settled = (np.arange(len(RECORD)) > 60) & (RECORD.torque_Nm != 0)
         assert bool(found.std_arcsec[settled].min() > 1.9) is wide
-        assert found.rows_beyond == ({"torque_amplitude": len(RECORD)} if wide else {})
+        turned = len(RECORD) - int(np.argmax(np.diff(RECORD.torque_Nm) < 0)) - 1
+        assert found.rows_beyond == ({"torque_amplitude": turned} if wide else {})
