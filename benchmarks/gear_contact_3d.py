@@ -205,7 +205,7 @@ def problem(
 def relief(of: Design, model: GearModel) -> np.ndarray:
     """Of each slice, front flanks, then back [mm]: the law that the contact model has for its own places.
 
-    Its three places are hats over z, whose centroids are the middles of the thirds.
+    Three places are hats over z whose centroids are the middles of the thirds.
     """
     own = gear_model(of, of.part("flexspline"), face_places=SLICES)
     cone = own.rim.cone(own.mesh.stroke)

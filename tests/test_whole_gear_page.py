@@ -45,8 +45,8 @@ def test_what_is_said_of_ratcheting_holds() -> None:
     rows = rows_below("ratcheting rows")
     assert len(rows) == 73
     over = {(row[0], row[1]): float(row[4]) for row in rows}
-    assert min(over.values()) > 5  # "a fifth (ratio 160)"
-    assert max(over.values()) < 55  # "a fiftieth (ratio 30)"
+    assert 4.5 < min(over.values()) < 5.5  # "a fifth (ratio 160)"
+    assert 44 < max(over.values()) < 55  # "a fiftieth (ratio 30)"
     by = {row[0]: row for row in rows_below("ratcheting")}
     for ratio, row in by.items():
         # "within 2 to 7 % at each ratio, within a fifth over all"
@@ -81,13 +81,15 @@ def test_the_words_beside_the_tables_hold() -> None:
     terms = {(row[0], row[1].split(",")[0]): row[2:] for row in rows_below("terms")}
     for name in ("xb1-40", "hat-25"):
         of_sum, of_model = map(float, terms[name, "flexspline"])
-        assert 3.9 < of_model / of_sum < 6.6  # "by a factor of 4 to 6.5"
+        assert 4.4 < of_model / of_sum < 8  # "by a factor of 4.5 to 8"
+        of_sum, of_model = map(float, terms[name, "bearing play"])
+        assert 0.35 <= round(1 - of_model / of_sum, 2) <= 0.6  # "35 and 60 % less"
         flank = [float(x) for x in terms[name, "flank clearance"]]
         assert flank[0] == pytest.approx(flank[1], abs=0.2)  # "agree"
     shares = {row[0]: row[-1] for row in rows_below("published cup")}
     low, high = ([float(x) for x in re.findall(r"\d+", shares[T])] for T in ("20", "40"))
-    assert low[0] < 73 < high[0]  # "near the published ones at 20 to 40 N·m"
-    assert high[1] - 1 < 25 < low[1] + 2
+    assert low[0] < 73 < high[0]  # "near the published ones at 20 N·m"
+    assert low[1] == pytest.approx(25, abs=3)
 
 
 def test_a_page_without_its_tables_is_refused() -> None:

@@ -2,7 +2,8 @@
 
 A tooth's withdrawal is y = stroke − u_r of the rim + u_r of the circular spline. Beyond the working depth it
 is out, the others take its load, and they are pressed out in turn. At the torque where none is left the
-flexspline jumps to its next spaces. Elastic, without friction, and nothing but rim, race, balls, teeth and
+flexspline jumps to its next spaces. Teeth are loaded evenly along their faces: place by place the torque
+moves by less than WITHIN. Elastic, without friction, and nothing but rim, race, balls, teeth and
 circular spline yields: a real gear gives way before.
 """
 
@@ -12,8 +13,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from flexspline.fea.gear.equilibrium import Equilibrium, EquilibriumError, equilibrium
+from flexspline.fea.gear.equilibrium import Contacts, Equilibrium, EquilibriumError, equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import NMM_PER_NM
 
@@ -26,14 +28,37 @@ OUT = 10.0
 
 
 @dataclass(frozen=True)
+class Held:
+    """An equilibrium, and which teeth are out (t,)."""
+
+    at: Equilibrium
+    out: np.ndarray
+
+
+@dataclass(frozen=True)
 class Engagement:
     """The gear's contacts, less the teeth that are pressed out."""
 
     model: GearModel
 
     @cached_property
+    def evenly(self) -> np.ndarray:
+        """(e, k): contacts with one for each flank, whose gap is the mean over its face."""
+        model, face = self.model, self.model.rim.face
+        flanks = np.kron(np.eye(2 * len(model.tooth_angles)), face)
+        return block_diag(flanks, np.eye(model.balls.stop - model.flanks.stop))
+
+    @cached_property
+    def contacts(self) -> Contacts:
+        """Of flanks, front, then back, then seat and balls."""
+        own, mean = self.model.contacts, self.evenly
+        few = len(mean) - len(own.free) + self.model.flanks.stop
+        hertz = np.concatenate([np.zeros(few), own.hertz[self.model.flanks.stop :]])
+        return Contacts(mean @ own.free, mean @ own.compliance @ mean.T, mean @ own.turning, hertz)
+
+    @cached_property
     def lift(self) -> np.ndarray:
-        """(t, k) withdrawal of each tooth, mean over its face, per contact force [mm/N]."""
+        """(t, e) withdrawal of each tooth, mean over its face, per contact force [mm/N]."""
         model, rim = self.model, self.model.rim
         port, angle = model.pitch_points
         n, flanks = len(port) // 2, model.flanks
@@ -49,46 +74,54 @@ class Engagement:
         if model.spline:
             other = model.spline.compliance(port, angle)[:n]
             per_force[:, flanks] += other @ model.gap_per_pitch_point.T
-        return -np.einsum(
-            "tfk,f->tk", per_force.reshape(-1, len(rim.face), per_force.shape[1]), rim.face
-        )
+        mean = np.kron(np.eye(len(model.tooth_angles)), rim.face)
+        return -mean @ per_force @ self.evenly.T
 
     def withdrawal(self, at: Equilibrium) -> np.ndarray:
         """(t,) y of each tooth under load [mm]."""
         return np.asarray(self.model.mesh.stroke + self.lift @ at.forces)
 
-    def held(self, torque_Nm: float) -> Equilibrium | None:
-        """With all teeth that the load leaves within the working depth; None: no tooth is left."""
-        model, all_in = self.model, self.model.contacts
+    def held(self, torque_Nm: float, before: Held | None = None) -> Held | None:
+        """With all teeth that the load leaves within the working depth; None: no tooth is left.
+
+        `before`: at a smaller torque on the way; teeth that were out there stay out.
+        """
+        model, all_in = self.model, self.contacts
         stroke, depth = model.mesh.stroke, model.mesh.depth * model.mesh.stroke
-        out = np.zeros(len(model.tooth_angles), bool)
-        at: Equilibrium | None = None
+        out = before.out if before else np.zeros(len(model.tooth_angles), bool)
+        at = before.at if before else None
         while not out.all():
             off = np.zeros_like(all_in.free)
-            off[model.flanks] = OUT * stroke * np.tile(np.repeat(out, len(model.rim.face)), 2)
+            off[: 2 * len(out)] = OUT * stroke * np.tile(out, 2)
+            contacts = replace(all_in, free=all_in.free + off)
             try:
-                at = equilibrium(
-                    replace(all_in, free=all_in.free + off), torque_Nm * NMM_PER_NM / 2, at
-                )
+                at = equilibrium(contacts, torque_Nm * NMM_PER_NM / 2, at)
             except EquilibriumError:
                 return None
             pressed = ~out & (self.withdrawal(at) > depth)
             if not pressed.any():
-                return at
-            out |= pressed
+                return Held(at, out)
+            out = out | pressed
         return None
 
     def limit(self, first_Nm: float) -> float | None:
         """Torque [N·m] at which teeth let go, sought from a torque that they hold; None: far beyond it."""
-        low = first_Nm
+        low, holds = first_Nm, self.held(first_Nm)
+        if holds is None:
+            return None
         for _ in range(MOST_DOUBLINGS):
             high = 2 * low
-            if self.held(high) is None:
+            found = self.held(high, holds)
+            if found is None:
                 break
-            low = high
+            low, holds = high, found
         else:
             return None
         while high - low > WITHIN * low:
             middle = (low + high) / 2
-            low, high = (middle, high) if self.held(middle) else (low, middle)
+            found = self.held(middle, holds)
+            if found:
+                low, holds = middle, found
+            else:
+                high = middle
         return (low + high) / 2

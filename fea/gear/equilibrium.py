@@ -17,8 +17,9 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from flexspline.fea.interior_point import CENTRING, room
 from flexspline.geometry.errors import ComputationError
 
-EPS = 1e-9
-"""Forces times gaps, and what gaps and torque are off by, end below this share of the largest."""
+EPS = 1e-11
+"""Forces times gaps, and what gaps and torque are off by, end below this share of the largest. With 1e-9
+places that barely touch turned one of 35 random gears by 0.2 % of its angle."""
 MOST_ROUNDS = 120
 """35 random designs took up to 32 at 1330 torques, 19 in the median."""
 BACK = 0.99
@@ -104,13 +105,18 @@ def equilibrium(at: Contacts, torque: float, start: Equilibrium | None = None) -
 
 def _beside(at: Contacts, torque: float, start: Equilibrium) -> tuple[np.ndarray, float]:
     """Forces (k,) and rotation, solved for among ever more places until no gap is below 0."""
+    if torque * start.torque < 0:  # other flanks carry there
+        return _settled(at, torque, None)
     size = float(np.abs(at.free).max())
     here = at.gaps(np.where(start.loaded, start.forces, 0.0), start.rotation)
     kept = start.loaded | (here < NEAR * size)
     while True:
         places = np.flatnonzero(kept)
         forces = np.zeros(len(at.free))
-        few, rotation = _settled(at.among(places), torque, start.forces[places])
+        try:
+            few, rotation = _settled(at.among(places), torque, start.forces[places])
+        except EquilibriumError:  # too few to carry it
+            return _settled(at, torque, None)
         forces[places] = few
         crossed = ~kept & (at.gaps(forces, rotation) < 0)
         if not crossed.any():
@@ -142,6 +148,8 @@ def _settled(at: Contacts, torque: float, start: np.ndarray | None) -> tuple[np.
             and both.max() < EPS * size * force.max()
         ):
             return force, rotation
+        if not np.isfinite(both).all():
+            raise EquilibriumError("the contact forces did not settle: nothing holds the gear")
         diagonal = gap / force + 2 / 3 * at.hertz * force ** (-1 / 3)
         try:
             factor = cho_factor(matrix + np.diag(diagonal), check_finite=False)

@@ -111,10 +111,16 @@ def K_of(model: GearModel) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("LAST_HARMONIC", 96), ("PLACES", 9), ("GROOVE_SHARE", 0.15)]
+    ("name", "value"),
+    [
+        ("LAST_HARMONIC", 96),
+        ("PLACES", 9),
+        ("GROOVE_SHARE", 0.15),
+        ("FACE_PLACES", {"relieved": 9}),
+    ],
 )
 def test_what_is_only_numerical_does_not_show(
-    model: GearModel, monkeypatch: pytest.MonkeyPatch, name: str, value: float
+    model: GearModel, monkeypatch: pytest.MonkeyPatch, name: str, value: object
 ) -> None:
     """Twice the harmonics and angles, twice the places, a ball that presses on half the width."""
     monkeypatch.setattr(settings, name, value)
