@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
 from flexspline.fea.solid.defaults import surface_to_mesh
-from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.swept import swept_edges, swept_mesh
 from flexspline.fea.solid.swept_sizing import Finer
@@ -51,10 +53,17 @@ class PartMeshes:
                 model.part, model.first_spec, model.sector.degrees, self._edge_spacing
             )
 
-    def swept(self, spec: MeshSpec, finer: Finer | None = None) -> MeshedPart | None:
-        """Swept from the meridian; None for a part that only a mesher can mesh."""
+    def swept(
+        self, spec: MeshSpec, finer: Finer | None = None, most_elements: float = inf
+    ) -> MeshedPart | None:
+        """Swept from the meridian; None for a part that only a mesher can mesh.
+
+        Raises
+        ------
+        TooManyElementsError : as `swept_mesh`.
+        """
         part, degrees = self.model.part, self.model.sector.degrees
-        mesh = swept_mesh(part, degrees, spec, finer)
+        mesh = swept_mesh(part, degrees, spec, finer, most_elements)
         if mesh is None:
             return None
         return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing))
@@ -66,18 +75,28 @@ class PartMeshes:
 
         Raises
         ------
-        DesignError, SolidError : as `meshed`.
+        DesignError : as `PartModel.is_swept`. TooManyElementsError : the coarsest is too large to begin.
         """
         model = self.model
-        spec = model.first_spec
+        spec = before = model.first_spec
         if not model.is_swept or model.context.design.solver.edge_length_mm is not None:
             return spec
-        for _ in range(COARSENINGS):
-            coarser = spec.scaled(COARSER)
-            if self.meshed(spec).mesh.elements <= most_elements or self.swept(coarser) is None:
-                return spec
-            spec = coarser
+        for tried in range(COARSENINGS + 1):
+            most = most_elements if tried < COARSENINGS else inf
+            try:
+                with model.context.progress.stage(f"mesh of the {model.name}"):
+                    swept = self.swept(spec, most_elements=most)
+            except TooManyElementsError:
+                spec, before = spec.scaled(COARSER), spec
+                continue
+            if swept is None:
+                return before
+            self._keep(spec, swept)
+            break
         return spec
+
+    def _keep(self, spec: MeshSpec, made: MeshedPart) -> None:
+        self._kept(spec, lambda: made)
 
     def meshed(self, spec: MeshSpec) -> MeshedPart:
         """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.
@@ -86,9 +105,14 @@ class PartMeshes:
         ------
         DesignError : as `PartModel.is_swept`. SolidError : a sweep is asked for and fails a check.
         """
-        model = self.model
-        inputs = {**model.geometry_key, "spec": asdict(spec), "mesher": model.mesher}
-        return model.context.cache.get("mesh", inputs, lambda: self._made(spec))[0]
+        return self._kept(spec, lambda: self._made(spec))
+
+    def _kept(self, spec: MeshSpec, make: Callable[[], MeshedPart]) -> MeshedPart:
+        """From the cache, or made; how long making it may take is no part of what is asked."""
+        model, wanted = self.model, asdict(spec)
+        del wanted["time_limit_s"]
+        inputs = {**model.geometry_key, "spec": wanted, "mesher": model.mesher}
+        return model.context.cache.get("mesh", inputs, make)[0]
 
     def _made(self, spec: MeshSpec) -> MeshedPart:
         model, progress = self.model, self.model.context.progress

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
 from flexspline.fea.solid.unfold import unfolded
@@ -95,10 +95,12 @@ def _finer(flexspline: PartModel, sector: Sector, number: int) -> TetMesh:
     meshes, spec = PartMeshes(flexspline), flexspline.first_spec
     if number == 0:
         spec = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
-    swept = meshes.swept(spec, finer)
+    copies = sector.degrees / flexspline.sector.degrees
+    try:
+        swept = meshes.swept(spec, finer, MOST_ELEMENTS / copies)
+    except TooManyElementsError as fault:
+        size = fault.elements * copies
+        raise SolidError(f"it would have {size:.0f} elements, at most {MOST_ELEMENTS}") from None
     if swept is None:
         raise SolidError("the swept mesh fails a check")
-    size = round(len(swept.mesh.cells) * sector.degrees / swept.mesh.sector_deg)
-    if size > MOST_ELEMENTS:
-        raise SolidError(f"it would have {size} elements, at most {MOST_ELEMENTS}")
     return unfolded(swept.mesh, sector.degrees)

@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.cases import ellipse
-from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.swept_sizing import Finer
@@ -109,11 +109,9 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
         for coarser in COARSER:
             finer = Finer(coarser * LARGEST_STEP, places, _reach_mm(flexspline), coarser * edge)
             try:
-                found = PartMeshes(flexspline).swept(even, finer)
-            except SolidError:  # too many elements even to begin
+                return PartMeshes(flexspline).swept(even, finer, MOST_ELEMENTS / times)
+            except TooManyElementsError:
                 continue
-            if found is None or len(found.mesh.cells) * times <= MOST_ELEMENTS:
-                return found
     return None
 
 

@@ -35,6 +35,17 @@ class SolveError(SolidError):
     """The linear solve did not meet its checks (residual, balance)."""
 
 
+class TooManyElementsError(SolidError):
+    """The mesh would have so many `elements`, or more, and at most `most` were wanted."""
+
+    def __init__(self, elements: float, most: float) -> None:
+        self.elements, self.most = elements, most
+        super().__init__(
+            f"the mesh would have {elements:.0f} elements or more, at most {most:.0f}:"
+            " raise solver.tolerance_pct or solver.edge_length_mm"
+        )
+
+
 class IterationError(SolveError):
     """The iteration stopped short: `steps` taken, relative `residual` reached, the one `wanted`."""
 

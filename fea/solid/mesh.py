@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.imprint import Meshed, with_patch_edges
 from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
@@ -31,7 +32,8 @@ RETRIES = ((1.0, True), (0.95, True), (0.9, False))
 class MeshSpec:
     """What to ask of the mesher; lengths in mm.
 
-    `unrolled_radius` 0 meshes in part space, otherwise see `fea.solid.unroll`.
+    `unrolled_radius` 0 meshes in part space, otherwise see `fea.solid.unroll`. `time_limit_s` is the
+    mesher's, for all its attempts.
     """
 
     grading: Grading
@@ -59,11 +61,16 @@ def mesh_surface(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     MesherError : from the mesher.
     MeshQualityError : a patch or the volume is not the CAD's, or an element is inverted.
     """
+    until = Deadline(spec.time_limit_s)
     for factor, unrolled in RETRIES:
+        left_s = spec.time_limit_s - until.elapsed()
+        if left_s <= 0:
+            break
         radius = spec.unrolled_radius if unrolled else 0.0
         grading = spec.grading.scaled(factor)
         try:
-            return _mesh_once(surface, replace(spec, grading=grading, unrolled_radius=radius))
+            asked = replace(spec, grading=grading, unrolled_radius=radius, time_limit_s=left_s)
+            return _mesh_once(surface, asked)
         except MeshQualityError as fault:
             last = fault
     raise last

@@ -120,7 +120,8 @@ class _SolidTorsion:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began_s = now_s
         self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
-        return self._mesher(self._spec)
+        left_s = self._deadline.limit_s - now_s
+        return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
 
 def near_step(tolerance: float, half: float) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from math import ceil, radians
+from math import ceil, inf, radians
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
-from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
@@ -48,7 +48,11 @@ TOLERANCE = 1e-3
 
 
 def swept_mesh(
-    part: Part, sector_deg: float, spec: MeshSpec, finer: Finer | None = None
+    part: Part,
+    sector_deg: float,
+    spec: MeshSpec,
+    finer: Finer | None = None,
+    most_elements: float = inf,
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
@@ -58,7 +62,8 @@ def swept_mesh(
 
     Raises
     ------
-    SolidError : the mesh would be too large.
+    TooManyElementsError : the mesh would have more than `most_elements`. To find that out takes a tenth of
+        the mesh's time or less.
     """
     if not can_be_swept(part):
         return None
@@ -70,6 +75,8 @@ def swept_mesh(
         polar, tets, bend = _prisms(
             part.meridian, column, block, wedge, copies, spec.grading, finer
         )
+        if len(tets) > most_elements:
+            raise TooManyElementsError(len(tets), most_elements)
         return _curved(part, column, block, sector_deg, polar, tets, bend)
     except (MeshQualityError, MeshingError):
         return None

@@ -11,7 +11,7 @@ from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, Column
-from flexspline.fea.solid.errors import MeshQualityError, SolidError
+from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
 
@@ -114,10 +114,7 @@ def critical_points(outline: Meridian) -> np.ndarray:
 
 
 def refuse_beyond_memory(prisms: int) -> None:
-    """Raise SolidError for too many prisms of the meridian; the column of the holes is not counted."""
+    """Raise TooManyElementsError for too many prisms of the meridian; the holes' column is not counted."""
     elements = 3 * prisms
     if elements > MOST_ELEMENTS:
-        raise SolidError(
-            f"the mesh would have {elements} elements or more, at most {MOST_ELEMENTS}:"
-            " raise solver.tolerance_pct or solver.edge_length_mm"
-        )
+        raise TooManyElementsError(elements, MOST_ELEMENTS)

@@ -66,9 +66,9 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     sweep = part_meshes.swept_mesh
 
     def fails_at_first(
-        part: Part, degrees: float, asked: MeshSpec, more: Finer | None
+        part: Part, degrees: float, asked: MeshSpec, more: Finer | None, most_elements: float
     ) -> TetMesh | None:
-        return None if asked == spec else sweep(part, degrees, asked, more)
+        return None if asked == spec else sweep(part, degrees, asked, more, most_elements)
 
     monkeypatch.setattr(part_meshes, "swept_mesh", fails_at_first)
     assert meshes.meshed(spec).mesh.elements == finer.mesh.elements
