@@ -4,15 +4,20 @@ becomes of a sweep that fails a check."""
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.errors import MesherTimeError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
+from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import part_meshes, part_stiffness
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
@@ -73,3 +78,47 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     monkeypatch.setattr(part_meshes, "swept_mesh", fails_at_first)
     assert meshes.meshed(spec).mesh.elements == finer.mesh.elements
     assert not any("fTetWild" in line for line in said)
+
+
+def test_fTetWild_has_little_time_where_an_enclosure_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The mesh after it, with longer edges, has all the time of a first one."""
+    context = AnalysisContext(
+        DESIGN.changed({"solver.mesher": "tetwild"}), Cache(tmp_path, CACHED_TYPES), Progress()
+    )
+    cup = context.part("flexspline")
+    asked: list[MeshSpec] = []
+
+    def slow(surface: object, spec: MeshSpec) -> TetMesh:
+        asked.append(spec)
+        if spec.time_limit_s == part_stiffness.ENCLOSED_SECONDS:
+            raise MesherTimeError("it is slow", "wait")
+        mesh = part_meshes.swept_mesh(cup.part, cup.sector.degrees, cup.first_spec)
+        assert mesh is not None
+        return mesh
+
+    monkeypatch.setattr(part_meshes, "mesh_surface", slow)
+    monkeypatch.setattr(
+        part_meshes, "surface_to_mesh", lambda *_: SimpleNamespace(sharp_edges=np.empty((0, 3)))
+    )
+    found = part_stiffness.part_stiffness(cup)
+    assert found.guaranteed
+    first, second = asked
+    assert second.grading == first.grading.scaled(part_stiffness.ENCLOSED_COARSER)
+    assert second.time_limit_s > first.time_limit_s
+    assert part_stiffness.rim_mesh(cup).mesh.elements == found.levels[0].elements
+    assert len(asked) == len([first, second])
+
+
+def test_a_mesh_that_would_be_too_large_is_counted_not_made() -> None:
+    part = DESIGN.part("shaft")
+    degrees = sector_of(part, "torsion").degrees
+    mesh = part_meshes.swept_mesh(part, degrees, first_spec(part))
+    assert mesh is not None
+    most = mesh.elements
+    again = part_meshes.swept_mesh(part, degrees, first_spec(part), None, most)
+    assert again is not None
+    with pytest.raises(TooManyElementsError) as refused:
+        part_meshes.swept_mesh(part, degrees, first_spec(part), None, most - 1)
+    assert refused.value.elements == most
