@@ -40,22 +40,42 @@ def corners_of(history: History) -> list[Corner]:
         width, time, torque = rates.width, history.time_s[rows], history.torque_Nm[rows]
         change = np.zeros(len(rows))
         change[width:-width] = (rates.values[width:] - rates.values[:-width]) / fast
-        size = np.abs(change)
-        order = np.argsort(-size, kind="stable")
-        taken = np.zeros(len(rows), bool)
-        own = []
-        for i in order[: int((size > SUDDEN).sum())]:
-            if not taken[i]:
-                taken[max(0, i - 2 * width) : i + 2 * width + 1] = True
-                own.append(Corner(unit, _met(time, torque, int(i), width), float(change[i])))
-        found += sorted(own, key=lambda c: c.time_s)
+        found += [
+            Corner(unit, _met(time, torque, i, way), float(change[i]))
+            for i, way in _ways(_places(change, width), len(rows), max(width, WAY))
+        ]
     return found
 
 
-def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, width: int) -> float:
-    """Time [s] where the straight ways before and after row i meet, between its neighbours."""
-    way = max(width, WAY)
-    if i < way or i + way >= len(time_s):
+def _places(change: np.ndarray, width: int) -> list[int]:
+    """Rows of the corners, in order.
+
+    A corner is spread over the rows that a rate is taken over, with one sign. A short ramp between two holds
+    begins and ends with opposite signs, however near.
+    """
+    size = np.abs(change)
+    taken = {side: np.zeros(len(change), bool) for side in (-1.0, 1.0)}
+    found = []
+    for i in np.argsort(-size, kind="stable")[: int((size > SUDDEN).sum())]:
+        mine = taken[float(np.sign(change[i]))]
+        if not mine[i]:
+            mine[max(0, i - 2 * width) : i + 2 * width + 1] = True
+            found.append(int(i))
+    return sorted(found)
+
+
+def _ways(places: list[int], rows: int, most: int) -> list[tuple[int, int]]:
+    """Each corner's row and how many rows on either side have no other corner, `most` at the most."""
+    ends = [-1, *places, rows]
+    return [(i, min(most, i - ends[k], ends[k + 2] - i - 1)) for k, i in enumerate(places)]
+
+
+def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
+    """Time [s] where the straight ways before and after row i meet, between its neighbours.
+
+    The row's own where the ways are too short to have a slope beyond the torque's noise.
+    """
+    if way < WAY or i < way or i + way >= len(time_s):
         return float(time_s[i])
     t = time_s - time_s[i]
     (a, b), (c, d) = (

@@ -60,7 +60,7 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
     before = less_zero(reading, train, history)
     left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
-    floor = explained.identified.fit.residual_as_read()[prepared.kept]
+    floor = explained.identified.fit.residual_as_read()[test]  # of these rows, not of all
     return Gain(
         split.label,
         rmse_before=_rms(left["before"]),

@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
+from flexspline.pipeline.diagnosis.measurement.torque_program import hold_s, ramp_s
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 YIELDS = (0.4, 0.55, 0.7, 0.85)
@@ -24,8 +24,11 @@ DAMPED = ((0.05, 1.12), (0.12, 1.3))
 neighbours so near drift apart by less than a sixth of a turn."""
 FEWEST_ROWS = 3.0
 """Of a period: of fewer, rows do not follow it."""
-LONGEST = 0.5
-"""Of a ramp: what swings more slowly does not ring in it."""
+LONGEST, LONGEST_HELD = 0.5, 1.0
+"""Of a ramp, of a hold: what swings more slowly does not ring in it."""
+FINEST_PART = 0.1
+"""Of the rows: so many are sampled finely enough for the shortest period tried. Of cycles at several rates
+the quickest ring most."""
 
 
 def giving_way(rig: Rig) -> Made:
@@ -110,8 +113,13 @@ def ringing(rig: Rig) -> Made:
     ramp, corners = ramp_s(history), corners_of(history)
     if ramp <= 0 or history.time_s is None or not corners:
         return
-    spacing = float(np.median([np.median(np.diff(history.time_s[r])) for r in history.unit_slices]))
-    shortest, longest = FEWEST_ROWS * max(spacing, 1e-12), LONGEST * ramp
+    spacing = float(
+        np.median(
+            [np.quantile(np.diff(history.time_s[r]), FINEST_PART) for r in history.unit_slices]
+        )
+    )
+    shortest = FEWEST_ROWS * max(spacing, 1e-12)
+    longest = max(LONGEST * ramp, LONGEST_HELD * hold_s(history))
     for damping, ratio in DAMPED:
         if longest <= shortest:
             break

@@ -10,15 +10,17 @@ import pytest
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
 from histories import PREDICTION, sweep
+from scipy.signal import lsim, lti
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, jumps_of
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import run_race
-from flexspline.pipeline.diagnosis.sweep.rig_nuisance import YIELDS, giving_way, ringing
+from flexspline.pipeline.diagnosis.sweep.rig_nuisance import RINGS, YIELDS, giving_way, ringing
 
 HELD = replace(sweep(cycles=3, rows=400, hold=100), temperature_C=None, input_angle_deg=None)
 """0.02 N·m and 5 s a row: ramps of 100 rows, holds of 100."""
@@ -46,6 +48,52 @@ def test_corners_of_holds_and_of_turns() -> None:
     turned = corners_of(TURNING)
     assert [c.time_s / 5 for c in turned[:3]] == pytest.approx([99, 299, 499], abs=1.01)
     assert [c.change for c in turned[:3]] == pytest.approx([-2, 2, -2], rel=0.01)
+
+
+STEPS = np.array([1, 2, 1, 0, -1, -2, -1, 0.0])
+"""Torques [N·m] of a staircase's holds."""
+
+
+def staircase(row_s: tuple[float, ...]) -> History:
+    """A cycle for each spacing of rows: eight steps of two rows, each held for eight more."""
+    ramp = np.array([0.5, 1.0])
+    level, torque = 0.0, []
+    for to in np.tile(STEPS, len(row_s)):
+        torque += [*(level + ramp * (to - level)), *np.full(8, to)]
+        level = to
+    each = len(torque) // len(row_s)
+    none = np.zeros(len(torque), int)
+    cycle = np.repeat(np.arange(len(row_s)), each)
+    return History(np.array(torque), none, cycle, np.cumsum(np.repeat(row_s, each)))
+
+
+def test_a_short_ramp_between_holds_has_two_corners() -> None:
+    """Of two rows: torque moves from the last row of a hold to the second after it, by 0.5 N·m a row."""
+    found = corners_of(staircase((1.0,)))
+    # the first hold's rows are 1 to 9, of a first ramp whose beginning was not recorded
+    assert [c.time_s for c in found[:5]] == pytest.approx([2, 10, 12, 20, 22])
+    assert [c.change for c in found[:5]] == pytest.approx([-1, 1, -1, -1, 1])
+
+
+def test_ringing_of_a_staircase_is_no_rate_dependence() -> None:
+    """A mass on the gear's spring, x'' + 2ζω x' + ω²(x − T) = 0, with cycles at three rates."""
+    stairs = staircase((0.2, 0.6, 1.8, 0.2, 0.6, 1.8))
+    assert stairs.time_s is not None
+    fine = np.arange(stairs.time_s[0], stairs.time_s[-1] + 0.02, 0.02)
+    omega, damping = 2 * np.pi / 1.2, 0.05  # a period of six rows of the quickest cycles
+    drive = np.interp(fine, stairs.time_s, stairs.torque_Nm)
+    mass = lti([omega**2], [1, 2 * damping * omega, omega**2])
+    swing = np.interp(stairs.time_s, fine, lsim(mass, drive, fine)[1]) - stairs.torque_Nm
+    rng = np.random.default_rng(3)
+    angle = line(stairs.torque_Nm) + 10.0 * swing + rng.normal(0, 0.5, len(swing))
+    outcome, behind = diagnose_sweep(record(stairs, angle), PREDICTION)
+    assert outcome.verdict == "unknown"
+    assert outcome.unexplained[0].what == RINGS
+    # the swing itself, to a quarter: a hold's swings of a ramp's two ends overlap
+    kept = behind.explained.prepared.kept
+    assert outcome.unexplained[0].rms == pytest.approx(10.0 * swing[kept].std(), rel=0.25)
+    assert outcome.gain is not None
+    assert outcome.gain.noise_floor < outcome.gain.rmse_after
 
 
 def test_a_sine_has_no_corners() -> None:
