@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from flexspline.pipeline.diagnosis.prediction import Prediction
+
+FAR = 3.0
+"""Stated deviations: one calibration of a right simulation in 370 lies further off."""
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -27,3 +32,29 @@ class Calibration:
     gap_arcsec: Estimate
     beside_effects: bool
     compliance: Estimate | None = None
+
+    def far_off(self, prediction: Prediction) -> tuple[FarOff, ...]:
+        """What lies more than `FAR` of its stated deviations from the simulation."""
+        measured = [("gap", self.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)]
+        if self.compliance is not None:
+            stated = prediction.compliance, prediction.compliance_std
+            measured.append(("compliance", self.compliance, *stated))
+        return tuple(
+            FarOff(name, found, abs(found.value - simulated) / std)
+            for name, found, simulated, std in measured
+            if abs(found.value - simulated) > FAR * std > 0
+        )
+
+
+@dataclass(frozen=True)
+class FarOff:
+    """A calibrated quantity, `gap` [arcsec] or `compliance` [arcsec per N·m], far from its simulated value.
+
+    Attributes
+    ----------
+    deviations : how far, in the standard deviations that the design states.
+    """
+
+    quantity: str
+    measured: Estimate
+    deviations: float

@@ -7,7 +7,13 @@ from collections.abc import Sequence
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
-from flexspline.results.diagnosis.words import cause_title, channel_words, magnitude_words, title_of
+from flexspline.results.diagnosis.words import (
+    cause_title,
+    channel_words,
+    magnitude_words,
+    plus_minus,
+    title_of,
+)
 
 AGREES = {
     "sweep": "The measurement agrees",
@@ -16,12 +22,34 @@ AGREES = {
 }
 STANDS_OUT = 2.0
 """Times the noise, from which structure without a name is a part of the summary."""
+FAR_UNITS = {"gap": "arcsec", "compliance": "arcsec per N·m"}
 LISTED = 12
 """Units that are spelt out; so many fill two lines."""
 
 
 def summary(diagnosis: Diagnosis) -> str:
-    """The verdict in one or two sentences; magnitudes with as many digits as their deviation bears."""
+    """The verdict in one or two sentences; magnitudes with as many digits as their deviation bears.
+
+    One more says a calibrated gap or compliance that lies far from the simulated one.
+    """
+    far = _far_off(diagnosis)
+    if far and diagnosis.verdict == "consistent":
+        return f"The measurement shows no effect that the simulation leaves out. But the {far}."
+    return _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
+
+
+def _far_off(diagnosis: Diagnosis) -> str:
+    """Calibrated quantities beyond three of their stated deviations, whatever else is named; "" of none."""
+    calibration = diagnosis.calibration
+    far = () if calibration is None else calibration.far_off(diagnosis.prediction)
+    return "; the ".join(
+        f"{f.quantity}, {plus_minus(f.measured.value, f.measured.std)} {FAR_UNITS[f.quantity]}, lies "
+        f"{f.deviations:.1f} of its stated deviations from the simulated one"
+        for f in far
+    )
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
     outcome = diagnosis.outcome
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:

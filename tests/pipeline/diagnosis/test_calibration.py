@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.results.diagnosis.summary import summary
 
 SIGMA = 0.5
+DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
 
 
 def raced(compliance: float, gap: float) -> GaussianEvidence:
@@ -56,3 +65,34 @@ def test_no_other_calibration_within_its_limits_is_better(compliance: float, gap
     ]
     # the prior counts against each calibration too, as 4 of some thousand squares at the limit
     assert rms(calibrated_residual(now)[now.kept]) <= min(tried) * 1.01
+
+
+def test_a_quantity_far_from_the_simulation_is_said_with_its_distance() -> None:
+    """The simulation has a gap of 60 ± 10 arcsec and 10 ± 0.3 arcsec per N·m."""
+    near = Calibration(Estimate(89.0, 0.1), False, Estimate(9.2, 0.1))
+    assert near.far_off(PREDICTION) == ()
+    (gap,) = Calibration(Estimate(25.0, 0.1), False, Estimate(10.5, 0.1)).far_off(PREDICTION)
+    assert (gap.quantity, gap.deviations) == ("gap", pytest.approx(3.5))
+    (soft,) = Calibration(Estimate(60.0, 0.1), False, Estimate(11.2, 0.1)).far_off(PREDICTION)
+    assert (soft.quantity, soft.deviations) == ("compliance", pytest.approx(4.0))
+
+
+def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
+    """A right form, but a gap 3.5 of the stated deviations too wide: evidence that does not name it."""
+    phase = (np.arange(180) + 0.5) / 60
+    torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
+    compliance = (1 / 31300 + 1 / 43000) * ARCSEC_PER_RAD
+    prediction = prediction_of(DESIGN, 31300.0, 43000.0)
+    gap = prediction.gap_arcsec + 3.5 * prediction.gap_std_arcsec
+    noise = np.random.default_rng(1).normal(0, 1.0, 180)
+    angle = compliance * torque + gap / 2 * np.sign(torque) + noise
+    csv = tmp_path / "wide.csv"
+    rows = zip(60 * phase, phase.astype(int), torque, angle, strict=True)
+    csv.write_text(
+        "time_s,cycle,torque_Nm,angle_arcsec\n"
+        + "".join(f"{t:.3f},{c},{q:.4f},{a:.3f}\n" for t, c, q, a in rows)
+    )
+    found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
+    assert found.verdict == "consistent"
+    assert "But the gap" in summary(found)
+    assert "3.5 of its stated deviations" in summary(found)
