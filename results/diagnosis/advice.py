@@ -44,7 +44,7 @@ def _of_sweep(after: NextMeasurement) -> str:
         return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
-        return f"to confirm {cause.title}: {cause.reveals}"
+        return f"to confirm {cause.title}: {after.doing or cause.reveals}"
     titles = _one_from_others(after)
     if not after.doing:
         return f"to tell {titles}: {cause.reveals}"

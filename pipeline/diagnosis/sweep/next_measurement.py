@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.splits import rate_range
 
 ROWS = 64
 """Of one triangular cycle."""
@@ -30,6 +31,8 @@ LONG_HOLD = 20.0
 """Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
 FASTER = 10.0
 """Times faster and slower: what lags changes by a factor of 100 between the two, friction not at all."""
+LARGER = "sweep to a quarter, half, and one and a half times the largest torque"
+"""What no record of its largest torque has: how an effect goes on beyond it."""
 MORE_CYCLES = 40
 """Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
 
@@ -66,6 +69,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
     many = [place0 + p for p in POSITIONS_DEG]
     k = len(many)
+    slower, faster, said = _rates_beyond(prepared.sweep.history, ramp)
     same = (place0, place0)
     return [
         MeasurementPlan(
@@ -75,8 +79,8 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         ),
         MeasurementPlan(
             "torque_rate",
-            "repeat the sweep ten times slower and ten times faster",
-            cycles((1.0,) * 3, (1.0, FASTER, 1 / FASTER), (0.0,) * 3, (place0,) * 3, (last,) * 3),
+            said,
+            cycles((1.0,) * 3, (1.0, slower, faster), (0.0,) * 3, (place0,) * 3, (last,) * 3),
         ),
         MeasurementPlan(
             "hold",
@@ -85,7 +89,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         ),
         MeasurementPlan(
             "torque_amplitude",
-            "sweep to a quarter, half, and one and a half times the largest torque",
+            LARGER,
             cycles((0.25, 0.5, 1.0, 1.5), (1.0,) * 4, (0.0,) * 4, (place0,) * 4, (last,) * 4),
         ),
         MeasurementPlan(
@@ -99,6 +103,19 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
             cycles(places=same, numbers=(last, last + MORE_CYCLES)),
         ),
     ]
+
+
+def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, str]:
+    """Ramps of a slower and a faster sweep as multiples of the typical one, and the plan in words.
+
+    Where cycles differ by `FASTER` already, ten times beyond the slowest and the quickest.
+    """
+    quickest, slowest = rate_range(history)
+    if quickest < FASTER * slowest or slowest == 0:
+        return FASTER, 1 / FASTER, "repeat the sweep ten times slower and ten times faster"
+    typical = float(np.abs(history.torque_Nm).max()) / ramp_s
+    words = "repeat the sweep ten times slower than its slowest cycle and ten times faster than its quickest"
+    return FASTER * typical / slowest, typical / (FASTER * quickest), words
 
 
 def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, np.ndarray]:
@@ -132,10 +149,19 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     aim: Aim = "separate" if rivals else "confirm"
     models = _rival_models(explained, decision, cause) if rivals else []
     if len(models) < 2:
-        return NextMeasurement(known_causes()[cause].vary, aim, (cause, *rivals))
+        vary, doing = known_causes()[cause].vary, ""
+        if aim == "confirm" and vary == "torque_rate" and _has_rates(explained):
+            vary, doing = "torque_amplitude", LARGER
+        return NextMeasurement(vary, aim, (cause, *rivals), doing)
     noise = explained.prepared.noise.std_arcsec
     best = most_telling(plans(explained.prepared), models, noise)
     return NextMeasurement(best.vary, aim, (cause, *rivals), best.doing, separation=best.separation)
+
+
+def _has_rates(explained: ExplainedSweep) -> bool:
+    """Whether the record's own cycles are as many times faster and slower as would be asked for."""
+    quickest, slowest = rate_range(explained.prepared.sweep.history)
+    return quickest >= FASTER * slowest > 0
 
 
 def _rival_models(explained: ExplainedSweep, decision: Decision, cause: str) -> list[ExtendedModel]:

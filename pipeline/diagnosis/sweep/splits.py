@@ -133,6 +133,14 @@ def _values(
         yield TEMPERATURE, np.array([temperature[rows].mean() for rows in cycles])
 
 
+def rate_range(history: History) -> tuple[float, float]:
+    """The quickest and the slowest cycle's torque rate [N·m/s]; zeros where time or rows do not tell."""
+    if history.time_s is None:
+        return 0.0, 0.0
+    rates = [rate for rows in _cycles(history) if (rate := _rate(history, rows)) > 0]
+    return (max(rates), min(rates)) if rates else (0.0, 0.0)
+
+
 def _rate(history: History, rows: np.ndarray) -> float:
     """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
     if len(rows) < 2 * FEWEST:

@@ -1,13 +1,21 @@
 """Which measurement to advise: the one that tells rivals apart, not the longest one."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-from histories import joined, shape_of, sweep
+import pytest
+from histories import PREDICTION, joined, shape_of, sweep
 
 from flexspline.pipeline.diagnosis.causes.cause import Element
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling, separations
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, plans
+from flexspline.pipeline.diagnosis.sweep.prepare import prepare
+from flexspline.pipeline.diagnosis.sweep.splits import rate_range
 
 PLAIN = ExtendedModel(11.0, 70.0, {"": 0.0}, {}, {})
 WARM = replace(
@@ -28,3 +36,51 @@ def test_a_plan_is_not_better_for_its_length() -> None:
     ]
     assert separations(plans, [PLAIN, WARM], 0.4)[0].vary == "input_angle_deg"
     assert most_telling(plans, [PLAIN, WARM], 0.4).vary == "temperature_C"
+
+
+def sliding_record(periods_s: tuple[float, ...]) -> Sweep:
+    """Triangles of 2 N·m, a period each: a line, a gap, and a block that slips at 0.2 N·m, 5 arcsec wide."""
+    phase = (np.arange(100 * len(periods_s)) + 0.5) / 100
+    torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
+    start = np.r_[0.0, np.cumsum(periods_s)]
+    time = np.interp(phase, np.arange(len(start)), start)
+    at, block = 0.0, np.empty(len(torque))
+    for k, q in enumerate(torque):
+        at = min(max(at, q - 0.2), q + 0.2)
+        block[k] = at
+    noise = np.random.default_rng(4).normal(0, 0.3, len(torque))
+    angle = 10.0 * torque + 30.0 * np.sign(torque) - 2.5 * (torque - block) / 0.2 + noise
+    cycle = phase.astype(int)
+    history = History(torque, np.zeros(len(torque), int), cycle, time)
+    numbers = (tuple(np.unique(cycle) + 1.0),)
+    return Sweep(Path("m.csv"), history, angle, ("",), numbers, np.arange(len(angle)) + 2, True)
+
+
+@pytest.mark.parametrize(
+    ("periods", "vary", "doing"),
+    [
+        ((60.0, 60.0, 60.0, 60.0), "torque_rate", ""),
+        ((20.0, 60.0, 720.0, 20.0), "torque_amplitude", LARGER),
+    ],
+)
+def test_what_the_record_has_is_not_asked_for(
+    periods: tuple[float, ...], vary: str, doing: str
+) -> None:
+    """Cycles that differ by 36 times have shown already that friction does not follow the rate."""
+    outcome, _ = diagnose_sweep(sliding_record(periods), PREDICTION)
+    assert [c.id for c in outcome.causes] == ["friction_hysteresis"]
+    after = outcome.next_measurement
+    assert after is not None
+    assert (after.aim, after.vary, after.doing) == ("confirm", vary, doing)
+
+
+def test_other_rates_lie_beyond_those_of_the_record() -> None:
+    """0.4 and 0.011 N·m/s: the plan goes to ten times either, by triangles of the record's torque."""
+    prepared = prepare(sliding_record((20.0, 60.0, 720.0, 20.0)), PREDICTION)
+    (plan,) = [p for p in plans(prepared) if p.vary == "torque_rate"]
+    now, new = rate_range(prepared.sweep.history), []
+    for rows in np.array_split(np.arange(len(plan.history)), 3):  # its cycles have one number
+        new.append(rate_range(plan.history.rows(rows))[0])
+    # the record's rate is of steps between rows, a triangle's first row lies within its way
+    assert max(new) == pytest.approx(10 * now[0], rel=0.1)
+    assert min(new) == pytest.approx(now[1] / 10, rel=0.1)
