@@ -44,8 +44,10 @@ class Chain:
         """On the whole gear; an equilibrium's is that of one half [N·mm]."""
         return 2 * at.torque / NMM_PER_NM
 
-    def along(self, torques_Nm: Sequence[float]) -> list[Equilibrium]:
-        """One after the other, each begun from the one before.
+    def along(
+        self, torques_Nm: Sequence[float], start: Equilibrium | None = None
+    ) -> list[Equilibrium]:
+        """One after the other, each begun from the one before; `start`: near the first, of a gear like it.
 
         Raises
         ------
@@ -53,7 +55,7 @@ class Chain:
         """
         found: list[Equilibrium] = []
         for torque in torques_Nm:
-            found.append(self.model.at_torque(torque, found[-1] if found else None))
+            found.append(self.model.at_torque(torque, found[-1] if found else start))
         return found
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:

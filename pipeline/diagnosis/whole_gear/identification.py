@@ -7,6 +7,7 @@ named. A torque that would tell the first two apart is given.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -14,6 +15,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.stats import chi2
 
+from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
@@ -100,11 +102,12 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     curve = central_curve(analysis)
     if curve is None:
         return None
+    inputs = {one.key: one for one in inputs_of(design, chain)}
     nominal = _angles(chain, curve)
     curve = _with_numerical(curve, nominal)
     off = curve.angle_arcsec - nominal
     base = float(((off / curve.std_arcsec) ** 2).sum())
-    found = [fitted(one, chain, curve, nominal) for one in inputs_of(design, chain)]
+    found = [fitted(one, chain, curve, nominal) for one in inputs.values()]
     found.sort(key=lambda one: one.chi_square)
     plain = GearInputs("consistent", float(np.sqrt((off**2).mean())), base, len(off), tuple(found))
     if chi2.sf(base, len(off)) > SURE:
@@ -113,14 +116,14 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     if chi2.sf(best.chi_square, len(off) - 1) < SURE:
         return replace(plain, outcome="unknown")
     rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL]
-    before, left = _on_other_cycles(design, chain, analysis, best.key)
+    before, left = _on_other_cycles(inputs[best.key], chain, analysis)
     return replace(
         plain,
         outcome="named",
         rivals=tuple(f.key for f in rivals),
         before_arcsec=before,
         left_arcsec=left,
-        apart=_apart(design, chain, curve, best, rivals[0]) if rivals else None,
+        apart=_apart(inputs, chain, curve, (best, rivals[0])) if rivals else None,
     )
 
 
@@ -129,9 +132,10 @@ def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -
     value, angles, trial = one.nominal, nominal, one.nominal + one.first
     best = (value, _chi_square(curve, angles))
     slope = np.zeros_like(nominal)
+    start = chain.model.at_torque(curve.smallest_Nm)
     for _ in range(ROUNDS):
         try:
-            other = _angles(one.changed(chain, trial), curve)
+            other = _angles(one.changed(chain, trial), curve, start)
         except ComputationError:  # no gear with that value
             break
         slope = (other - angles) / (trial - value)
@@ -150,10 +154,14 @@ def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -
     return FittedInput(one.key, one.unit, one.nominal, best[0], std, best[1], at_limit)
 
 
-def _angles(chain: Chain, curve: CentralCurve) -> np.ndarray:
-    """(m,) the gear's angle as the record has it [arcsec]: its mean over the torques of each place."""
+def _angles(chain: Chain, curve: CentralCurve, start: Equilibrium | None = None) -> np.ndarray:
+    """(m,) the gear's angle as the record has it [arcsec]: its mean over the torques of each place.
+
+    `start`: an equilibrium at the smallest torque, of a gear like it.
+    """
     known = np.geomspace(curve.smallest_Nm, curve.largest_Nm, KNOTS)
-    angle = PchipInterpolator(known, chain.angles(known.tolist()))
+    states = chain.along(known.tolist(), start)
+    angle = PchipInterpolator(known, [chain.angle(at) for at in states])
     return ARCSEC_PER_RAD * np.array([float(angle(t).mean()) for t in curve.torques_Nm])
 
 
@@ -167,7 +175,7 @@ def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
 
 
 def _on_other_cycles(
-    design: Design, chain: Chain, analysis: SweepAnalysis, key: str
+    one: Input, chain: Chain, analysis: SweepAnalysis
 ) -> tuple[float | None, float | None]:
     """Root mean square on every second cycle, without the input and with its value from the others."""
     cycles = np.unique(analysis.explained.prepared.rig.history.cycle)
@@ -177,7 +185,6 @@ def _on_other_cycles(
     if learnt is None or other is None:
         return None, None
     nominal = _angles(chain, learnt)
-    one = next(i for i in inputs_of(design, chain) if i.key == key)
     value = fitted(one, chain, _with_numerical(learnt, nominal), nominal).value
     before, after = (
         other.angle_arcsec - _angles(each, other) for each in (chain, one.changed(chain, value))
@@ -186,14 +193,16 @@ def _on_other_cycles(
 
 
 def _apart(
-    design: Design, chain: Chain, curve: CentralCurve, best: FittedInput, rival: FittedInput
+    inputs: Mapping[str, Input],
+    chain: Chain,
+    curve: CentralCurve,
+    both: tuple[FittedInput, FittedInput],
 ) -> Apart | None:
     """Where the two differ most, if a place as sure as those measured shows it."""
     torques = curve.largest_Nm * np.array(BEYOND)
-    by_key = {one.key: one for one in inputs_of(design, chain)}
     first, second = (
-        by_key[each.key].changed(chain, each.value).angles(torques.tolist()) * ARCSEC_PER_RAD
-        for each in (best, rival)
+        inputs[each.key].changed(chain, each.value).angles(torques.tolist()) * ARCSEC_PER_RAD
+        for each in both
     )
     most = int(np.abs(first - second).argmax())
     difference = abs(float(first[most] - second[most]))
