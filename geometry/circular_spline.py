@@ -94,8 +94,8 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
             f"{2 * _ground(design):.4g} mm",
         )
     depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
-    low, high = SHALLOWEST * stroke, DEEPEST * stroke
-    if depth is not None and not low <= depth <= high * (1 + ROUNDED):
+    low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + ROUNDED)
+    if depth is not None and not low <= depth <= high:
         yield DesignError(
             "gear.working_depth_mm",
             depth,

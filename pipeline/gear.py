@@ -19,11 +19,11 @@ from flexspline.fea.threads import one_thread
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
-from flexspline.geometry.rated import rated_torque
+from flexspline.geometry.rated import rated_in_proportion, rated_torque
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
-from flexspline.pipeline.gear_model import CONFORMITY
-from flexspline.pipeline.gear_notes import RATCHETING, both_press_N, notes, warnings
+from flexspline.pipeline.gear_model import BEARING_STEEL, CONFORMITY
+from flexspline.pipeline.gear_notes import both_press_N, inseparable, notes, ratcheting, warnings
 from flexspline.pipeline.gear_terms import gear_terms
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -38,6 +38,7 @@ LAWS = (
     Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),
     Assumed("T2 over rated torque", T2_SHARE, "makers': 0.39 to 0.69"),
     Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
+    Assumed("E of race and balls, MPa", BEARING_STEEL.youngs_modulus_MPa, "100Cr6"),
 )
 """What no key of the design file states."""
 CARRIES = 1e-3
@@ -106,9 +107,17 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             terms = gear_terms(chain, load.torque_Nm, rated)
             curve = curve_of(design, chain)
         with context.progress.stage("torque at which no tooth is left in its space"), one_thread():
-            limit = Engagement(chain.model).limit(rated)
-        lines = (*curve.notes, RATCHETING) if limit else curve.notes
-        return replace(curve, terms_arcsec=terms, ratcheting_torque_Nm=limit, notes=lines)
+            limit = Engagement(chain.model).limit(
+                rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
+            )
+        warned, noted = ratcheting(limit, rated)
+        return replace(
+            curve,
+            terms_arcsec=terms,
+            ratcheting_torque_Nm=limit and float(f"{limit:.2g}"),  # found to 5 %
+            warnings=(*curve.warnings, *warned),
+            notes=(*curve.notes, *inseparable(terms), *noted),
+        )
 
     depends_on = {
         "flexspline": context.part("flexspline").revolved_key,
@@ -130,7 +139,6 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
     full = states[-1]
     model = chain.model
     teeth = model.pair_forces(full)
-    preload = both_press_N(model, states[0])
     carrying = np.abs(teeth) > CARRIES * np.abs(teeth).max()
     return GearCurve(
         K1_Nm_per_rad=K1,
@@ -145,9 +153,9 @@ def curve_of(design: Design, chain: Chain) -> GearCurve:
         torque_Nm=_loop(up),
         angle_arcsec=_loop(angles * ARCSEC_PER_RAD),
         assumed=(*gear_assumptions(design), *LAWS),
-        warnings=tuple(warnings(design, model, preload)),
+        warnings=tuple(warnings(design, model, states[0])),
         notes=tuple(notes(design, model, teeth)),
-        preload_tooth_force_N=preload,
+        preload_tooth_force_N=both_press_N(model, states[0]),
         tooth_angle_deg=tuple(np.degrees(model.tooth_angles).tolist()),
         tooth_force_N=tuple(teeth.tolist()),
         ball_angle_deg=tuple(np.degrees(model.wave_generator.angles).tolist()),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import degrees
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.kinematics import STEPS, Mesh
 from flexspline.fea.gear.model import GearModel
+from flexspline.geometry.circular_spline import SHALLOWEST
 from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
@@ -16,11 +18,10 @@ from flexspline.pipeline.gear_model import even
 
 LOW_RIM = 0.05
 """Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
-RATCHETING = (
-    "the ratcheting torque is an estimate from above: loss of engagement where nothing but elastic parts "
-    "yields; catalogues' gears ratchet at a fiftieth (ratio 30) to a fifth (ratio 160) of it"
-)
-"""Shares: docs/whole-gear.md."""
+AT_THE_END = 0.5
+"""Of the largest tooth force: a pair at the end of the working depth that carries more decides much."""
+LEAST_RELIEF = 1e-3
+"""mm: what is less is no change of a flank's shape."""
 LEAST_OVERLAP = 1e-6
 """mm: rounding."""
 BEYOND_RATED = 5.0
@@ -35,13 +36,14 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
     return float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
 
 
-def warnings(design: Design, model: GearModel, preload_N: float) -> list[str]:
+def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[str]:
     """What makes the gear another one than was meant."""
     lines = []
+    preload_N = both_press_N(model, unloaded)
     if preload_N:
         lines.append(
             f"teeth press on both flanks without torque, up to {_rounded(preload_N)} N each: "
-            f"{_why_both_press(design, model)}"
+            f"{_why_both_press(design, model, unloaded)}"
         )
     if cuts := _cuts_in(model.mesh):
         lines.append(cuts)
@@ -61,14 +63,17 @@ def _cuts_in(mesh: Mesh) -> str | None:
     if front.min() >= -LEAST_OVERLAP:
         return None
     clear = phi[np.flatnonzero(front < 0)[0]]
+    least = degrees(phi[front.argmin()])
+    depth = mesh.stroke * (1 - np.cos(2 * clear))
+    shallow = f", or make the working depth less than {depth:.3g} mm"
     return (
-        f"{mesh.flanks} flanks cut into each other beyond {degrees(clear):.0f}° from the major axis, by up "
-        f"to {_rounded(-1e3 * front.min())} µm: relieve them, or make the working depth less than "
-        f"{mesh.stroke * (1 - np.cos(2 * clear)):.3g} mm"
+        f"{mesh.flanks} flanks cut into each other from {degrees(clear):.0f}° off the major axis on, by up "
+        f"to {_rounded(-1e3 * front.min())} µm at {least:.0f}°: take the relieved shape or more clearance"
+        + (shallow if depth > SHALLOWEST * mesh.stroke else "")
     )
 
 
-def _why_both_press(design: Design, model: GearModel) -> str:
+def _why_both_press(design: Design, model: GearModel, unloaded: Equilibrium) -> str:
     stroke, full = model.wave_generator.deflection, design.gear.centre_distance_mm
     play = design.bearing.radial_clearance_um / 2e3
     if abs(stroke / full - 1) > LOW_RIM:
@@ -80,7 +85,12 @@ def _why_both_press(design: Design, model: GearModel) -> str:
         )
     if _cuts_in(model.mesh):
         return "the flanks cut into each other"
-    return "the flank clearance is too small"
+    front, back = unloaded.forces[model.flanks].reshape(2, len(model.tooth_angles), -1).sum(axis=2)
+    ahead, behind = (degrees(model.tooth_angles[each.argmax()]) for each in (front, back))
+    return (
+        f"front flanks press at {ahead:.0f}°, back flanks at {behind:.0f}° from the major axis; the "
+        "clearance is too small there"
+    )
 
 
 def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
@@ -88,32 +98,58 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
     lines = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
-        lines.append(f"{balls} balls are computed as {even(balls)}: both lobes have the same")
+        lines.append(f"{balls} balls are computed as {even(balls)}, half of them in each lobe")
     mesh = model.mesh
-    if mesh.flanks == "relieved" and mesh.largest_relief > 0:
+    if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
         lines.append(
-            f"plain flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major axis: "
-            f"taken as relieved, by {_rounded(1e3 * mesh.largest_relief)} µm at {degrees(mesh.reach):.0f}°"
+            f"straight flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major "
+            f"axis: relieved flanks are assumed, {_rounded(1e3 * mesh.largest_relief)} µm of each removed at "
+            f"{degrees(mesh.reach):.0f}°"
         )
     if mesh.face == "relieved":
         outwards, along = model.rim.cone(mesh.stroke)
         off = np.abs(mesh.closing(model.tooth_angles[:, None], outwards, along)).max()
         lines.append(
-            "the rim opens as a cone: teeth are taken as relieved for it along their face, by up to "
-            f'{_rounded(1e3 * off)} µm at its ends; gear.tooth_face = "straight" leaves that out'
+            "the rim opens as a cone: teeth that are shaped for it along their face are assumed, up to "
+            f'{_rounded(1e3 * off)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
         )
     if design.flexspline.teeth == "drawn" and mesh.flanks != "drawn":
         lines.append(
             f"gaps are those of straight flanks of {design.gear.pressure_angle_deg:g}°, not of the drawn "
             'ones; gear.flanks = "drawn" takes those'
         )
-    most = int(np.abs(teeth).argmax())
-    if most in (0, len(teeth) - 1):
+    size = np.abs(teeth)
+    if max(size[0], size[-1]) > AT_THE_END * size.max():
         lines.append(
-            f"the pair of teeth that carries most stands {abs(degrees(model.tooth_angles[most])):.0f}° from "
-            "the major axis, at the end of the working depth that is assumed: its force hangs on that end"
+            f"the last pair of teeth within the working depth, {degrees(model.tooth_angles[-1]):.0f}° from "
+            "the major axis, carries much: the figures depend on gear.working_depth_mm"
         )
     return lines
+
+
+def ratcheting(limit_Nm: float | None, rated_Nm: float) -> tuple[list[str], list[str]]:
+    """Warnings and notes on the torque at which no tooth is left; the shares are of docs/whole-gear.md."""
+    if limit_Nm is None:
+        return [], ["no torque was found at which teeth let go"]
+    warned = []
+    if limit_Nm < rated_Nm:
+        warned.append(
+            f"teeth let go at some {_rounded(limit_Nm)} N·m, below the rated torque of {rated_Nm:.4g} N·m"
+        )
+    return warned, [
+        "the ratcheting torque is an upper limit: only elastic parts yield in it; catalogues' gears ratchet "
+        "at a fiftieth (ratio 30) to a fifth (ratio 160) of it"
+    ]
+
+
+def inseparable(terms_arcsec: Mapping[str, float]) -> list[str]:
+    """Where a clearance alone makes the free angle smaller."""
+    if terms_arcsec["bearing_play"] >= 0:
+        return []
+    return [
+        "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
+        "bearing_play and tight_gear together"
+    ]
 
 
 def _rounded(value: float) -> str:

@@ -46,4 +46,5 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
         "bearing_play": without_flank - without_any,
         TIGHT: without_any,
     }
-    return {**terms, "total": sum(terms.values())}
+    # a difference of equal angles is rounding, and has no sign
+    return {key: round(v, 9) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}

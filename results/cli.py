@@ -77,6 +77,8 @@ def run(
             result = run_chain(job.context)
         warn(job.design, result.stiffnesses, result.fields)
         tell_all(result.linear_limit.passed(job.design))
+        for line in result.gear.notes if result.gear else ():
+            tell(f"note: {line}")
         extended = None
         if measured is not None:
             torque = job.design.load.torque_Nm

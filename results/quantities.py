@@ -245,7 +245,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "ratcheting_torque_Nm",
         "ratcheting_torque_Nm",
         "N·m",
-        "Ratcheting torque, estimate from above by loss of engagement",
+        "Ratcheting torque, upper limit by loss of engagement",
         "T_r",
         digits=2,
     ),

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import sqrt
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -21,8 +22,8 @@ from flexspline.fea.types import NMM_PER_NM
 
 WITHIN = 0.05
 """Of the torque at which no tooth is left."""
-MOST_DOUBLINGS = 10
-"""From rated torque, a thousandfold; gears of catalogue sizes lose their teeth after 5 to 8."""
+MOST_DOUBLINGS = 14
+"""Each way from the torque where the search begins: what is 16 000 times off is no gear."""
 OUT = 10.0
 """Strokes that a tooth which is out stands off: it meets nothing any more."""
 
@@ -105,10 +106,16 @@ class Engagement:
         return None
 
     def limit(self, first_Nm: float) -> float | None:
-        """Torque [N·m] at which teeth let go, sought from a torque that they hold; None: far beyond it."""
+        """Torque [N·m] at which teeth let go, sought both ways from a torque; None: far beyond it."""
         low, holds = first_Nm, self.held(first_Nm)
+        for _ in range(MOST_DOUBLINGS):
+            if holds:
+                break
+            low /= 2
+            holds = self.held(low)
         if holds is None:
             return None
+        high = low
         for _ in range(MOST_DOUBLINGS):
             high = 2 * low
             found = self.held(high, holds)
@@ -117,11 +124,11 @@ class Engagement:
             low, holds = high, found
         else:
             return None
-        while high - low > WITHIN * low:
-            middle = (low + high) / 2
+        while high > (1 + WITHIN) * low:
+            middle = sqrt(low * high)
             found = self.held(middle, holds)
             if found:
                 low, holds = middle, found
             else:
                 high = middle
-        return (low + high) / 2
+        return sqrt(low * high)

@@ -56,9 +56,11 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
         )
         for i, (title, angle, force, width) in enumerate(forces):
             axes = figure.add_axes((0.11, 0.59 - 0.47 * i, 0.86, 0.32))
+            edge = angle == -90  # the same ball stands at 90°
+            angle, force = np.append(angle, -angle[edge]), np.append(force, force[edge])
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
             axes.set_title(title)
-            axes.set_xlim(-92, 92)
+            axes.set_xlim(-93, 93)
             axes.set_xticks(range(-90, 91, 30))
             axes.grid(True, axis="y")
         axes.set_xlabel("Angle from the major axis in degrees, rated torque")

@@ -193,11 +193,11 @@ def test_the_ends_of_rated_torque_still_have_a_curve(rated_Nm: float) -> None:
     assert np.diff(up).min() > 0
 
 
-def test_the_ratcheting_torque_is_an_estimate_from_above(curve: GearCurve) -> None:
+def test_the_ratcheting_torque_is_an_upper_limit(curve: GearCurve) -> None:
     """Far beyond any catalogue's, 5 to 10 times rated torque, and said to be so."""
     assert curve.ratcheting_torque_Nm is not None
     assert curve.ratcheting_torque_Nm > 10 * curve.rated_torque_Nm
-    assert any("estimate from above" in line for line in curve.notes)
+    assert any("upper limit" in line for line in curve.notes)
 
 
 def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
@@ -211,7 +211,7 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "says"),
     [
-        ("working_depth_mm", 0.3, "to 0.268 mm"),
+        ("working_depth_mm", 0.3, "to 0.2682 mm"),
         ("circular_spline_outer_diameter_mm", 40.0, "the ground of the tooth spaces"),
         ("tooth_face", "crowned", "relieved"),
     ],
@@ -219,3 +219,20 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
 def test_a_circular_spline_that_cannot_be_is_refused(key: str, value: object, says: str) -> None:
     with pytest.raises(flexspline.FlexsplineError, match=says):
         DESIGN.changed({f"gear.{key}": value})
+
+
+def test_a_rated_torque_that_the_teeth_do_not_hold_is_warned_of(curve: GearCurve) -> None:
+    """The torque at which they let go does not hang on the rated torque that is stated."""
+    assert curve.ratcheting_torque_Nm is not None
+    beyond = 1.2 * curve.ratcheting_torque_Nm
+    strong = flexspline.gear(DESIGN.changed({"gear.rated_torque_Nm": beyond}))
+    assert strong.ratcheting_torque_Nm == curve.ratcheting_torque_Nm
+    assert any("below the rated torque" in line for line in strong.warnings)
+
+
+def test_a_clearance_that_makes_the_gap_smaller_is_explained() -> None:
+    """A plug whose stroke is a little short: play and stroke act together."""
+    short = flexspline.gear(DESIGN.changed({"wave_generator.deflection_mm": 0.189}))
+    negative = short.terms_arcsec["bearing_play"] < 0
+    assert negative == any("read bearing_play and tight_gear together" in n for n in short.notes)
+    assert negative
