@@ -25,10 +25,6 @@ UNSWEPT_COARSER = 2.0
 """Edges of the first mesh of a shaft that only fTetWild can mesh, over those of one that is swept. On two of
 them K was ± 0.04 and 2.42 % at 1.5 times and ± 0.05 and 2.43 % at twice, in two thirds of the processor
 time of the first (48 and 33 s)."""
-LOOSE, LOOSE_COARSER = 0.02, 4.0
-"""From this tolerance on, that share instead. On four shafts twice and four times gave K ± 1.58, 2.82, 0.60,
-0.74 % and ± 2.31, 4.36, 0.74, 1.18 %, 0.1 to 0.8 % apart, with 61, 45, 24, 23 and 18, 20, 15, 13 s of
-fTetWild's processor time."""
 
 
 @dataclass(frozen=True)
@@ -86,8 +82,7 @@ class PartModel:
         edge = self.context.design.solver.edge_length_mm
         spec = first_spec(self.part, edge)
         if edge is None and self.name == "shaft" and not can_be_swept(self.part):
-            loose = self.context.design.solver.tolerance_pct / 100 >= LOOSE
-            return spec.scaled(LOOSE_COARSER if loose else UNSWEPT_COARSER)
+            return spec.scaled(UNSWEPT_COARSER)
         return spec
 
     @property
