@@ -13,6 +13,10 @@ from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_s
 LARGEST_CYCLE = 1_000_000
 """A cycle a second for eleven days; a larger number is a slipped column."""
 
+COUNTED = 0.1
+"""Of the largest torque, five times the most that noise may be: a loop that reaches so far on both sides is a
+cycle, beside others ten times larger too."""
+
 
 @dataclass(frozen=True)
 class NamedHistory:
@@ -75,13 +79,13 @@ def history_of(table: MeasuredTable) -> NamedHistory:
 def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:
     """Cycle number (n,) from 1, where the file has none.
 
-    A cycle ends where the torque, having been beyond half its largest value on both sides, last rose
-    through 0 before going beyond +½ again.
+    A cycle ends where the torque, having been beyond `COUNTED` of its largest value on both sides, last rose
+    through 0 before going beyond it again.
     """
-    limit = np.abs(torque_Nm).max() / 2
+    limit = COUNTED * np.abs(torque_Nm).max()
     far = np.flatnonzero(np.abs(torque_Nm) > limit)
     positive = torque_Nm[far] > 0
-    returns = far[1:][positive[1:] & ~positive[:-1]]  # first row beyond +½ after a row beyond −½
+    returns = far[1:][positive[1:] & ~positive[:-1]]  # first row beyond it after a row beyond −
     first_positive = far[positive][:1]
     starts = []
     for row in returns:
