@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import nnls
-from scipy.signal import lfilter
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
@@ -70,12 +70,20 @@ class Noise:
         s2 = -one / theta if theta > 0 else zero
         shape = (-1,) + (1,) * (values.ndim - 1)
         for s in stretches:
-            x = values[s]
-            e = lfilter([1.0, -rho], [1.0, -theta], x, axis=0)
+            e = _innovations(values[s], rho, theta)
             # a start from rest: the first innovations have a larger variance, which decays as θ^2k
-            extra = (total - s2) * np.float64(theta**2) ** np.arange(len(x))
+            extra = (total - s2) * np.float64(theta**2) ** np.arange(len(e))
             out[s] = e / np.sqrt(s2 + extra).reshape(shape)
         return out
+
+
+def _innovations(values: np.ndarray, rho: float, theta: float) -> np.ndarray:
+    """e_t = x_t − ρ x_{t−1} + θ e_{t−1} from rest: a lower bidiagonal system of equations."""
+    right = np.array(values, dtype=float, order="F")
+    right[1:] -= rho * values[:-1]
+    band = np.ones((2, len(right)), order="F")
+    band[1] = -theta
+    return np.asarray(dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)[0]).reshape(values.shape)
 
 
 def stretches_of(history: History, kept: np.ndarray) -> list[slice]:

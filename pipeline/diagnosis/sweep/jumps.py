@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
@@ -44,7 +44,7 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     left, motion = fit.residual()[kept], direction_of_loading(history)[kept]
     pieces = stretches_of(history, kept)
     found = [_skewness(left, motion, pieces, rows) for rows in BLOCKS]
-    p_value = min(1.0, len(BLOCKS) * float(norm.sf(max(found))))
+    p_value = min(1.0, len(BLOCKS) * float(ndtr(-max(found))))
     if p_value > SURE:
         return None
     saw_tooth = float(np.sqrt(max(float(np.var(left)) - prepared.noise.white, 0.0)))

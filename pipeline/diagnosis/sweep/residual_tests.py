@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
+from scipy.special import chdtrc
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
@@ -63,7 +63,7 @@ def channel_tests(prepared: PreparedSweep, fit: SweepFit) -> list[ChannelTest]:
         freedom = own.shape[1]
         share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
         rms = float(np.sqrt(share)) * prepared.noise.std_arcsec
-        found.append(ChannelTest(channel, rms, float(chi2_distribution.sf(statistic, freedom))))
+        found.append(ChannelTest(channel, rms, float(chdtrc(freedom, statistic))))
     return [*found, _wave(prepared, left)]
 
 
