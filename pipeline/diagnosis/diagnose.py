@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -42,10 +42,11 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
-from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
-from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs, gear_inputs
-from flexspline.pipeline.gear_chain import Chain
 from flexspline.pipeline.parts import AnalysisContext
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs
+    from flexspline.pipeline.gear_chain import Chain
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]
 
@@ -130,12 +131,18 @@ def diagnose_file(
             )
         largest = float(np.abs(measurement.history.torque_Nm).max())
         if largest > 0:
+            from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
+
             prediction = against_gear(prediction, chain, largest)
     refuse_absurd(measurement, prediction, K_b, K_e)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
         model = behind.model if behind else None
-        inputs = gear_inputs(design, chain, behind) if chain and behind else None
+        inputs = None
+        if chain and behind:
+            from flexspline.pipeline.diagnosis.whole_gear.identification import gear_inputs
+
+            inputs = gear_inputs(design, chain, behind)
         return Diagnosis(
             design, measurement, prediction, outcome, model, sweep=behind, gear_inputs=inputs
         )

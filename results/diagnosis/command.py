@@ -63,12 +63,13 @@ def diagnose(
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     with answered(design):
-        from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
         if against is Against.GEAR:
+            from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
+
             refuse_given(kb, ke)
         said = diagnose_and_write(
             job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,

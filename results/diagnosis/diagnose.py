@@ -6,7 +6,6 @@ from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
-from flexspline.pipeline.gear_chain import chain_of
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -37,7 +36,11 @@ def diagnose_and_write(
     """
     read_measurement(measured, counts_per_turn)  # refuse a bad file before the long work
     used = stiffness_pair(context, *given)
-    chain = chain_of(context) if gear else None
+    chain = None
+    if gear:
+        from flexspline.pipeline.gear_chain import chain_of
+
+        chain = chain_of(context)
     with context.progress.stage("diagnosis"):
         found = diagnose_file(
             context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from flexspline.pipeline.diagnosis.whole_gear.identification import FittedInput, GearInputs
+if TYPE_CHECKING:
+    from flexspline.pipeline.diagnosis.whole_gear.identification import FittedInput, GearInputs
 
 
 def gear_inputs_record(found: GearInputs) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg.lapack import dtbtrs
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import LARGEST_NOISE
@@ -139,11 +140,10 @@ def lags(values: np.ndarray, history: History, constants_s: np.ndarray) -> np.nd
         # v linear over the step: x₁ = x₀k + v₀(g − k) + v₁(1 − g), g = (1 − k)/step
         share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, 1e-300), 1 - step / 2)
         drive = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
-        block = np.empty((len(rows), len(constants_s)))
-        state = np.full(len(constants_s), v[0])
-        block[0] = state
-        for i in range(len(rows) - 1):
-            state = state * keep[i] + drive[i]
-            block[i + 1] = state
-        out[rows] = block
+        # x_i − k_i x_{i−1} = drive_i: a lower bidiagonal system for each constant
+        band = np.ones((2, len(rows)), order="F")
+        for m in range(len(constants_s)):
+            band[1, :-1] = -keep[:, m]
+            right = np.r_[v[0], drive[:, m]]
+            out[rows, m] = dtbtrs(band, right[:, None], uplo="L", diag="U", overwrite_b=1)[0][:, 0]
     return out
