@@ -17,10 +17,13 @@ def _held_still(history: History) -> History:
 
     The largest reading of a hold is its noise's, and a stuck bearing would remember it.
     """
-    torque = history.torque_Nm.copy()
-    for hold in holds(history):
-        torque[hold] = torque[hold].mean()
-    return replace(history, torque_Nm=torque)
+    key = ("held still", 0.0)
+    if key not in history.memo:
+        torque = history.torque_Nm.copy()
+        for hold in holds(history):
+            torque[hold] = torque[hold].mean()
+        history.memo[key] = torque
+    return replace(history, torque_Nm=history.memo[key])
 
 
 WAY, STRAIGHT = 5, 0.02

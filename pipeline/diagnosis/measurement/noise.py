@@ -83,7 +83,9 @@ def _innovations(values: np.ndarray, rho: float, theta: float) -> np.ndarray:
     right[1:] -= rho * values[:-1]
     band = np.ones((2, len(right)), order="F")
     band[1] = -theta
-    return np.asarray(dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)[0]).reshape(values.shape)
+    return np.asarray(dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)[0]).reshape(
+        values.shape
+    )
 
 
 def stretches_of(history: History, kept: np.ndarray) -> list[slice]:

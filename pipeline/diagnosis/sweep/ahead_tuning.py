@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -103,6 +104,11 @@ class _Trial:
     terms: tuple[int, ...]
     seen: Crossing | None
 
+    @cached_property
+    def true(self) -> History:
+        """At the output; what operators make of it is made once."""
+        return true_history(self.prepared.sweep, self.prepared.offset_Nm)
+
     def element(self, point: np.ndarray) -> Element:
         start = self.prepared.ahead
         assert start is not None
@@ -112,8 +118,7 @@ class _Trial:
     def columns(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Whitened columns (r, b + k), their prior's precision, and the whitened target (r,)."""
         p, sweep = self.prepared, self.prepared.sweep
-        true = true_history(sweep, p.offset_Nm)
-        history = known_causes()[FRICTION].at_teeth((self.element(point),), true)
+        history = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
         rig = Rig(p.prediction, history)
         base, prior = base_columns(rig, self.evidence.columns.base[:, -len(NOISE_WINDOWS) :])
         blocks = [base]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+
+_NONE = np.empty(0, int)
 
 
 @dataclass(frozen=True)
@@ -17,18 +20,18 @@ class RegressorGroup:
     ----------
     members : (m,) their numbers. at : (m, k) their columns. own : (m, k, k) their blocks of the
         evidence's matrix, prior included. log_share, unnamed, positive : (m,).
-    is_owner : of each owner, (m,) whether it is theirs. against : owners beside which each does not stand.
+    of_owner : of each owner, its places among the m. against : of each member that does not stand beside
+        every other owner, its place and those owners.
     """
 
     members: np.ndarray
     at: np.ndarray
     own: np.ndarray
     log_share: np.ndarray
-    owners: list[str]
     unnamed: np.ndarray
     positive: np.ndarray
-    is_owner: dict[str, np.ndarray]
-    against: list[frozenset[str]]
+    of_owner: dict[str, np.ndarray]
+    against: list[tuple[int, frozenset[str]]]
 
     @staticmethod
     def of(evidence: GaussianEvidence, members: list[int]) -> RegressorGroup:
@@ -40,21 +43,25 @@ class RegressorGroup:
             at,
             evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]),
             np.array([t.log_share for t in terms]),
-            owners,
             np.array([t.cause is None for t in terms]),
             np.array([t.positive for t in terms]),
-            {o: np.array([x == o for x in owners]) for o in set(owners)},
-            [t.against for t in terms],
+            {o: np.flatnonzero([x == o for x in owners]) for o in dict.fromkeys(owners)},
+            [(j, t.against) for j, t in enumerate(terms) if t.against],
         )
 
     def barred(self, present: set[str], shut: frozenset[str]) -> np.ndarray:
         """(m,) members that do not stand beside the causes present, or are shut out by a term there."""
-        return np.array(
-            [
-                o in shut or not a.isdisjoint(present)
-                for o, a in zip(self.owners, self.against, strict=True)
-            ]
-        )
+        out = self.owned_by(shut)
+        for j, against in self.against:
+            out[j] |= not against.isdisjoint(present)
+        return out
+
+    def owned_by(self, owners: Collection[str]) -> np.ndarray:
+        """(m,) members of these owners."""
+        out = np.zeros(len(self.members), bool)
+        for o in owners:
+            out[self.of_owner.get(o, _NONE)] = True
+        return out
 
     def gains(
         self,

@@ -54,7 +54,8 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     test &= ~settling(history)  # nor is known what friction remembers from before the record
     if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
         return None
-    learnt = gaussian_evidence(prepared.columns.untuned, prepared.target, train, prepared.noise)
+    columns = prepared.columns.untuned.of(causes)
+    learnt = gaussian_evidence(columns, prepared.target, train, prepared.noise)
     after = _predicted(learnt, causes)
     calibrated = calibrated_residual(learnt)
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)

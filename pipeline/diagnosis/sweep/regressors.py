@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import log
 
 import numpy as np
@@ -83,6 +84,18 @@ class DesignMatrix:
             return self
         terms = self.terms[: self.tuned_from]
         return replace(self, all=self.all[:, : terms[-1].at.stop], terms=terms, tuned_from=None)
+
+    def of(self, causes: Collection[str]) -> DesignMatrix:
+        """With the terms of these causes alone, for a fit that no other may enter."""
+        kept = [t for t in self.terms if t.cause is not None and t.cause.id in causes]
+        ends = np.cumsum([0, *(t.at.stop - t.at.start for t in kept)]).tolist()
+        return replace(
+            self,
+            all=np.hstack([self.all[:, :0], *(self.all[:, t.at] for t in kept)]),
+            terms=tuple(
+                replace(t, at=slice(a, b)) for t, (a, b) in zip(kept, pairwise(ends), strict=True)
+            ),
+        )
 
 
 def design_matrix(

@@ -65,6 +65,7 @@ class Search:
                 sizes.setdefault(term.at.stop - term.at.start, []).append(i)
         self._groups = [RegressorGroup.of(self.evidence, members) for members in sizes.values()]
         self._seen: set[frozenset[int]] = set()
+        self._owner = [t.owner for t in self.evidence.terms]
 
     def run(self, starts: Iterable[Sequence[int]] = ((),), most: int = MOST_TERMS) -> Candidate:
         """The best set found from the given ones, growing by one term at a time."""
@@ -112,9 +113,12 @@ class Search:
                 seen.add(term.cause.id)
         return total
 
+    def _owners(self, c: Candidate) -> frozenset[str]:
+        return frozenset([self._owner[i] for i in c.terms])
+
     def _remember(self, c: Candidate) -> None:
         self.tried.append(c)
-        owners = c.owners(self.evidence)
+        owners = self._owners(c)
         if owners not in self.best or self.best[owners].score < c.score:
             self.best[owners] = c
 
@@ -139,12 +143,11 @@ class Search:
             gain, valid = group.gains(evidence, cross, pull, mean, held)
             prior = group.log_share - np.where(
                 group.unnamed, NUISANCE_COST,
-                np.where([o in present for o in group.owners], ELEMENT_COST, NAMED_COST),
+                np.where(group.owned_by(present), ELEMENT_COST, NAMED_COST),
             )  # fmt: skip
             barred = group.barred(present, shut)
             score = np.where(valid & ~barred, gain + prior, -np.inf)
-            for owner in set(group.owners):
-                mine = np.flatnonzero(group.is_owner[owner])
+            for mine in group.of_owner.values():
                 order = mine[np.argsort(-score[mine])][: None if not c.terms else 2]
                 for j in order:
                     term = int(group.members[j])
@@ -163,7 +166,7 @@ class Search:
         kept: list[Candidate] = []
         count: dict[frozenset[str], int] = {}
         for c in sorted(grown, key=lambda c: -c.score):
-            owners = c.owners(self.evidence)
+            owners = self._owners(c)
             single = len(owners) == 1 and len(c.terms) == 1
             if count.get(owners, 0) < (PER_SINGLE if single else PER_OWNERS):
                 count[owners] = count.get(owners, 0) + 1
