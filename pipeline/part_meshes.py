@@ -29,10 +29,11 @@ EDGE_POINTS = 8
 
 @dataclass(frozen=True)
 class MeshedPart:
-    """A mesh and the sharp edges (k, 3) [mm] of the same sector, for the stress rule."""
+    """A mesh, whether it is swept, and its sector's sharp edges (k, 3) [mm] for the stress rule."""
 
     mesh: TetMesh
     sharp_edges: np.ndarray
+    swept: bool
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ class PartMeshes:
     """The meshes that can be had of a part; its CAD surface is made once, where one needs it."""
 
     model: PartModel
+    sweeps: bool = True
+    """Whether parts that can be swept are; else fTetWild makes every mesh."""
 
     @property
     def _edge_spacing(self) -> float:
@@ -66,7 +69,7 @@ class PartMeshes:
         mesh = swept_mesh(part, degrees, spec, finer, most_elements)
         if mesh is None:
             return None
-        return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing))
+        return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing), swept=True)
 
     def coarsened(self, most_elements: float) -> MeshSpec:
         """The part's first specification, or a coarser one where its swept mesh has more elements than that.
@@ -111,12 +114,16 @@ class PartMeshes:
         """From the cache, or made; how long making it may take is no part of what is asked."""
         model, wanted = self.model, asdict(spec)
         del wanted["time_limit_s"]
-        inputs = {**model.geometry_key, "spec": wanted, "mesher": model.mesher}
+        inputs = {
+            **model.geometry_key,
+            "spec": wanted,
+            "mesher": model.mesher if self.sweeps else "tetwild",
+        }
         return model.context.cache.get("mesh", inputs, make)[0]
 
     def _made(self, spec: MeshSpec) -> MeshedPart:
         model, progress = self.model, self.model.context.progress
-        if model.is_swept:
+        if model.is_swept and self.sweeps:
             with progress.stage(f"mesh of the {model.name}"):
                 swept = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
             if swept is not None:
@@ -129,4 +136,4 @@ class PartMeshes:
             progress.note("  the swept mesh fails a check: fTetWild instead")
         surface = self._surface
         with progress.stage(f"mesh of the {model.name}"):
-            return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges)
+            return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges, swept=False)

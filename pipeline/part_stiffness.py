@@ -35,6 +35,10 @@ and how many times as long the edges are after that. A tall cup with one large h
 elements."""
 
 
+class OtherKindError(Exception):
+    """Swept and fTetWild's meshes are no sequence: between them K moves by more than its bounds."""
+
+
 @dataclass(frozen=True)
 class TwistedPart:
     """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
@@ -144,16 +148,27 @@ def _enclosed_spec(meshes: PartMeshes, first: MeshSpec) -> MeshSpec:
 
 
 def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
+    """Where a coarse sweep passes its checks and a finer one fails, fTetWild makes all meshes instead."""
     meshes = PartMeshes(model)
     first = meshes.coarsened(FIRST_ELEMENTS)
     if tolerance == inf:
         first = _enclosed_spec(meshes, first)
-    edges: list[np.ndarray] = []
+    try:
+        return _refined(meshes, first, tolerance)
+    except OtherKindError:
+        model.context.progress.note(f"  {model.name}: fTetWild makes all meshes")
+        return _refined(PartMeshes(model, sweeps=False), model.first_spec, tolerance)
+
+
+def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPart:
+    model = meshes.model
+    made: list[MeshedPart] = []
 
     def mesher(spec: MeshSpec) -> TetMesh:
-        made = meshes.meshed(spec)
-        edges.append(made.sharp_edges)
-        return made.mesh
+        made.append(meshes.meshed(spec))
+        if made[-1].swept != made[0].swept:
+            raise OtherKindError
+        return made[-1].mesh
 
     found = solid_stiffness(
         mesher,
@@ -165,7 +180,7 @@ def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
         Deadline(SOLID_SECONDS),
     )
-    meshed = [MeshedPart(mesh, edges[0]) for mesh in found.meshes]
+    meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]
     rim = max(1, sum(size <= RIM_ELEMENTS for size in sizes)) - 1
     return TwistedPart(found.stiffness, meshed[-1], found.solved.displacement, meshed[rim])

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import MesherTimeError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec
@@ -21,7 +22,7 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import part_meshes, part_stiffness
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.part_meshes import PartMeshes
+from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
@@ -40,6 +41,26 @@ def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.Monk
     usual = first_elements(DESIGN, tmp_path / "usual")
     monkeypatch.setattr(part_stiffness, "FIRST_ELEMENTS", usual - 1)
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
+
+
+def test_a_sweep_that_fails_when_refined_is_left_altogether(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """fTetWild then makes every mesh: between two kinds K moves by more than its bounds."""
+    sweep = PartMeshes.swept
+    first: list[MeshSpec] = []
+
+    def once(self: PartMeshes, spec: MeshSpec, *more: float) -> MeshedPart | None:
+        first.append(spec)
+        return sweep(self, spec, *more) if spec == first[0] else None
+
+    monkeypatch.setattr(PartMeshes, "swept", lambda self, spec, **more: once(self, spec))
+    monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
+    design = DESIGN.changed({"solver.tolerance_pct": 0.4})
+    model = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("shaft")
+    found = part_stiffness.twisted_part(model)
+    assert len(set(first)) > 1  # a finer sweep was asked for
+    assert not found.meshed.swept
 
 
 def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
