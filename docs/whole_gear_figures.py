@@ -195,8 +195,8 @@ CHANGES: tuple[tuple[str, Change], ...] = (
     ("straight teeth along the face", setting("gear.tooth_face", "straight")),
     ("rigid circular spline", lambda d, m: replace(m, spline=None)),
     (
-        "`gear.circular_spline_outer_diameter_mm` / 1.1",
-        proportion("gear.circular_spline_outer_diameter_mm", 1 / 1.1),
+        "`gear.circular_spline_diameter_mm` / 1.1",
+        proportion("gear.circular_spline_diameter_mm", 1 / 1.1),
     ),
     ("plain flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="plain"))),
     ("conjugate flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="conjugate"))),

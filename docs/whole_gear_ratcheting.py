@@ -20,7 +20,7 @@ PITCH_RADIUS = 1.27
 """Of a catalogue's size [mm]: half of a tenth of an inch."""
 CHANGED = (
     "`gear.pressure_angle_deg` 30 for 20", "working depth 1.0 strokes for 1.34",
-    "`gear.circular_spline_outer_diameter_mm` / 1.1", "rigid circular spline",
+    "`gear.circular_spline_diameter_mm` / 1.1", "rigid circular spline",
     "`flexspline.ring_thickness_mm` × 1.2", "`flexspline.wall_thickness_mm` × 1.2",
     "`wave_generator.ball_diameter_mm` / 1.2", "`wave_generator.race_thickness_mm` × 1.2",
     "18 balls for 23", "no bearing play", "plain flanks", "conjugate flanks", "teeth three times softer",

@@ -60,7 +60,7 @@ def circular_spline(design: Design) -> CircularSpline:
         return value
 
     diameter = taken(
-        "circular_spline_outer_diameter_mm",
+        "circular_spline_diameter_mm",
         2 * max(OUTER_SHARE * pitch, _least_outer(design)),
         f"{OUTER_SHARE:g} pitch diameters, the median of eight catalogue sizes",
     )
@@ -85,10 +85,10 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
     gear = design.gear
     if gear.flanks == "drawn" and design.flexspline.teeth != "drawn":
         yield DesignError("gear.flanks", "drawn", 'needs flexspline.teeth = "drawn"')
-    outer, least = gear.circular_spline_outer_diameter_mm, 2 * _least_outer(design)
+    outer, least = gear.circular_spline_diameter_mm, 2 * _least_outer(design)
     if outer is not None and outer < least:
         yield DesignError(
-            "gear.circular_spline_outer_diameter_mm",
+            "gear.circular_spline_diameter_mm",
             outer,
             f"must be {span(least, LENGTH_mm.high, 4)} mm: the ground of the tooth spaces has a diameter of "
             f"{2 * _ground(design):.4g} mm",

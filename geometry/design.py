@@ -59,8 +59,8 @@ class Gear(Table):
         default=None,
         description=f"mm, withdrawal at which teeth part; default {DEEPEST:g} m(z2 - z1)/2",
     )
-    circular_spline_outer_diameter_mm: Length | None = Field(
-        default=None, description=f"mm, of its rim; default {OUTER_SHARE:g} pitch diameters"
+    circular_spline_diameter_mm: Length | None = Field(
+        default=None, description=f"mm, outside of its rim; default {OUTER_SHARE:g} pitch diameters"
     )
 
     @property

@@ -20,7 +20,7 @@ OPTIONAL: frozenset[Location] = frozenset(
         ("material", "shaft"),
         ("gear", "rated_torque_Nm"),
         ("gear", "working_depth_mm"),
-        ("gear", "circular_spline_outer_diameter_mm"),
+        ("gear", "circular_spline_diameter_mm"),
         ("wave_generator",),
         ("solver", "edge_length_mm"),
     }
@@ -159,7 +159,7 @@ def first_values(kind: str) -> Table:
             "flanks": "relieved",
             "tooth_face": "relieved",
             "working_depth_mm": 0.268,
-            "circular_spline_outer_diameter_mm": 54.5,
+            "circular_spline_diameter_mm": 54.5,
         },
         "bearing": {"radial_clearance_um": 12.0, "bearing_play_model": "involute"},
         "wave_generator": {

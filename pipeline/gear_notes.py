@@ -33,7 +33,7 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
     front, back = np.split(unloaded.loaded[model.flanks], 2)
     if not (front.any() and back.any()):
         return 0.0
-    return float(unloaded.forces[model.flanks].max()) / model.teeth_per_station
+    return float(model.flank_forces(unloaded).max())
 
 
 def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[str]:
@@ -85,7 +85,7 @@ def _why_both_press(design: Design, model: GearModel, unloaded: Equilibrium) -> 
         )
     if _cuts_in(model.mesh):
         return "the flanks cut into each other"
-    front, back = unloaded.forces[model.flanks].reshape(2, len(model.tooth_angles), -1).sum(axis=2)
+    front, back = model.flank_forces(unloaded)
     ahead, behind = (degrees(model.tooth_angles[each.argmax()]) for each in (front, back))
     return (
         f"front flanks press at {ahead:.0f}°, back flanks at {behind:.0f}° from the major axis; the "

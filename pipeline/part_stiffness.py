@@ -13,6 +13,7 @@ from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
@@ -35,7 +36,7 @@ and how many times as long the edges are after that. A tall cup with one large h
 elements."""
 
 
-class OtherKindError(Exception):
+class OtherKindError(FlexsplineError):
     """Swept and fTetWild's meshes are no sequence: between them K moves by more than its bounds."""
 
 

@@ -126,10 +126,15 @@ class GearModel:
         """
         return equilibrium(self.contacts, torque_Nm * NMM_PER_NM / 2, start)
 
+    def flank_forces(self, at: Equilibrium) -> np.ndarray:
+        """Of one tooth's front and back flank at each of `tooth_angles` (2, t) [N]."""
+        each = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
+        return np.asarray(each / self.teeth_per_station)
+
     def pair_forces(self, at: Equilibrium) -> np.ndarray:
         """Of a pair of teeth at each of `tooth_angles` (t,) [N]: front flank less back flank."""
-        front, back = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
-        return np.asarray(front - back) / self.teeth_per_station
+        front, back = self.flank_forces(at)
+        return np.asarray(front - back)
 
     def _of_rim(self) -> np.ndarray:
         t, a = len(self.tooth_angles), len(self.seat_angles)

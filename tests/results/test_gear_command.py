@@ -66,7 +66,7 @@ def test_lost_motion_holds_the_clearance_of_the_flanks(curve: GearCurve) -> None
 def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
     of_the_file = [a for a in curve.assumed if "." in a.key]
     assert [a.key for a in of_the_file] == [
-        "gear.circular_spline_outer_diameter_mm", "gear.working_depth_mm",
+        "gear.circular_spline_diameter_mm", "gear.working_depth_mm",
         *(f"wave_generator.{key}" for key in (
             "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")),
     ]  # fmt: skip
@@ -212,7 +212,7 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
     ("key", "value", "says"),
     [
         ("working_depth_mm", 0.3, "to 0.2682 mm"),
-        ("circular_spline_outer_diameter_mm", 40.0, "the ground of the tooth spaces"),
+        ("circular_spline_diameter_mm", 40.0, "the ground of the tooth spaces"),
         ("tooth_face", "crowned", "relieved"),
     ],
 )
