@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+from flexspline.geometry.fields import Table
 
 
 @dataclass(frozen=True)
@@ -12,3 +15,18 @@ class Assumed:
     key: str
     value: float
     why: str
+
+
+def taken_from(
+    table: Table, name: str, assumed: list[Assumed]
+) -> Callable[[str, float, str], float]:
+    """What a table states under a key, else a value, which `assumed` then gains with its reason."""
+
+    def taken(key: str, value: float, why: str) -> float:
+        stated = getattr(table, key)
+        if stated is not None:
+            return float(stated)
+        assumed.append(Assumed(f"{name}.{key}", value, why))
+        return value
+
+    return taken

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flexspline.geometry.assumed import Assumed
+from flexspline.geometry.assumed import Assumed, taken_from
 from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
@@ -51,14 +51,7 @@ def circular_spline(design: Design) -> CircularSpline:
     gear = design.gear
     pitch, stroke = gear.module_mm * gear.teeth_circular_spline / 2, gear.centre_distance_mm
     assumed: list[Assumed] = []
-
-    def taken(key: str, value: float, why: str) -> float:
-        stated = getattr(gear, key)
-        if stated is not None:
-            return float(stated)
-        assumed.append(Assumed(f"gear.{key}", value, why))
-        return value
-
+    taken = taken_from(gear, "gear", assumed)
     diameter = taken(
         "circular_spline_diameter_mm",
         2 * max(OUTER_SHARE * pitch, _least_outer(design)),

@@ -5,6 +5,7 @@ Plain numbers: the CAD solid revolves or extrudes them, the axisymmetric solver 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import acos, atan2, hypot, pi
 
@@ -167,6 +168,17 @@ class Meridian:
         """Vertices (n, 2) of the outline, arcs as chords no farther off than chord_error [mm]."""
         points = [s.at(np.arange(n) / n) for s in self.segments for n in [_chords(s, chord_error)]]
         return np.concatenate(points)
+
+
+def closed(corners: Sequence[tuple[Point, str | None]]) -> Meridian:
+    """Straight segments from corner to corner and back to the first, each with its patch."""
+    ends = [point for point, _ in (*corners[1:], corners[0])]
+    return Meridian(
+        tuple(
+            Segment(point, end, patch=patch)
+            for (point, patch), end in zip(corners, ends, strict=True)
+        )
+    )
 
 
 def _chords(s: Segment, chord_error: float) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from flexspline.geometry.assumed import Assumed
+from flexspline.geometry.assumed import Assumed, taken_from
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM, Length, Table
@@ -65,14 +65,7 @@ def flexible_bearing(design: Design) -> FlexibleBearing:
     """What the design states, and proportions for the rest."""
     given, radius = design.wave_generator, design.flexspline.inner_radius
     assumed: list[Assumed] = []
-
-    def taken(key: str, value: float, why: str) -> float:
-        stated = getattr(given, key)
-        if stated is not None:
-            return float(stated)
-        assumed.append(Assumed(f"wave_generator.{key}", value, why))
-        return value
-
+    taken = taken_from(given, "wave_generator", assumed)
     stroke = design.gear.centre_distance_mm
     deflection = taken("deflection_mm", stroke, "m(z2 - z1)/2")
     race = taken("race_thickness_mm", RACE_SHARE * radius, f"{RACE_SHARE:g} of the inner radius")

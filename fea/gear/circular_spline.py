@@ -14,23 +14,18 @@ from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
 from flexspline.fea.gear.condensed import Condensed, along, condensed
 from flexspline.fea.gear.rim import at_pitch_point, fine_enough, triangulated
 from flexspline.fea.types import Elastic
-from flexspline.geometry.outline import Meridian, Segment
+from flexspline.geometry.outline import Meridian, closed
 
 
 def spline_outline(inner_radius: float, outer_radius: float, low: float, high: float) -> Meridian:
     """From z = low to high [mm]; teeth stand on its inside."""
-    corners: list[tuple[tuple[float, float], str]] = [
-        ((inner_radius, low), "low"),
-        ((outer_radius, low), "outside"),
-        ((outer_radius, high), "high"),
-        ((inner_radius, high), "mesh"),
-    ]
-    ends = [point for point, _ in corners[1:]] + [corners[0][0]]
-    return Meridian(
-        tuple(
-            Segment(point, end, patch=patch)
-            for (point, patch), end in zip(corners, ends, strict=True)
-        )
+    return closed(
+        [
+            ((inner_radius, low), "low"),
+            ((outer_radius, low), "outside"),
+            ((outer_radius, high), "high"),
+            ((inner_radius, high), "mesh"),
+        ]
     )
 
 

@@ -12,7 +12,7 @@ from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel
 from flexspline.fea.gear.condensed import Condensed, along, condensed, even
 from flexspline.fea.gear.rim import fine_enough, triangulated
 from flexspline.fea.types import Elastic
-from flexspline.geometry.outline import Meridian, Segment
+from flexspline.geometry.outline import Meridian, closed
 
 
 def race_outline(
@@ -20,20 +20,15 @@ def race_outline(
 ) -> Meridian:
     """From z = low to high [mm]; the balls touch the middle `groove` [mm] of the inside."""
     inner, middle = outer_radius - thickness, (low + high) / 2
-    corners: list[tuple[tuple[float, float], str | None]] = [
-        ((inner, low), None),
-        ((outer_radius, low), "seat"),
-        ((outer_radius, high), None),
-        ((inner, high), None),
-        ((inner, middle + groove / 2), "groove"),
-        ((inner, middle - groove / 2), None),
-    ]
-    ends = [point for point, _ in corners[1:]] + [corners[0][0]]
-    return Meridian(
-        tuple(
-            Segment(point, end, patch=patch)
-            for (point, patch), end in zip(corners, ends, strict=True)
-        )
+    return closed(
+        [
+            ((inner, low), None),
+            ((outer_radius, low), "seat"),
+            ((outer_radius, high), None),
+            ((inner, high), None),
+            ((inner, middle + groove / 2), "groove"),
+            ((inner, middle - groove / 2), None),
+        ]
     )
 
 
