@@ -63,12 +63,7 @@ class Engagement:
         model, rim = self.model, self.model.rim
         port, angle = model.pitch_points
         n, flanks = len(port) // 2, model.flanks
-        of_seat = (
-            np.tile(rim.on_seat, len(model.seat_angles)),
-            np.repeat(model.seat_angles, len(rim.seat)),
-        )
-        ports, angles = np.concatenate([port, of_seat[0]]), np.concatenate([angle, of_seat[1]])
-        moved = rim.body.compliance(ports, angles)[:n]
+        moved = model.rim_compliance[:n]
         per_force = np.zeros((n, model.balls.stop))
         per_force[:, flanks] = moved[:, : len(port)] @ model.gap_per_pitch_point.T
         per_force[:, model.seat] = moved[:, len(port) :]

@@ -136,16 +136,21 @@ class GearModel:
         front, back = self.flank_forces(at)
         return np.asarray(front - back)
 
-    def _of_rim(self) -> np.ndarray:
-        t, a = len(self.tooth_angles), len(self.seat_angles)
-        f, m = len(self.rim.face), len(self.rim.seat)
+    @cached_property
+    def rim_compliance(self) -> np.ndarray:
+        """Displacement per force [mm/N] of the flexspline at `pitch_points`, then at the seat."""
+        a, m = len(self.seat_angles), len(self.rim.seat)
         port = np.concatenate([self.pitch_points[0], np.tile(self.rim.on_seat, a)])
         angle = np.concatenate([self.pitch_points[1], np.repeat(self.seat_angles, m)])
-        gap = np.zeros((self.balls.stop, len(port)))  # per displacement
-        gap[: 2 * t * f, : 2 * t * f] = self.gap_per_pitch_point
-        j = np.arange(2 * t * f, len(port))
+        return self.rim.body.compliance(port, angle)
+
+    def _of_rim(self) -> np.ndarray:
+        flanks, moved = self.flanks.stop, self.rim_compliance
+        gap = np.zeros((self.balls.stop, len(moved)))  # per displacement
+        gap[:flanks, :flanks] = self.gap_per_pitch_point
+        j = np.arange(flanks, len(moved))
         gap[j, j] = 1
-        return gap @ self.rim.body.compliance(port, angle) @ gap.T
+        return gap @ moved @ gap.T
 
     def _of_teeth(self) -> np.ndarray:
         k, flanks = self.balls.stop, self.flanks.stop
