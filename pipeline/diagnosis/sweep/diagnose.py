@@ -13,7 +13,7 @@
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
-| test the residual in every channel, and for jumps | `residual_tests.py`, `jumps.py`, `unexplained.py` |
+| test the residual in every channel, and for what sticks | `residual_tests.py`, `jumps.py`, `stuck.py`, `unexplained.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
@@ -36,7 +36,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurem
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels
-from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of
+from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
@@ -44,6 +44,7 @@ from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
+from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
@@ -86,7 +87,9 @@ def diagnose_sweep(
         return _insufficient(hidden), None
     causes = named_causes(explained)
     tests = channel_tests(explained.prepared, identified.fit)
-    jumps = jumps_of(explained.prepared, identified.fit)
+    jumps = largest(
+        jumps_of(explained.prepared, identified.fit), stuck_of(explained.prepared, identified.fit)
+    )
     decision = decided(
         causes,
         unexplained_of(identified, tests, jumps),

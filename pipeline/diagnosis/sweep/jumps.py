@@ -14,12 +14,14 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
 BLOCKS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
-SURE = 1e-5
-"""p-value: eight channels and this are tested, and the verdict rests on it."""
+SURE = 1e-4
+"""p-value, as of a channel's structure (`residual_tests.py`): it counts where it is large beside what is named."""
 FINEST_ARCSEC = 1e-4
 """Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
+ROUNDED = 12.0
+"""A step's square over the variance of what is rounded to it."""
 FEWEST = 20
-"""Steps: of so few large ones z reaches 4.5 at the most, which is what `SURE` asks for."""
+"""Steps: of so few large ones the test reaches 4.5 deviations at the most; `SURE` asks for 4.1."""
 
 
 @dataclass(frozen=True)
@@ -30,15 +32,20 @@ class Jumps:
     rms_arcsec: float
 
 
+def largest(*found: Jumps | None) -> Jumps | None:
+    """Of the same saw-tooth, seen by several tests: the largest rms; None where none sees any."""
+    return max((f for f in found if f is not None), key=lambda f: f.rms_arcsec, default=None)
+
+
 def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     """Jumps that the best explanation leaves; None where they are no more with the motion than by chance.
 
     An output that sticks falls behind the torque little by little and comes after at once: its residual
-    creeps against the motion and jumps with it, so its steps along the motion, less their median, are skew.
-    Those of noise of any colour, and of a smooth misfit, go either way alike: with their signs exchanged at
-    random Σf³/√Σf⁶ has the mean 0 and the deviation 1, whatever their distribution. The saw-tooth passes for
+    creeps against the motion and jumps with it, so its steps f along the motion, less their mean, are skew.
+    Those of noise of any colour, and of a smooth misfit, go either way alike: Σ(f³ − 3σ²f), of which the part
+    in f is nought, has the mean 0 and the deviation √Σ(f³ − 3σ²f)². The saw-tooth passes for
     coloured noise: its rms is that of the residual less the white part. An encoder's own saw-tooth has
-    an rms of 1/√12 of its step: what is below a whole step is none.
+    an rms of 1/√12 of its step: what is below a whole step is none, unless noise dithers the readings.
     """
     history, kept = prepared.rig.history, prepared.kept
     left, motion = fit.residual()[kept], direction_of_loading(history)[kept]
@@ -48,19 +55,34 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     if p_value > SURE:
         return None
     saw_tooth = float(np.sqrt(max(float(np.var(left)) - prepared.noise.white, 0.0)))
-    if saw_tooth < _encoder_step(prepared.sweep.angle_arcsec):
+    step = encoder_step(prepared.sweep.angle_arcsec)
+    if saw_tooth**2 < ROUNDED * undithered(prepared.noise.white, step):
         return None
     return Jumps(p_value, saw_tooth)
 
 
-def _encoder_step(angle_arcsec: np.ndarray) -> float:
+def undithered(variance: float, step: float) -> float:
+    """Variance [arcsec²] of an encoder's rounding that follows the angle, among readings of this variance.
+
+    All of step²/12 without noise. With normal noise of deviation σ the saw-tooth's harmonics, the first
+    foremost, are smaller by exp(−2π²σ²/step²), and the rest of the rounding is noise as well.
+    Source: Widrow, Kollár, Quantization Noise (2008), chapter 4.
+    """
+    if step <= 0:
+        return 0.0
+    rounding = step**2 / ROUNDED
+    noise = max(variance - rounding, 0.0)
+    return rounding * float(np.exp(-4 * np.pi**2 * noise / step**2))
+
+
+def encoder_step(angle_arcsec: np.ndarray) -> float:
     """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too."""
     apart = np.diff(np.unique(np.round(angle_arcsec / FINEST_ARCSEC))) * FINEST_ARCSEC
     return float(apart.min()) if len(apart) else 0.0
 
 
 def _skewness(left: np.ndarray, motion: np.ndarray, pieces: list[slice], rows: int) -> float:
-    """Σf³/√Σf⁶ of the steps f along the motion between means of so many rows; 0 of too few."""
+    """Of the steps along the motion between means of so many rows, in deviations; 0 of too few."""
     steps = []
     for s in pieces:
         count = (s.stop - s.start) // rows
@@ -74,6 +96,7 @@ def _skewness(left: np.ndarray, motion: np.ndarray, pieces: list[slice], rows: i
     along = np.concatenate(steps) if steps else np.empty(0)
     if len(along) < FEWEST:
         return 0.0
-    along = along - np.median(along)
-    power = float((along**6).sum())
-    return float((along**3).sum()) / power**0.5 if power > 0 else 0.0
+    along = along - along.mean()
+    skew = along**3 - 3 * float((along**2).mean()) * along
+    power = float((skew**2).sum())
+    return float(skew.sum()) / power**0.5 if power > 0 else 0.0

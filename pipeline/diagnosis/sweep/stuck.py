@@ -1,0 +1,115 @@
+"""Whether what is left moves while torque moves and stays while it stands: an output that sticks anywhere."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import fdtrc, ndtr
+
+from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+
+BLOCKS = (1, 2, 4, 8, 16)
+"""Rows whose means are compared from block to block: a saw-tooth may be longer than a row."""
+FEWEST_STEPS = 10
+"""Of either kind: a variance of ten is known to within a half."""
+PARTS = 4
+"""Of a hold, whose means say how well the hold's own is known."""
+FEWEST_HOLDS = 4
+"""Three degrees of freedom of where they lie."""
+LIKELY = 1e-2
+"""p-value of either test: noise slower than a hold passes the one and vibration the other, so that both must
+speak."""
+SURE = 1e-5
+"""Product of both p-values: by chance alone, 1e-5·(1 + ln(10)) with `LIKELY` for each, once in 30 000 records."""
+CORRELATED = 1.5
+"""Times the variance of a mean of squared steps of white noise, as neighbouring steps share a row: 1 + 2·¼."""
+
+
+def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
+    """What is left of motion, frozen in the holds; None where torque never rests, or it is no more than noise.
+
+    An output that sticks and breaks away at random stands somewhere else after each way, and stays there
+    while torque rests. Noise in time takes equal steps in holds and between them, and vibration of the drive
+    averages out in a hold. Two tests therefore must agree: the steps from block to block (variances against
+    each other, in motion and at rest), and the holds' means against what their parts leave of doubt (an
+    F-test). The torque's noise is in the angle too, and is known in a hold, up to the noise of its mean, but not
+    in motion. The rms is that of the holds' means, less this doubt and what an encoder without noise rounds.
+    """
+    history, kept = prepared.rig.history, prepared.kept
+    resting = [rows[kept[rows]] for rows in holds(history)]
+    resting = [rows for rows in resting if len(rows) >= 2 * PARTS]
+    if len(resting) < FEWEST_HOLDS:
+        return None
+    left, step = fit.residual(), encoder_step(prepared.sweep.angle_arcsec)
+    of_torque = (fit.measured_rig().compliance * torque_noise_Nm(history)) ** 2
+    p_frozen, variance = _frozen(left, resting, step, of_torque)
+    hold = np.full(len(kept), -1)
+    for number, rows in enumerate(resting):
+        hold[rows] = number
+    p_motion = _moves_more(left[kept], hold[kept], stretches_of(history, kept), step, of_torque)
+    if variance <= 0 or max(p_motion, p_frozen) > LIKELY or p_frozen * p_motion > SURE:
+        return None
+    return Jumps(p_frozen * p_motion, float(np.sqrt(variance)))
+
+
+def _frozen(
+    left: np.ndarray, resting: list[np.ndarray], step: float, of_torque: float
+) -> tuple[float, float]:
+    """p-value that the holds' means differ as their parts do, and the variance beyond that [arcsec²]."""
+    means, within, spread = [], [], []
+    for rows in resting:
+        count = len(rows) // PARTS
+        parts = left[rows[: count * PARTS]].reshape(PARTS, count).mean(axis=1)
+        means.append(parts.mean())
+        within.append(parts.var(ddof=1) / PARTS + of_torque / len(rows))
+        spread.append(left[rows].var(ddof=1))
+    doubt = float(np.mean(within)) + undithered(float(np.mean(spread)), step)
+    between = float(np.var(means, ddof=1))
+    if doubt <= 0:
+        return 1.0, 0.0
+    freedom = len(means) - 1, (PARTS - 1) * len(means)
+    return float(fdtrc(*freedom, between / doubt)), between - doubt
+
+
+def _moves_more(
+    left: np.ndarray, hold: np.ndarray, pieces: list[slice], step: float, of_torque: float
+) -> float:
+    """p-value that steps between blocks are no larger in motion than at rest, of the length that shows it best."""
+    found = []
+    for rows in BLOCKS:
+        rest, motion = _steps(left, hold, pieces, rows)
+        if min(len(rest), len(motion)) < FEWEST_STEPS:
+            continue
+        calm, lively = float((rest**2).mean()), float((motion**2).mean())
+        calm += 2 * (undithered(rows * calm / 2, step) + of_torque) / rows
+        if calm <= 0 or lively <= 0:
+            continue
+        doubt = CORRELATED * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
+        found.append(np.log(lively / calm) / np.sqrt(max(doubt, 1e-12)))
+    return min(1.0, len(found) * float(ndtr(-max(found)))) if found else 1.0
+
+
+def _steps(
+    left: np.ndarray, hold: np.ndarray, pieces: list[slice], rows: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Steps between the means of so many rows: within a hold, and all others."""
+    rest, motion = [], []
+    for s in pieces:
+        count = (s.stop - s.start) // rows
+        whole = slice(s.start, s.start + count * rows)
+        steps = np.diff(left[whole].reshape(count, rows).mean(axis=1))
+        each = hold[whole].reshape(count, rows)
+        own = np.where((each == each[:, :1]).all(axis=1), each[:, 0], -1)
+        same = (own[1:] == own[:-1]) & (own[1:] >= 0)
+        rest.append(steps[same])
+        motion.append(steps[~same])
+    return np.concatenate(rest), np.concatenate(motion)
+
+
+def _spread(steps: np.ndarray) -> float:
+    """Variance of squared steps over their mean's square: 2 of normal ones."""
+    squared = steps**2
+    return max(float((squared**2).mean() / squared.mean() ** 2) - 1, 0.0) if squared.any() else 0.0
