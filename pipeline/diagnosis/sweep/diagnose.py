@@ -13,7 +13,8 @@
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
-| test the residual in every channel, and for what sticks | `residual_tests.py`, `jumps.py`, `stuck.py`, `unexplained.py` |
+| test the residual in every channel | `residual_tests.py`, `unexplained.py` |
+| test it for what sticks | `jumps.py`, `stuck.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |

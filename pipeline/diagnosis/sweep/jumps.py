@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 BLOCKS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
 SURE = 1e-4
-"""p-value, as of a channel's structure (`residual_tests.py`): it counts where it is large beside what is named."""
+"""p-value, as of a channel's structure (`residual_tests.py`)."""
 FINEST_ARCSEC = 1e-4
 """Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
 ROUNDED = 12.0

@@ -23,20 +23,20 @@ LIKELY = 1e-2
 """p-value of either test: noise slower than a hold passes the one and vibration the other, so that both must
 speak."""
 SURE = 1e-5
-"""Product of both p-values: by chance alone, 1e-5·(1 + ln(10)) with `LIKELY` for each, once in 30 000 records."""
+"""Product of both p-values: with `LIKELY` for each, by chance in one record of 30 000."""
 CORRELATED = 1.5
-"""Times the variance of a mean of squared steps of white noise, as neighbouring steps share a row: 1 + 2·¼."""
+"""Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
 
 
 def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
-    """What is left of motion, frozen in the holds; None where torque never rests, or it is no more than noise.
+    """What motion leaves behind in the holds; None where torque never rests, or it is no more than noise.
 
     An output that sticks and breaks away at random stands somewhere else after each way, and stays there
     while torque rests. Noise in time takes equal steps in holds and between them, and vibration of the drive
     averages out in a hold. Two tests therefore must agree: the steps from block to block (variances against
     each other, in motion and at rest), and the holds' means against what their parts leave of doubt (an
-    F-test). The torque's noise is in the angle too, and is known in a hold, up to the noise of its mean, but not
-    in motion. The rms is that of the holds' means, less this doubt and what an encoder without noise rounds.
+    F-test). The torque's noise is in the angle too; in a hold it is known, up to that of the mean, in
+    motion it is not. The rms is that of the holds' means, less this doubt and what an encoder without noise rounds.
     """
     history, kept = prepared.rig.history, prepared.kept
     resting = [rows[kept[rows]] for rows in holds(history)]
@@ -77,7 +77,7 @@ def _frozen(
 def _moves_more(
     left: np.ndarray, hold: np.ndarray, pieces: list[slice], step: float, of_torque: float
 ) -> float:
-    """p-value that steps between blocks are no larger in motion than at rest, of the length that shows it best."""
+    """p-value that steps between blocks are no larger in motion, of the length of blocks that shows it best."""
     found = []
     for rows in BLOCKS:
         rest, motion = _steps(left, hold, pieces, rows)

@@ -96,7 +96,7 @@ def test_noise_of_the_torque_reading_is_nothing_stuck() -> None:
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.2, 0.3, 0.5])
 def test_of_a_dithered_encoder_little_follows_the_angle(share: float) -> None:
-    """The mean of the rounding over noise of `share` steps, at angles all over a step; exact without noise."""
+    """The mean of the rounding over noise of `share` steps, at angles all over a step."""
     step, rng = 0.5, np.random.default_rng(8)
     angle = step * (np.arange(50) + 0.5) / 50
     read = angle + share * step * rng.normal(size=(4000, 1))
