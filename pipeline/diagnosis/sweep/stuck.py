@@ -36,7 +36,7 @@ def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     averages out in a hold. Two tests therefore must agree: the steps from block to block (variances against
     each other, in motion and at rest), and the holds' means against what their parts leave of doubt (an
     F-test). The torque's noise is in the angle too; in a hold it is known, up to that of the mean, in
-    motion it is not. The rms is that of the holds' means, less this doubt and what an encoder without noise rounds.
+    motion it is not. The rms is that of the holds' means, less this doubt and what an encoder rounds.
     """
     history, kept = prepared.rig.history, prepared.kept
     resting = [rows[kept[rows]] for rows in holds(history)]
@@ -77,7 +77,7 @@ def _frozen(
 def _moves_more(
     left: np.ndarray, hold: np.ndarray, pieces: list[slice], step: float, of_torque: float
 ) -> float:
-    """p-value that steps between blocks are no larger in motion, of the length of blocks that shows it best."""
+    """p-value that steps between blocks are no larger in motion, of the length that shows it best."""
     found = []
     for rows in BLOCKS:
         rest, motion = _steps(left, hold, pieces, rows)
