@@ -34,7 +34,7 @@ def summary(diagnosis: Diagnosis) -> str:
     """
     far = _far_off(diagnosis)
     if far and diagnosis.verdict == "consistent":
-        return f"The measurement shows no effect that the simulation leaves out. But the {far}."
+        return f"The curve has the simulated form, but the {far}."
     return _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
 
 

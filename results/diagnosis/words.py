@@ -32,12 +32,13 @@ SPECIMENS = {
 }
 """Causes that only specimens show."""
 VERDICTS = {
-    "consistent": "The measurement agrees with the simulation",
+    "consistent": "No effect that the simulation leaves out",
     "named": "Causes identified",
     "ambiguous": "Several causes are possible; these data cannot tell them apart",
     "unknown": "An effect that no known cause explains",
     "insufficient": "Too little data for a verdict",
 }
+"""Headings. What lies far from the simulation in size alone is consistent too: the summary says it."""
 SIZE_KNOWN = 2.0
 """Deviations from no effect: below, that something is there may be sure, but how much is not."""
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))

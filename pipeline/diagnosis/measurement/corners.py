@@ -7,11 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_rate, rates_of
+from flexspline.pipeline.diagnosis.measurement.torque_program import (
+    PARTS,
+    ramp_rate,
+    rates_of,
+    torque_noise_Nm,
+)
 
 SUDDEN = 0.3
 """Of the ramps' rate, between two neighbouring stretches of a few rows: it is 1 at a hold's ends and 2 at
 a triangle's; at a sine's turn half of this, over a sixtieth of the cycle."""
+CLEAR = 4.5
+"""Deviations of a change by the torque's noise: one row of noise in 150 000 changes by more."""
 WAY = 4
 """Rows through which a straight way is laid on either side of a corner."""
 FEWEST_ROWS_OF_UNIT = 24
@@ -28,7 +35,7 @@ class Corner:
 
 
 def corners_of(history: History) -> list[Corner]:
-    """Corners of the torque's programme: changes of rate beyond `SUDDEN` within a few rows."""
+    """Corners of the torque's programme: changes of rate beyond `SUDDEN` and noise within a few rows."""
     fast = ramp_rate(history)
     if fast == 0 or history.time_s is None:
         return []
@@ -36,32 +43,46 @@ def corners_of(history: History) -> list[Corner]:
     for unit, rows in enumerate(history.unit_slices):
         if len(rows) < FEWEST_ROWS_OF_UNIT:
             continue
-        rates = rates_of(history, rows)
-        width, time, torque = rates.width, history.time_s[rows], history.torque_Nm[rows]
-        change = np.zeros(len(rows))
-        change[width:-width] = (rates.values[width:] - rates.values[:-width]) / fast
+        time, torque = history.time_s[rows], history.torque_Nm[rows]
+        noise = torque_noise_Nm(history) / fast
+        width = rates_of(history, rows).width
+        cycle = len(rows) / (int(history.cycle[rows].max()) + 1)
+        widths = [w for w in (width, 2 * width, 4 * width) if w == width or w * PARTS <= cycle]
+        change = _sudden(time, torque / fast, noise, widths)
         found += [
             Corner(unit, _met(time, torque, i, way), float(change[i]))
-            for i, way in _ways(_places(change, width), len(rows), max(width, WAY))
+            for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), max(width, WAY))
         ]
     return found
 
 
-def _places(change: np.ndarray, width: int) -> list[int]:
-    """Rows of the corners, in order.
+def _sudden(
+    time_s: np.ndarray, torque_s: np.ndarray, noise_s: float, widths: list[int]
+) -> np.ndarray:
+    """(n,) sudden changes of rate, 0 at all other rows; torque and its noise in seconds of the ramps' rate.
 
-    A corner is spread over the rows that a rate is taken over, with one sign. A short ramp between two holds
-    begins and ends with opposite signs, however near.
+    Over more rows smaller changes stand out of the noise. A corner is spread over the rows that a rate is
+    taken over, with one sign. A short ramp between two holds begins and ends with opposite signs, however
+    near.
     """
-    size = np.abs(change)
-    taken = {side: np.zeros(len(change), bool) for side in (-1.0, 1.0)}
-    found = []
-    for i in np.argsort(-size, kind="stable")[: int((size > SUDDEN).sum())]:
-        mine = taken[float(np.sign(change[i]))]
-        if not mine[i]:
-            mine[max(0, i - 2 * width) : i + 2 * width + 1] = True
-            found.append(int(i))
-    return sorted(found)
+    found = np.zeros(len(time_s))
+    for width in widths:
+        taken = {side: np.zeros(len(time_s), bool) for side in (-1.0, 1.0)}
+        for i in np.flatnonzero(found):
+            taken[float(np.sign(found[i]))][max(0, i - 2 * width) : i + 2 * width + 1] = True
+        span = np.maximum(time_s[width:] - time_s[:-width], 1e-12)
+        rate = (torque_s[width:] - torque_s[:-width]) / span
+        change, doubt = np.zeros(len(time_s)), np.full(len(time_s), np.inf)
+        change[width:-width] = rate[width:] - rate[:-width]
+        before, after = 1 / span[:-width], 1 / span[width:]
+        doubt[width:-width] = noise_s * np.sqrt(before**2 + after**2 + (before + after) ** 2)
+        clear = np.abs(change) > np.maximum(SUDDEN, CLEAR * doubt)
+        for i in np.argsort(-np.abs(change), kind="stable")[: int(clear.sum())]:
+            mine = taken[float(np.sign(change[i]))]
+            if clear[i] and not mine[i]:
+                mine[max(0, i - 2 * width) : i + 2 * width + 1] = True
+                found[i] = change[i]
+    return found
 
 
 def _ways(places: list[int], rows: int, most: int) -> list[tuple[int, int]]:

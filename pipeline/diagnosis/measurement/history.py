@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ class History:
     time_s: np.ndarray | None = None
     temperature_C: np.ndarray | None = None
     input_angle_deg: np.ndarray | None = None
-    memo: dict[tuple[str, float], np.ndarray] = field(
+    memo: dict[tuple[str, float], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
     """What operators have made of this history once and need again; never part of its value."""

@@ -28,6 +28,8 @@ NOISE_MOVES = 5.7
 """Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
 RANGE_SIGMAS = 6.0
 """Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
+SURE_SIGMAS = 3.0
+"""Deviations of a hold's own rate by noise, by which it must be slower than what moves."""
 AROUND = 20
 """Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
 FEWEST_FOR_NOISE = 8
@@ -87,6 +89,13 @@ def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
 
 def ramp_rate(history: History) -> float:
     """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
+    key = ("ramp_rate", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _ramp_rate(history)
+    return float(history.memo[key])
+
+
+def _ramp_rate(history: History) -> float:
     if history.time_s is None:
         return 0.0
     found = []
@@ -103,6 +112,14 @@ def ramp_rate(history: History) -> float:
 
 def holds(history: History) -> list[np.ndarray]:
     """Rows of each stretch where torque stands still between two moves, at least `FEWEST` rows."""
+    key = ("holds", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _holds(history)
+    found: list[np.ndarray] = history.memo[key]
+    return found
+
+
+def _holds(history: History) -> list[np.ndarray]:
     fast = ramp_rate(history)
     if fast == 0:
         return []
@@ -126,7 +143,13 @@ def holds(history: History) -> list[np.ndarray]:
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
             hold = rows[i : j + width]
             spread = noise * max(RANGE_SIGMAS, _range_sigmas(len(hold)))
-            if len(hold) >= FEWEST and sharp and np.ptp(history.torque_Nm[hold]) < span + spread:
+            level = np.ptp(history.torque_Nm[hold]) < span + spread
+            if (
+                len(hold) >= FEWEST
+                and sharp
+                and level
+                and _stands(torque, t, i, j + width, noise, fast)
+            ):
                 found.append(hold)
     return found
 
@@ -162,6 +185,19 @@ def _joined(
                 continue
         found.append((i, j))
     return found
+
+
+def _stands(
+    torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int, noise_Nm: float, fast: float
+) -> bool:
+    """Whether a straight line through rows i to j − 1 stands still, and surely does not move.
+
+    A few rows of a slow cycle, of a record with quick ones, may stand still by noise alone.
+    """
+    torque_Nm, away = torque_Nm[i:j], time_s[i:j] - time_s[i:j].mean()
+    square = max(float((away**2).sum()), 1e-300)
+    rate, doubt = abs(float(away @ torque_Nm)) / square, noise_Nm / square**0.5
+    return rate - doubt < STILL * fast and rate + SURE_SIGMAS * doubt < MOVING * fast
 
 
 def _range_sigmas(count: int) -> float:
@@ -204,6 +240,13 @@ def torque_noise_Nm(history: History) -> float:
     line in time between their neighbours (ramps), from third differences (curved programmes, evenly
     sampled), and from the smallest fifth of the steps between rows (holds).
     """
+    key = ("torque_noise", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _torque_noise_Nm(history)
+    return float(history.memo[key])
+
+
+def _torque_noise_Nm(history: History) -> float:
     found = []
     for rows in history.unit_slices:
         torque = history.torque_Nm[rows]

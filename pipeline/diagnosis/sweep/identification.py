@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: one of several by more, as the
-others' misfit may feed it."""
+others' misfit may feed it. Not so where that set has a nuisance term in its place: something is there."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
@@ -66,8 +66,11 @@ def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification
     for _ in range(MOST_WEAK):
         without = {c: _without(evidence, best, c) for c in best.named(evidence)}
         nats = {c: best.score - w.score for c, w in without.items()}
-        limit = NAMING_NATS if len(nats) == 1 and not beside else SECOND_NATS
-        weak = [c for c, e in nats.items() if e < limit]
+        only = len(nats) == 1 and not beside
+        weak = [
+            c for c, e in nats.items()
+            if e < (NAMING_NATS if only or _stands_in(evidence, best, without[c]) else SECOND_NATS)
+        ]  # fmt: skip
         if not weak:
             break
         best = without[min(weak, key=lambda c: nats[c])]
@@ -100,14 +103,24 @@ def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> C
 
 
 def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
-    """Whether a set with a nuisance term holds large effects that together are small."""
+    """Whether a set with a nuisance term holds large effects that together are small, all or two of them.
+
+    A nuisance term is less what torque and its lags explain. Beside a cause that is not, the two may leave
+    those lags, which know the true torque better than its reading does.
+    """
     owners = c.owners(evidence)
     if not any(o.startswith("?") for o in owners):
         return False
     fit = fit_regressors(evidence, c.terms)
     parts = np.array([fit.added(o)[evidence.kept] for o in owners])
     parts -= parts.mean(axis=1, keepdims=True)
-    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
+    if (parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum():
+        return True
+    products = parts @ parts.T
+    own = np.add.outer(np.diag(products), np.diag(products))
+    nuisance = np.array([o.startswith("?") for o in owners])
+    pairs = np.triu(np.logical_or.outer(nuisance, nuisance), 1)
+    return bool((pairs & (own > TOGETHER**2 * (own + 2 * products))).any())
 
 
 def _cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
@@ -129,6 +142,15 @@ def _without(evidence: GaussianEvidence, best: Candidate, cause: str) -> Candida
     return _plausible(
         evidence, search, search.run([start, ()], most=len(best.terms) + MORE_WITHOUT)
     )
+
+
+def _stands_in(evidence: GaussianEvidence, best: Candidate, without: Candidate) -> bool:
+    """Whether a set that does without a cause has a nuisance term more."""
+
+    def count(c: Candidate) -> int:
+        return sum(evidence.terms[i].cause is None for i in c.terms)
+
+    return count(without) > count(best)
 
 
 def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:

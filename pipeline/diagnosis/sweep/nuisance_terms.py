@@ -50,7 +50,8 @@ class NuisanceTerm:
     columns: np.ndarray
     positive: bool = False
     against: frozenset[str] = frozenset()
-    """Causes beside which it does not stand: it is their opposite, and the two would cancel."""
+    """Causes beside which it does not stand: it is their opposite, or all that they are and more, and the two
+    would cancel."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ KINDS = (
     _Kind(over_angle, less_linear=True),
     _Kind(over_direction, less_linear=True),
     _Kind(leading, positive=True, against=frozenset({FRICTION, "rate_dependence"})),
-    _Kind(over_time, less_linear=True),
+    _Kind(over_time, less_linear=True, against=frozenset({"sensor_drift"})),
     _Kind(changing_stiffness),
     _Kind(waves_and_steps, less_linear=True),
     _Kind(over_cycle),

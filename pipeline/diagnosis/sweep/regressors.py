@@ -10,8 +10,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
-from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import WIDEST, jitter
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -139,38 +138,15 @@ def _nuisance_regressor(
     )  # fmt: skip
 
 
-CORNER = 4.0
-"""Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
-NOISE_WINDOWS = (2, 7)
+NOISE_WINDOWS = (2, WIDEST)
 """Rows on each side over which the torque is taken as a parabola."""
-
-
-def jitter(history: History, width: int) -> np.ndarray:
-    """(n,) torque less a parabola through its neighbours: its noise, and little else.
-
-    With noise in the torque reading, whatever knows the true torque better explains the angle better.
-    These columns take that away from every term, so that no cause is found in the torque's noise.
-    """
-    out = np.zeros(len(history))
-    for rows in history.unit_slices:
-        n = len(rows)
-        torque = history.torque_Nm[rows]
-        t = np.arange(n, dtype=float) if history.time_s is None else history.time_s[rows]
-        near = np.clip(np.arange(n)[:, None] + np.arange(-width, width + 1), 0, n - 1)
-        x = t[near] - t[:, None]
-        x /= np.maximum(np.abs(x).max(axis=1, keepdims=True), 1e-12)
-        basis = np.stack([np.ones_like(x), x, x * x], axis=2)
-        gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
-        right = np.einsum("nwi,nw->ni", basis, torque[near])
-        out[rows] = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
-    for hold in holds(history):
-        out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
-    # beyond its noise it is a corner of the programme, not noise
-    return np.where(np.abs(out) < CORNER * torque_noise_Nm(history), out, 0.0)
 
 
 def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """(n, b) columns of the calibration and their prior standard deviations (b,).
+
+    With noise in the torque reading, whatever knows the true torque better explains the angle better.
+    The noise's columns take that away from every term, so that no cause is found in it.
 
     Zero of each unit; deviation of compliance and gap, common, and per unit if several; torque noise, which
     may be known already: (n, len(NOISE_WINDOWS)).

@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.summary import summary
 
 SIGMA = 0.5
@@ -94,5 +95,6 @@ def test_a_consistent_record_with_a_gap_far_off_says_so(tmp_path: Path) -> None:
     )
     found = diagnose_file(DESIGN, csv, 31300.0, 43000.0)
     assert found.verdict == "consistent"
-    assert "But the gap" in summary(found)
+    assert "but the gap" in summary(found)
     assert "3.5 of its stated deviations" in summary(found)
+    assert "agree" not in diagnosis_table(found, tmp_path)

@@ -1,0 +1,68 @@
+"""The noise of a torque reading, row by row: what a parabola through the rows around it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.corners import corners_of
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+
+FAR = 4.0
+"""Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
+WIDEST = 7
+"""Rows on either side: torque amid 15 is known to 0.39 of its noise, and its rate to 0.06 a row."""
+FEWEST = 4
+"""Rows of a straight way: a parabola leaves nothing of three."""
+
+
+def jitter(history: History, width: int) -> np.ndarray:
+    """(n,) torque less a parabola through `width` rows on either side: its noise, and little else.
+
+    No parabola reaches over a corner of the programme (`corners.py`): it would leave the corner there. Beside
+    one, and at the record's ends, as many rows lie on one side. Of a hold it is the torque less its mean.
+    """
+    key = ("jitter", float(width))
+    if key not in history.memo:
+        out, corners = np.zeros(len(history)), corners_of(history)
+        for unit, rows in enumerate(history.unit_slices):
+            time = history.time_s
+            t = np.arange(len(rows), dtype=float) if time is None else time[rows]
+            turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
+            edges = np.unique([0, *turned, len(rows)])
+            out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
+        for hold in holds(history):
+            out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
+        # beyond its noise it is a corner that was not seen
+        history.memo[key] = np.where(np.abs(out) < FAR * torque_noise_Nm(history), out, 0.0)
+    return history.memo[key]
+
+
+def less_jitter(history: History) -> History:
+    """The history with its torque less the noise, as far as the rows around each one know it."""
+    key = ("less_jitter", 0.0)
+    if key not in history.memo:
+        torque = history.torque_Nm - jitter(history, WIDEST)
+        history.memo[key] = replace(history, torque_Nm=torque)
+    found: History = history.memo[key]
+    return found
+
+
+def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: int) -> np.ndarray:
+    """(n,) torque less parabolas over windows that keep between the edges (m,), rows of ways' first ones."""
+    n = len(t)
+    way = np.searchsorted(edges, np.arange(n), side="right") - 1
+    first, last = edges[way], edges[way + 1]
+    start = np.clip(np.arange(n) - width, first, np.maximum(last - 2 * width - 1, first))
+    near = start[:, None] + np.arange(2 * width + 1)
+    inside = near < last[:, None]
+    near = np.minimum(near, n - 1)
+    x = t[near] - t[:, None]
+    x /= np.maximum(np.abs(np.where(inside, x, 0.0)).max(axis=1, keepdims=True), 1e-12)
+    basis = np.stack([np.ones_like(x), x, x * x], axis=2) * inside[:, :, None]
+    gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
+    right = np.einsum("nwi,nw->ni", basis, torque[near])
+    off = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
+    return np.where(last - first < FEWEST, 0.0, off)
