@@ -38,15 +38,18 @@ from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
+from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.sized import sized_template
 from flexspline.geometry.wave_generator import flexible_bearing
-from flexspline.pipeline.gear_model import BEARING_STEEL, GROOVE_SHARE, gear_model
+from flexspline.pipeline.gear_model import GROOVE_SHARE, gear_model
 
 RESULTS = Path(__file__).with_name("gear_contact_3d.json")
 SIZE, RATIO = 14, 50
 CHANGED = {"flexspline.bolt_count": 0, "flexspline.inner_fillet_mm": 0.0, "flexspline.outer_fillet_mm": 0.0,
+           "flexspline.wall_thickness_mm": 0.3556, "flexspline.diaphragm_thickness_mm": 0.5334,
            "gear.flank_clearance_um": 30.0}  # fmt: skip
-"""A body of revolution with sharp corners; so much clearance that teeth are free on the rigid plug too."""
+"""A body of revolution with sharp corners and walls in proportion to examples/xb1-40.toml; so much clearance
+that teeth are free on the rigid plug too."""
 SEAT_PRESSURE = 1e6
 """Pressure per penetration of the seat [MPa/mm]: 100 MPa, as at its inner edge, are 0.1 µm."""
 SLICES = 3
@@ -71,7 +74,7 @@ MESHES = {"coarse": Mesh(50, 1, 2), "round": Mesh(100, 1, 1), "along": Mesh(50, 
 
 
 def design() -> Design:
-    """The cup that `flexspline init cup --size 14 --ratio 50` prints, as a body of revolution."""
+    """That of `flexspline init cup --size 14 --ratio 50`, as a body of revolution with thicker walls."""
     return design_from(tomllib.loads(sized_template("cup", SIZE, RATIO))).changed(CHANGED)
 
 
@@ -157,7 +160,9 @@ def race_compliance(of: Design, angles: np.ndarray, mesh: Mesh, folder: Path) ->
     groove = min(GROOVE_SHARE * bearing.ball_diameter, f.ring_width_mm / 2) / 2
     on_axis = (ring.plane == ring.around) & (np.abs(ring.polar[:, 2] - middle) < 1e-6)
     node = int(np.flatnonzero(on_axis)[0])  # held there it neither turns nor drifts along the axis
-    matrix, unknowns = stiff.stiffness(ring, BEARING_STEEL, [(node, 2), (node, 3)], folder)
+    matrix, unknowns = stiff.stiffness(
+        ring, Elastic.of(BEARING_STEEL), [(node, 2), (node, 3)], folder
+    )
     outside = stiff.points(ring, "hoop", OUTSIDE, mesh.contact)
     rows = [stiff.along(ring, weights, -1.0, 0.0) for weights, _, _ in outside]
     for angle in angles.tolist():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -16,7 +16,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from, load_design
 from flexspline.geometry.rated import rated_torque
-from flexspline.geometry.sized import sized_template
+from flexspline.geometry.sized import WALL_SHARE, sized_template
 from flexspline.pipeline import revolved
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import backlash
@@ -143,19 +143,42 @@ def within(found: list[Row], index: int, aim: float, shaft: bool) -> str:
 
 
 Change = Callable[[Design, GearModel], GearModel]
+THIN = {"flexspline.ring_thickness_mm": 0.5, "wave_generator.race_thickness_mm": 0.5}
+"""Ring and race half as thick."""
+THICK_WALL = {
+    "flexspline.wall_thickness_mm": 0.02 / WALL_SHARE,
+    "flexspline.diaphragm_thickness_mm": 0.02 / WALL_SHARE,
+}
+"""As in examples/xb1-40.toml: 0.02 and 0.03 of the pitch radius."""
 
 
 def proportion(key: str, factor: float = STEP) -> Change:
     """A value of the design file times a factor."""
+    return proportions({key: factor})
+
+
+def proportions(factors: Mapping[str, float]) -> Change:
+    """Values of the design file times their factors; the ring keeps its root."""
 
     def changed(design: Design, _: GearModel) -> GearModel:
-        table, name = key.split(".")
-        value = getattr(getattr(design, table), name)
-        if value is None:
-            value = next(a.value for a in gear_assumptions(design) if a.key == key)
-        return setting(key, value * factor)(design, _)
+        new = {key: stated(design, key) * factor for key, factor in factors.items()}
+        ring = "flexspline.ring_thickness_mm"
+        if len(new) > 1 and ring in new:
+            less = stated(design, ring) - new[ring]
+            new["flexspline.inner_diameter_mm"] = design.flexspline.inner_diameter_mm + 2 * less
+        other = design.changed(new)
+        return gear_model(other, other.part("flexspline"))
 
     return changed
+
+
+def stated(design: Design, key: str) -> float:
+    """A value of the design file, or what the program assumes for it."""
+    table, name = key.split(".")
+    value = getattr(getattr(design, table), name)
+    if value is None:
+        value = next(a.value for a in gear_assumptions(design) if a.key == key)
+    return float(value)
 
 
 def setting(key: str, value: object) -> Change:
@@ -198,6 +221,9 @@ CHANGES: tuple[tuple[str, Change], ...] = (
         "`gear.circular_spline_diameter_mm` / 1.1",
         proportion("gear.circular_spline_diameter_mm", 1 / 1.1),
     ),
+    ("wall and diaphragm of `examples/xb1-40.toml`, × 1.67", proportions(THICK_WALL)),
+    ("ring and race × 0.5", proportions(THIN)),
+    ("ring and race × 0.5, pressure angle 30", proportions(THIN | {"gear.pressure_angle_deg": 1.5})),
     ("plain flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="plain"))),
     ("conjugate flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="conjugate"))),
     ("working depth 1.0 strokes for 1.34", lambda d, m: replace(m, mesh=replace(m.mesh, depth=1.0))),

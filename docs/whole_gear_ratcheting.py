@@ -15,6 +15,7 @@ from flexspline.fea.gear.engagement import Engagement
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.rated import rated_torque
 from flexspline.pipeline.gear_model import gear_model
+from flexspline.pipeline.largest_torques import tube_of
 
 PITCH_RADIUS = 1.27
 """Of a catalogue's size [mm]: half of a tenth of an inch."""
@@ -36,11 +37,17 @@ class Row:
     ratio: int
     ratcheting_Nm: float
     predicted_Nm: float
+    buckling_Nm: float
 
     @property
     def over(self) -> float:
         """Predicted over catalogue."""
         return self.predicted_Nm / self.ratcheting_Nm
+
+    @property
+    def least_over(self) -> float:
+        """The same, where the tube may buckle first."""
+        return min(self.predicted_Nm, self.buckling_Nm) / self.ratcheting_Nm
 
     @property
     def per_radius_cubed(self) -> float:
@@ -58,7 +65,11 @@ def rows() -> tuple[Row, ...]:
             given = float(line["ratcheting_torque_Nm"])
             design = sized_design(size, ratio)
             model = gear_model(design, design.part("flexspline"))
-            found.append(Row(size, ratio, given, limit(model, rated_torque(design)[0])))
+            tube = tube_of(design)
+            if tube is None:
+                raise ValueError(f"the cup of size {size:g} has no tube")
+            engaged = limit(model, rated_torque(design)[0])
+            found.append(Row(size, ratio, given, engaged, tube.lower_edge_Nm))
     return tuple(found)
 
 
@@ -80,10 +91,11 @@ def by_ratio() -> str:
 
 def _class(name: str, belongs: Callable[[Row], bool]) -> str:
     mine = [row for row in rows() if belongs(row)]
-    over = [row.over for row in mine]
+    over, least = [row.over for row in mine], [row.least_over for row in mine]
     scaled = [row.per_radius_cubed for row in mine]
     return (
         f"| {name} | {len(mine)} | {median(over):.1f} | {min(over):.1f} to {max(over):.1f} | "
+        f"{median(least):.1f} | {min(least):.1f} to {max(least):.1f} | "
         f"{median(scaled):.1f} | {float(np.std(np.log(scaled))):.2f} |"
     )
 

@@ -48,9 +48,8 @@ def _faults(design: Design) -> Iterator[DesignError]:
 
 
 def _name_faults(design: Design) -> Iterator[DesignError]:
-    names = {"name": design.name, "material.flexspline.name": design.material.flexspline.name}
-    if design.material.shaft:
-        names["material.shaft.name"] = design.material.shaft.name
+    names = {f"material.{key}.name": each.name for key, each in design.material.stated.items()}
+    names["name"] = design.name
     for key, text in names.items():
         if any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text):
             yield DesignError(key, text, "must be one line of text without control characters")

@@ -22,10 +22,21 @@ from flexspline.geometry.wave_generator import WaveGenerator
 
 
 class Materials(Table):
-    """What the two parts are made of."""
+    """What the parts are made of."""
 
     flexspline: Material
     shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
+    circular_spline: Material | None = Field(
+        default=None, description="of the whole gear; absent: as the flexspline's"
+    )
+    bearing: Material | None = Field(
+        default=None, description="races and balls, of the whole gear; absent: 100Cr6"
+    )
+
+    @property
+    def stated(self) -> dict[str, Material]:
+        """By key."""
+        return {key: value for key, value in self if value is not None}
 
 
 class Gear(Table):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.circular_spline import circular_spline
-from flexspline.geometry.design import Design
+from flexspline.geometry.design import Design, Materials
+from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 
@@ -15,4 +18,14 @@ def gear_assumptions(design: Design) -> tuple[Assumed, ...]:
         *rated_torque(design)[1],
         *circular_spline(design).assumed,
         *flexible_bearing(design).assumed,
+        *_materials(design.material),
     )
+
+
+def _materials(material: Materials) -> Iterator[Assumed]:
+    for key, of, why in (
+        ("circular_spline", material.flexspline, "the flexspline's"),
+        ("bearing", BEARING_STEEL, f"{BEARING_STEEL.name}, of races and balls"),
+    ):
+        if key not in material.stated:
+            yield Assumed(f"material.{key}.youngs_modulus_GPa", of.youngs_modulus_GPa, why)

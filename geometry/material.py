@@ -32,3 +32,7 @@ class Material(Table):
     def density_stated(self) -> bool:
         """Whether the file gives the density; else it is taken for steel's."""
         return "density_kg_per_m3" in self.model_fields_set
+
+
+BEARING_STEEL = Material(name="100Cr6", youngs_modulus_GPa=208.0, poissons_ratio=0.3)
+"""Of races and balls where the file states none (makers' data sheets)."""

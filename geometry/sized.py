@@ -2,8 +2,8 @@
 
 Makers keep inner dimensions to themselves. Sizes are the pitch diameter in tenths of an inch (size
 25 has a pitch radius of 31.75 mm at all ratios, size 14 17.78; as in Schaeffler's TPI 275), and the
-ratio with the circular spline held is z1/(z2 − z1). Everything else is the kind's first design,
-scaled by the pitch radius.
+ratio with the circular spline held is z1/(z2 − z1). The wall follows from a catalogue's buckling torques.
+Everything else is the kind's first design, scaled by the pitch radius.
 """
 
 from __future__ import annotations
@@ -27,6 +27,9 @@ SIZES = Range(3, 200)
 """Catalogues go from 3 to 100; twice that is the largest built."""
 RATIOS = Range(30, 320)
 """As catalogues; with fewer teeth the rim must bend too far, with more a module is beyond making."""
+WALL_SHARE = 0.012
+"""Of the pitch radius. The tube then buckles at the torque that a catalogue gives for it: its 15 sizes
+ask for 0.0115 to 0.0125, at all ratios alike (docs/whole-gear.md)."""
 DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
 LOAD_SHARE = 0.04
@@ -72,6 +75,7 @@ def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
     inner = 2 * (module * (ratio - DEDENDUM) - flexspline["ring_thickness_mm"])
     flexspline["inner_diameter_mm"] = _rounded(inner, DIGITS + 1)
     why[("flexspline", "inner_diameter_mm")] = f"root m(z1/2 - {DEDENDUM:g}) less the ring"
+    _thin_walled(flexspline, first["flexspline"], pitch, why)
     part = module / first["gear"]["module_mm"]
     for table, key in (("gear", "flank_clearance_um"), ("bearing", "radial_clearance_um")):
         values[table][key] = _rounded(first[table][key] * part)
@@ -94,6 +98,18 @@ def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
         values[table][key] = int(assumed.value) if count else _rounded(assumed.value)
         why[(table, key)] = assumed.why
     return values, why
+
+
+def _thin_walled(flexspline: Table, first: Table, pitch: float, why: Why) -> None:
+    """The tube's wall of a catalogue, and a diaphragm in proportion to it."""
+    wall = WALL_SHARE * pitch
+    walls = first["diaphragm_thickness_mm"] / first["wall_thickness_mm"]
+    flexspline["wall_thickness_mm"] = _rounded(wall)
+    flexspline["diaphragm_thickness_mm"] = _rounded(walls * wall)
+    why[("flexspline", "wall_thickness_mm")] = (
+        f"{WALL_SHARE:g} of the pitch radius, from buckling torques of a catalogue"
+    )
+    why[("flexspline", "diaphragm_thickness_mm")] = f"{walls:g} walls"
 
 
 def _scaled(table: Table, location: Location, factor: float, was: float, why: Why) -> Any:

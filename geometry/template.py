@@ -7,6 +7,7 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
 from flexspline.geometry.toml_text import quoted
 
@@ -18,6 +19,8 @@ OPTIONAL: frozenset[Location] = frozenset(
     {
         ("shaft", "keyway"),
         ("material", "shaft"),
+        ("material", "circular_spline"),
+        ("material", "bearing"),
         ("gear", "rated_torque_Nm"),
         ("gear", "working_depth_mm"),
         ("gear", "circular_spline_diameter_mm"),
@@ -148,7 +151,12 @@ def first_values(kind: str) -> Table:
         "name": f"my {kind}",
         "flexspline": flexspline,
         "shaft": shaft,
-        "material": {"flexspline": _STEEL, "shaft": _STEEL},
+        "material": {
+            "flexspline": _STEEL,
+            "shaft": _STEEL,
+            "circular_spline": _STEEL,
+            "bearing": BEARING_STEEL.model_dump(exclude_none=True),
+        },
         "gear": {
             "module_mm": 0.2,
             "teeth_flexspline": 200,

@@ -22,9 +22,10 @@ from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.rated import rated_in_proportion, rated_torque
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
-from flexspline.pipeline.gear_model import BEARING_STEEL, CONFORMITY
-from flexspline.pipeline.gear_notes import both_press_N, inseparable, notes, ratcheting, warnings
+from flexspline.pipeline.gear_model import CONFORMITY
+from flexspline.pipeline.gear_notes import both_press_N, inseparable, notes, warnings
 from flexspline.pipeline.gear_terms import gear_terms
+from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 
@@ -38,7 +39,6 @@ LAWS = (
     Assumed("T1 over rated torque", T1_SHARE, "makers': 0.13 to 0.20"),
     Assumed("T2 over rated torque", T2_SHARE, "makers': 0.39 to 0.69"),
     Assumed("groove radius over ball diameter", CONFORMITY, "usual in deep groove bearings"),
-    Assumed("E of race and balls, MPa", BEARING_STEEL.youngs_modulus_MPa, "100Cr6"),
 )
 """What no key of the design file states."""
 CARRIES = 1e-3
@@ -61,6 +61,7 @@ class GearCurve:
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± T_L, in place of the backlash sum's terms (`pipeline.gear_terms`); empty where
         nobody asked.
+    buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube.
     ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces
         (`fea.gear.engagement`); None where nobody asked, or where they hold beyond a thousand rated torques.
     """
@@ -85,6 +86,7 @@ class GearCurve:
     ball_angle_deg: tuple[float, ...]
     ball_force_N: tuple[float, ...]
     terms_arcsec: Mapping[str, float] = field(default_factory=dict)
+    buckling_torque_Nm: float | None = None
     ratcheting_torque_Nm: float | None = None
 
 
@@ -110,11 +112,13 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             limit = Engagement(chain.model).limit(
                 rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
             )
-        warned, noted = ratcheting(limit, rated)
+        tube = tube_of(design)
+        warned, noted = largest_torques(limit, tube, rated)
         return replace(
             curve,
             terms_arcsec=terms,
-            ratcheting_torque_Nm=limit and float(f"{limit:.2g}"),  # found to 5 %
+            buckling_torque_Nm=None if tube is None else two_digits(tube.lower_edge_Nm),
+            ratcheting_torque_Nm=limit and two_digits(limit),  # found to 5 %
             warnings=(*curve.warnings, *warned),
             notes=(*curve.notes, *inseparable(terms), *noted),
         )
@@ -123,6 +127,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
         "flexspline": context.part("flexspline").revolved_key,
         "K_e_Nm_per_rad": K_e,  # as it was found: more time finds another
         "others": [design.gear, design.bearing, design.wave_generator, load],
+        "materials": [design.material.circular_spline, design.material.bearing],
     }
     return context.cache.get("gear", depends_on, solve)[0]
 

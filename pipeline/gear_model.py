@@ -23,6 +23,7 @@ from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.tooth import flank
@@ -40,8 +41,6 @@ FLANK_POINTS = 65
 """Of a drawn flank; a chord's error is the flank's curvature over 65² of its length, below 0.01 µm."""
 MOST_STATIONS = 128
 """Teeth in half a turn; of more, each stands for several. 50 for 100 teeth move K by 0.6 %."""
-BEARING_STEEL = Elastic(208e3, 0.3)
-"""100Cr6, of races and balls: E = 208 GPa (maker's data sheets)."""
 CONFORMITY = 0.52
 """Groove radius over ball diameter, usual in deep groove bearings (Harris and Kotzalas, chapter 2)."""
 GROOVE_SHARE = 0.3
@@ -95,14 +94,16 @@ def gear_model(
     groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
     ring, count = (shape.ring_start, shape.ring_end), places or PLACES
     face = face_places or FACE_PLACES[gear.tooth_face]
-    steel = Elastic.of(design.material.flexspline)
+    material = design.material
+    rigid = Elastic.of(material.circular_spline or material.flexspline)
+    races = Elastic.of(material.bearing or BEARING_STEEL)
     inside = gear.module_mm * gear.teeth_circular_spline / 2
     return GearModel(
         mesh,
-        _wave_generator(bearing, shape.inner_radius, play),
+        _wave_generator(bearing, shape.inner_radius, play, races),
         _rim(flexspline.without_holes(), pitch, ring, count, face),
-        _race(shape.inner_radius, bearing.race_thickness, ring, groove, count),
-        _spline(spline.ground, spline.outer, steel, inside, ring, face),
+        _race(shape.inner_radius, bearing.race_thickness, races, ring, groove, count),
+        _spline(spline.ground, spline.outer, rigid, inside, ring, face),
         pair_compliance(design),
         gear.teeth_flexspline,
         MOST_STATIONS,
@@ -135,17 +136,24 @@ def _spline(
 
 @lru_cache(KEPT)
 def _race(
-    outer_radius: float, thickness: float, seat: tuple[float, float], groove: float, count: int
+    outer_radius: float,
+    thickness: float,
+    material: Elastic,
+    seat: tuple[float, float],
+    groove: float,
+    count: int,
 ) -> Condensed:
     outline = race_outline(outer_radius, thickness, *seat, groove)
     places = places_along(*seat, count)
     with one_thread():
-        return condensed_race(outline, BEARING_STEEL, places, LAST_HARMONIC)
+        return condensed_race(outline, material, places, LAST_HARMONIC)
 
 
-def _wave_generator(bearing: FlexibleBearing, inner_radius: float, play: float) -> WaveGenerator:
+def _wave_generator(
+    bearing: FlexibleBearing, inner_radius: float, play: float, material: Elastic
+) -> WaveGenerator:
     hertz = ball_between_races(
-        bearing.ball_diameter, inner_radius - bearing.race_thickness, CONFORMITY, BEARING_STEEL
+        bearing.ball_diameter, inner_radius - bearing.race_thickness, CONFORMITY, material
     )
     return WaveGenerator(bearing.deflection, play, even(bearing.ball_count), hertz)
 
@@ -179,13 +187,17 @@ def drawn_flanks(design: Design) -> DrawnFlanks:
 
 
 def pair_compliance(design: Design) -> float:
-    """Of a tooth of the flexspline and one alike of the circular spline, at the pitch point [mm/N]."""
+    """Of a tooth of the flexspline and one as large of the circular spline, at the pitch point [mm/N]."""
     f, gear = design.flexspline, design.gear
     pitch = gear.module_mm * gear.teeth_flexspline / 2
-    material = Elastic.of(design.material.flexspline)
+    of = design.material
+    materials = Elastic.of(of.flexspline), Elastic.of(of.circular_spline or of.flexspline)
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
-    one = tooth(
-        lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
-        f.ring_width_mm, material,
+    teeth = (
+        tooth(
+            lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
+            f.ring_width_mm, each,
+        )
+        for each in materials
     )  # fmt: skip
-    return 2 * one + flank_contact(f.ring_width_mm, material)
+    return sum(teeth) + flank_contact(f.ring_width_mm, *materials)

@@ -15,6 +15,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import even
+from flexspline.pipeline.largest_torques import rounded
 
 LOW_RIM = 0.05
 """Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
@@ -42,7 +43,7 @@ def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[st
     preload_N = both_press_N(model, unloaded)
     if preload_N:
         lines.append(
-            f"teeth press on both flanks without torque, up to {_rounded(preload_N)} N each: "
+            f"teeth press on both flanks without torque, up to {rounded(preload_N)} N each: "
             f"{_why_both_press(design, model, unloaded)}"
         )
     if cuts := _cuts_in(model.mesh):
@@ -68,7 +69,7 @@ def _cuts_in(mesh: Mesh) -> str | None:
     shallow = f", or make the working depth less than {depth:.3g} mm"
     return (
         f"{mesh.flanks} flanks cut into each other from {degrees(clear):.0f}° off the major axis on, by up "
-        f"to {_rounded(-1e3 * front.min())} µm at {least:.0f}°: take the relieved shape or more clearance"
+        f"to {rounded(-1e3 * front.min())} µm at {least:.0f}°: take the relieved shape or more clearance"
         + (shallow if depth > SHALLOWEST * mesh.stroke else "")
     )
 
@@ -103,7 +104,7 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
     if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
         lines.append(
             f"straight flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major "
-            f"axis: relieved flanks are assumed, {_rounded(1e3 * mesh.largest_relief)} µm of each removed at "
+            f"axis: relieved flanks are assumed, {rounded(1e3 * mesh.largest_relief)} µm of each removed at "
             f"{degrees(mesh.reach):.0f}°"
         )
     if mesh.face == "relieved":
@@ -111,7 +112,7 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
         off = np.abs(mesh.closing(model.tooth_angles[:, None], outwards, along)).max()
         lines.append(
             "the rim opens as a cone: teeth that are shaped for it along their face are assumed, up to "
-            f'{_rounded(1e3 * off)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
+            f'{rounded(1e3 * off)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
         )
     if design.flexspline.teeth == "drawn" and mesh.flanks != "drawn":
         lines.append(
@@ -127,21 +128,6 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
     return lines
 
 
-def ratcheting(limit_Nm: float | None, rated_Nm: float) -> tuple[list[str], list[str]]:
-    """Warnings and notes on the torque at which no tooth is left; the shares are of docs/whole-gear.md."""
-    if limit_Nm is None:
-        return [], ["no torque was found at which teeth let go"]
-    warned = []
-    if limit_Nm < rated_Nm:
-        warned.append(
-            f"teeth let go at some {_rounded(limit_Nm)} N·m, below the rated torque of {rated_Nm:.4g} N·m"
-        )
-    return warned, [
-        "the ratcheting torque is an upper limit: only elastic parts yield in it; catalogues' gears ratchet "
-        "at a fiftieth (ratio 30) to a fifth (ratio 160) of it"
-    ]
-
-
 def inseparable(terms_arcsec: Mapping[str, float]) -> list[str]:
     """Where a clearance alone makes the free angle smaller."""
     if terms_arcsec["bearing_play"] >= 0:
@@ -150,7 +136,3 @@ def inseparable(terms_arcsec: Mapping[str, float]) -> list[str]:
         "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
         "bearing_play and tight_gear together"
     ]
-
-
-def _rounded(value: float) -> str:
-    return f"{float(f'{value:.2g}'):g}"

@@ -242,6 +242,14 @@ QUANTITIES: tuple[Quantity, ...] = (
         digits=2,
     ),
     Quantity(
+        "buckling_torque_Nm",
+        "buckling_torque_Nm",
+        "N·m",
+        "Buckling torque of the flexspline's tube, estimate",
+        "T_b",
+        digits=2,
+    ),
+    Quantity(
         "ratcheting_torque_Nm",
         "ratcheting_torque_Nm",
         "N·m",

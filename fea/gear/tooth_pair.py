@@ -92,7 +92,7 @@ def clamped(
     return float(-(c * middle[0] + s * middle[1]))
 
 
-def flank_contact(width: float, material: Elastic) -> float:
-    """Of the two flanks on each other [mm/N]: 4(1 − ν²)/(π E b), whatever the load."""
-    nu = material.poissons_ratio
-    return 4 * (1 - nu * nu) / (pi * material.youngs_modulus_MPa * width)
+def flank_contact(width: float, *materials: Elastic) -> float:
+    """Of two flanks on each other [mm/N]: the sum of 2(1 − ν²)/(π E b), whatever the load."""
+    soft = sum((1 - m.poissons_ratio**2) / m.youngs_modulus_MPa for m in materials)
+    return 2 * soft / (pi * width)

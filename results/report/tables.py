@@ -179,13 +179,21 @@ def _holes(count: int) -> str:
 
 
 def _materials(design: Design) -> list[list[str]]:
-    flexspline, shaft = design.material.flexspline, design.part("shaft").material
-    if flexspline == shaft:
-        return [["Material, both parts", _material(flexspline)]]
-    return [
-        ["Material, flexspline", _material(flexspline)],
-        ["Material, shaft", _material(shaft)],
-    ]
+    of = design.material
+    flexspline, shaft = of.flexspline, design.part("shaft").material
+    rows = (
+        [["Material, both parts", _material(flexspline)]]
+        if flexspline == shaft
+        else [
+            ["Material, flexspline", _material(flexspline)],
+            ["Material, shaft", _material(shaft)],
+        ]
+    )
+    if of.circular_spline:
+        rows.append(["Material, circular spline", _material(of.circular_spline)])
+    if of.bearing:
+        rows.append(["Material, races and balls", _material(of.bearing)])
+    return rows
 
 
 def _material(m: Material) -> str:

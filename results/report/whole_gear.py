@@ -25,7 +25,7 @@ from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 
 FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
-    "ratcheting_torque_Nm",
+    "buckling_torque_Nm", "ratcheting_torque_Nm",
 )  # fmt: skip
 """By their keys in result.json, in the order of the table."""
 

@@ -21,6 +21,8 @@ GROUPS: tuple[tuple[str, Location], ...] = (
     ("Shaft", ("shaft",)),
     ("Material of the flexspline", ("material", "flexspline")),
     ("Material of the shaft", ("material", "shaft")),
+    ("Material of the circular spline", ("material", "circular_spline")),
+    ("Material of races and balls", ("material", "bearing")),
     ("Gear", ("gear",)),
     ("Bearing", ("bearing",)),
     ("Wave generator", ("wave_generator",)),

@@ -40,6 +40,8 @@ def test_template_loads_with_its_optional_keys_too(kind: str) -> None:
     design = design_from(tomllib.loads(text))
     assert design.shaft.keyway
     assert design.material.shaft
+    assert design.material.circular_spline
+    assert design.material.bearing
     assert design.solver.edge_length_mm
 
 
@@ -48,8 +50,10 @@ def test_template_comments_every_key_of_the_schema(kind: str) -> None:
     keys = leaves(json_schema(), kind)
     assert {"wall_thickness_mm", "depth_mm", "edge_length_mm", "youngs_modulus_GPa"} < keys
     for key in keys - {"flexspline", "shaft", "material", "gear", "bearing", "load", "uncertainty"}:
-        if key in ("solver", "segment", "keyway", "wave_generator"):
-            assert re.search(rf"(?m)^(# )?\[+(shaft\.)?{key}\]+ +# \w", template(kind)), key
+        if key in ("solver", "segment", "keyway", "wave_generator", "circular_spline"):
+            assert re.search(
+                rf"(?m)^(# )?\[+((shaft|material)\.)?{key}\]+ +# \w", template(kind)
+            ), key
         else:
             assert re.search(rf"(?m)^(# )?{key} = .* # \S", template(kind)), key
 

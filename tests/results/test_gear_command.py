@@ -14,11 +14,13 @@ import flexspline
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.template import design_text
 from flexspline.pipeline.gear import LAWS, GearCurve
+from flexspline.pipeline.gear_model import pair_compliance
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+STEEL = {"name": "a steel", "youngs_modulus_GPa": 206.0, "poissons_ratio": 0.3}
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(
     # a shaft without holes is solved on its meridian: this is no test of tetrahedra
     {"shaft.bolt_count": 0, "gear.rated_torque_Nm": 20.0}
@@ -69,8 +71,15 @@ def test_what_is_stated_is_not_assumed(curve: GearCurve) -> None:
         "gear.circular_spline_diameter_mm", "gear.working_depth_mm",
         *(f"wave_generator.{key}" for key in (
             "deflection_mm", "race_thickness_mm", "ball_diameter_mm", "ball_count")),
+        "material.circular_spline.youngs_modulus_GPa", "material.bearing.youngs_modulus_GPa",
     ]  # fmt: skip
-    stated = DESIGN.changed({a.key: a.value for a in of_the_file})
+    stated = DESIGN.changed(
+        {a.key: a.value for a in of_the_file if not a.key.startswith("material.")}
+        | {
+            "material.circular_spline": STEEL,
+            "material.bearing": STEEL | {"youngs_modulus_GPa": 208.0},
+        }
+    )
     assert gear_assumptions(stated) == ()
     same = flexspline.gear(stated)
     assert same.K1_Nm_per_rad == pytest.approx(curve.K1_Nm_per_rad, rel=1e-6)
@@ -236,3 +245,32 @@ def test_a_clearance_that_makes_the_gap_smaller_is_explained() -> None:
     negative = short.terms_arcsec["bearing_play"] < 0
     assert negative == any("read bearing_play and tight_gear together" in n for n in short.notes)
     assert negative
+
+
+def test_the_tube_of_the_example_buckles_beyond_what_its_teeth_carry(curve: GearCurve) -> None:
+    """0.67 of Donnell's clamped tube, 1232 N·m by hand: r 19.4, t 0.4, L 20.65 mm, and CalculiX' 1248."""
+    assert curve.buckling_torque_Nm == pytest.approx(
+        0.67 * 1232, rel=0.02
+    )  # two digits are printed
+    strong = flexspline.gear(DESIGN.changed({"gear.rated_torque_Nm": 900.0}))
+    assert any("tube buckles" in line for line in strong.warnings)
+    assert not any("tube buckles" in line for line in curve.warnings)
+
+
+def test_materials_of_the_other_parts_count(curve: GearCurve) -> None:
+    """Aluminium races make K1 softer, a circular spline of it a little; what is stated is not assumed."""
+    aluminium = {"name": "EN AW-7075", "youngs_modulus_GPa": 71.0, "poissons_ratio": 0.33}
+    for key, least in (("bearing", 0.7), ("circular_spline", 0.8)):
+        found = flexspline.gear(DESIGN.changed({f"material.{key}": aluminium}))
+        assert least < found.K1_Nm_per_rad / curve.K1_Nm_per_rad < 0.99
+        assert any(a.key.startswith(f"material.{key}.") for a in curve.assumed)
+        assert not any(a.key.startswith(f"material.{key}.") for a in found.assumed)
+
+
+def test_teeth_of_two_materials_yield_as_the_mean_of_both() -> None:
+    """Two springs in series: compliance is linear in each one's 1/E."""
+    soft = {"name": "half", "youngs_modulus_GPa": 103.0, "poissons_ratio": 0.3}
+    one = pair_compliance(DESIGN)
+    assert pair_compliance(DESIGN.changed({"material.circular_spline": soft})) == pytest.approx(
+        1.5 * one
+    )

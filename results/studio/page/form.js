@@ -113,10 +113,11 @@ export class Form {
     if (at === "shaft.keyway") {
       return el("p", { class: "actions" }, button("Remove keyway", (t) => delete t.shaft.keyway));
     }
-    if (at === "material.flexspline" && !state.tables.material.shaft) {
-      return el("p", { class: "actions" }, button("Other material for the shaft", (t) => {
-        t.material.shaft = { ...t.material.flexspline };
-      }));
+    if (at === "material.flexspline") {
+      const others = [["shaft", "the shaft"], ["circular_spline", "the circular spline"], ["bearing", "races and balls"]];
+      const made = others.filter(([key]) => !state.tables.material[key]).map(([key, name]) =>
+        button(`Other material for ${name}`, (t) => { t.material[key] = { ...t.material.flexspline }; }));
+      return el("p", { class: "actions" }, ...made);
     }
     return null;
   }

@@ -1,0 +1,60 @@
+"""Torque at which the tube between ring and bottom buckles, by Donnell's closed form.
+
+Donnell, Stability of thin-walled tubes under torsion, NACA Report 479 (1933); in this form in Roark's
+Formulas for Stress and Strain, 7th ed., table 15.2. Tests lie below it: their lower edge is 0.67 of the
+theory (NASA SP-8007). Elastic, and without the oval shape that the wave generator gives the tube.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import Literal
+
+from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.geometry.shapes import Cup, Hat
+
+LOWER_EDGE_OF_TESTS = 0.67
+"""Measured over theory: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
+Ends = Literal["hinged", "clamped"]
+TERMS: dict[Ends, tuple[float, float, float]] = {
+    "hinged": (1.27, 9.64, 0.466),
+    "clamped": (-2.39, 96.9, 0.605),
+}
+"""a, b, c of a + √(b + c H^1.5)."""
+
+
+@dataclass(frozen=True)
+class Tube:
+    """Middle radius, wall, free length [mm]."""
+
+    radius: float
+    wall: float
+    length: float
+    material: Elastic
+
+    @classmethod
+    def between(cls, flexspline: Cup | Hat, material: Elastic) -> Tube | None:
+        """Diaphragm and the ring's shoulder; None where they meet."""
+        length = flexspline.shoulder_start - flexspline.diaphragm_thickness_mm
+        wall = flexspline.wall_thickness_mm
+        if length <= wall:
+            return None
+        return cls(flexspline.inner_radius + wall / 2, wall, length, material)
+
+    def torque_Nm(self, ends: Ends) -> float:
+        """Of a perfect tube."""
+        E, nu = self.material.youngs_modulus_MPa, self.material.poissons_ratio
+        H = sqrt(1 - nu * nu) * self.length**2 / (self.wall * self.radius)
+        a, b, c = TERMS[ends]
+        stress = E / (1 - nu * nu) * (self.wall / self.length) ** 2 * (a + sqrt(b + c * H**1.5))
+        return stress / self.stress_MPa(1.0)
+
+    @property
+    def lower_edge_Nm(self) -> float:
+        """Of a real tube: diaphragm and ring clamp it, as benchmarks/tube_buckling.py shows."""
+        return LOWER_EDGE_OF_TESTS * self.torque_Nm("clamped")
+
+    def stress_MPa(self, torque_Nm: float) -> float:
+        """Shear in the wall."""
+        return torque_Nm * NMM_PER_NM / (2 * pi * self.radius**2 * self.wall)
