@@ -19,9 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
     Posterior,
     posterior_of,
 )
-from flexspline.pipeline.diagnosis.sweep.regressors import (
-    NOISE_WINDOWS,
-)
+from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS, Regressor
 
 SOFT = "stiffness_hardening"
 """The elastic cause that is not in the measured compliance."""
@@ -105,8 +103,13 @@ class SweepFit:
         widest = friction.widest_arcsec(self.elements()[FRICTION], self.measured_rig())
         return max(widest, self.magnitudes()[FRICTION])
 
-    def magnitude_stds(self) -> dict[str, float]:
-        """Their standard deviations by the posterior, to first order."""
+    @property
+    def regressors(self) -> list[Regressor]:
+        """The terms fitted."""
+        return [self.evidence.terms[i] for i in self.posterior.terms]
+
+    def magnitude_slopes(self) -> dict[str, np.ndarray]:
+        """(p,) of each magnitude per unit of each amplitude, in the posterior's order; zeros have none."""
         at_mean = self.magnitudes()
         slope = {c: np.zeros(len(self.posterior.mean)) for c in at_mean}
         std = np.sqrt(np.diag(self.posterior.covariance))
@@ -115,7 +118,11 @@ class SweepFit:
             step[j] = SLOPE_STEP * std[j]
             for c, value in self.magnitudes(self.posterior.mean + step).items():
                 slope[c][j] = (value - at_mean[c]) / step[j]
-        return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slope.items()}
+        return slope
+
+    def magnitude_stds(self, slopes: dict[str, np.ndarray]) -> dict[str, float]:
+        """Their standard deviations by the posterior, to first order."""
+        return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slopes.items()}
 
     def added(self, owner: str) -> np.ndarray:
         """(n,) angle [arcsec] that all terms of an owner add, and what friction ahead of the teeth does."""

@@ -12,10 +12,12 @@ from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.leakage import effect_size, leaked
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 
 SHAPE_NATS = 3.0
-"""Sets of shapes count in a magnitude's doubt by exp(−nats/3): no shape is exactly the gear's."""
+"""Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
+the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
 """Sets that count by less than e^−6 = 0.25 % are left out."""
 CANCELLED_DOUBT = 0.003
@@ -101,20 +103,34 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         }.values(),
         key=lambda c: -c.score,
     )[:MOST_SHAPES]
-    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * SHAPE_NATS]
-    weight = np.exp([(c.score - identified.best.score) / SHAPE_NATS for c in alike])
+    nats = _shape_nats(identified)
+    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
+    weight = np.exp([(c.score - identified.best.score) / nats for c in alike])
     weight /= weight.sum()
     each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
     best = identified.fit.magnitudes()
-    own = identified.fit.magnitude_stds()
+    slopes = identified.fit.magnitude_slopes()
+    own, of_others = identified.fit.magnitude_stds(slopes), leaked(identified.fit, slopes)
     std = {}
     for cause in identified.named:
         values = np.array([m[cause] for m in each])
         spread = float(np.sqrt(weight @ (values - best[cause]) ** 2))
         floor = known_causes()[cause].shape_doubt * abs(best[cause])
         cancelled = CANCELLED_DOUBT * _cancelled(identified, cause, best[cause])
-        std[cause] = hypot(own[cause], spread, floor, cancelled)
+        std[cause] = hypot(own[cause], spread, floor, cancelled, of_others[cause])
     return best, std
+
+
+def _shape_nats(identified: Identification) -> float:
+    """Nats by which one set of shapes is better than another, though neither is the gear's.
+
+    What a law leaves of its best shape, a share s of its length L in the noise's deviations, is worth
+    (s·L)²/2.
+    """
+    doubts = [
+        known_causes()[c].shape_doubt * effect_size(identified.fit, c) for c in identified.named
+    ]
+    return max(SHAPE_NATS, float(np.square(doubts).sum()) / 2)
 
 
 def _cancelled(identified: Identification, cause: str, magnitude: float) -> float:

@@ -1,0 +1,73 @@
+"""What the misfit of one cause's shape adds to the sizes of the others, which take up what they can of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+
+MISFIT = 2.0
+"""Rms that the best shape leaves of a law, over the doubt of its size: 1.4 of a rate's, 2 of a creep's."""
+
+
+def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
+    """Deviation of each cause's magnitude, in its unit, by the others' shapes.
+
+    A gear's law lies between the shapes that are tried. Each other shape of a cause, of the size found, is
+    fitted by the set as it is: the set leaves d of it, and other causes take up e. A law that differs from
+    the best shape in this direction, by the share of its rms that the doubt of its shape is, moves them by
+    e·doubt·rms/|d|, by e at the most. Of all directions this is the root mean square.
+
+    Parameters: slopes, of each magnitude for each amplitude (`SweepFit.magnitude_slopes`).
+    """
+    evidence, posterior = fit.evidence, fit.posterior
+    b, owners = posterior.base_count, _owners(fit)
+    causes = [c for c in dict.fromkeys(owners[b:]) if not c.startswith("?")]
+    found = {c: 0.0 for c in (*causes, *fit.elements())}
+    if len(found) < 2:
+        return found
+    at = np.concatenate([np.arange(t.at.start, t.at.stop) for t in fit.regressors])
+    model = np.hstack([evidence.base, evidence.x[:, at]])
+    scale = np.concatenate([np.ones(b), evidence.scale[at]])
+    inverse = posterior.covariance / np.outer(scale, scale)
+    for cause in causes:
+        mine = owners == cause
+        size = effect_size(fit, cause)
+        others = [
+            t.at.start
+            for t in evidence.terms
+            if t.owner == cause and t.at.stop == t.at.start + 1 and t.at.start not in at
+        ]
+        tried = evidence.x[:, others]
+        length = np.linalg.norm(tried, axis=0)
+        tried = tried[:, length > 0] * (size / length[length > 0])
+        if tried.shape[1] == 0:
+            continue
+        taken = inverse @ (model.T @ tried)
+        left = np.linalg.norm(tried - model @ taken, axis=0)
+        doubt = MISFIT * known_causes()[cause].shape_doubt * size
+        moved = (taken * scale[:, None])[~mine] * np.minimum(1.0, doubt / np.maximum(left, 1e-12))
+        for other in found:
+            if other != cause:
+                error = slopes[other][~mine] @ moved
+                found[other] = float(np.hypot(found[other], np.sqrt(np.mean(error**2))))
+    return found
+
+
+def effect_size(fit: SweepFit, cause: str) -> float:
+    """Length of a cause's effect over the rows, in deviations of the noise."""
+    evidence, total = fit.evidence, np.zeros(len(fit.evidence.y))
+    amplitudes = fit.posterior.amplitudes(evidence)
+    for term, amplitude in zip(fit.regressors, amplitudes, strict=True):
+        if term.owner == cause:
+            total += evidence.x[:, term.at] @ (amplitude / evidence.scale[term.at])
+    return float(np.linalg.norm(total))
+
+
+def _owners(fit: SweepFit) -> np.ndarray:
+    """(p,) owner of each amplitude; empty of the calibration's."""
+    owners = [""] * fit.posterior.base_count
+    for t in fit.regressors:
+        owners += [t.owner] * (t.at.stop - t.at.start)
+    return np.array(owners)
