@@ -18,7 +18,10 @@ from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: one of several by more, as the
-others' misfit may feed it. Not so where that set has a nuisance term in its place: something is there."""
+others' misfit may feed it."""
+STAND_IN_NATS = 3.0
+"""The same over a set with a nuisance term in its place: something is there, and of two that explain it alike
+the nuisance term, which costs 4.5 more, is not the one."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
@@ -69,7 +72,10 @@ def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification
         only = len(nats) == 1 and not beside
         weak = [
             c for c, e in nats.items()
-            if e < (NAMING_NATS if only or _stands_in(evidence, best, without[c]) else SECOND_NATS)
+            if e < (
+                STAND_IN_NATS if _stands_in(evidence, best, without[c])
+                else NAMING_NATS if only else SECOND_NATS
+            )
         ]  # fmt: skip
         if not weak:
             break

@@ -14,6 +14,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     steadied,
     stops,
 )
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_program import (
     deadband_Nm,
     ramp_s,
@@ -37,7 +38,7 @@ Made = Iterator[tuple[str, str, np.ndarray]]
 
 def _steady(rig: Rig) -> np.ndarray:
     """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
-    return steadied(rig.history, deadband_Nm(rig.history)) / rig.torque_Nm
+    return less_jitter(rig.history).torque_Nm / rig.torque_Nm
 
 
 def over_torque(rig: Rig) -> Made:
