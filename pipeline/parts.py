@@ -10,7 +10,7 @@ from typing import Any
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.swept import can_be_swept
+from flexspline.fea.solid.swept import can_be_swept, goes_about_axis
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Design
@@ -81,7 +81,7 @@ class PartModel:
         """Of its first, coarse mesh."""
         edge = self.context.design.solver.edge_length_mm
         spec = first_spec(self.part, edge)
-        if edge is None and self.name == "shaft" and not can_be_swept(self.part):
+        if edge is None and self.name == "shaft" and not goes_about_axis(self.part):
             return spec.scaled(UNSWEPT_COARSER)
         return spec
 

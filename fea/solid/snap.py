@@ -39,7 +39,7 @@ def snap_to_surfaces(
     out = points.copy()
     for owners, nodes in _nodes_by_surfaces(faces, facet_surface).items():
         group = [surfaces[i] for i in owners]
-        moved, settled = _common_point(points[nodes], group)
+        moved, settled = common_point(points[nodes], group)
         fine = settled & (np.linalg.norm(moved - points[nodes], axis=1) <= limit)
         out[nodes[fine]] = moved[fine]
         if len(group) > 1 and not fine.all():
@@ -82,7 +82,7 @@ def _nodes_by_surfaces(
     return {those: nodes[group.ravel() == k] for k, those in enumerate(owners)}
 
 
-def _common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
+def common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
     """Alternating projections, and whether each point settled on all surfaces."""
     moved = points
     for _ in range(ROUNDS if len(group) > 1 else 1):
@@ -100,18 +100,20 @@ def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -
     others = [s for s in group if s not in planes]
     if not others:
         return points
-    targets = [_common_point(points, [s, *planes])[0] for s in others]
+    targets = [common_point(points, [s, *planes])[0] for s in others]
     away = np.array([np.linalg.norm(t - points, axis=1) for t in targets])
     best = away.argmin(axis=0)
     chosen = np.array(targets)[best, np.arange(len(points))]
     return np.where((away.min(axis=0) <= limit)[:, None], chosen, points)
 
 
-def undo_inverted(raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray) -> np.ndarray:
+def undo_inverted(
+    raw: np.ndarray, snapped: np.ndarray, tets: np.ndarray, passes: int = MOST_PASSES
+) -> np.ndarray:
     """Take back the moves of nodes whose tetrahedra they flattened (below `FLATTENED`)."""
     before = signed_volumes(raw, tets)
     out = snapped.copy()
-    for _ in range(MOST_PASSES):
+    for _ in range(passes):
         bad = signed_volumes(out, tets) < FLATTENED * before
         if not bad.any():
             return out

@@ -19,6 +19,7 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.solid.layered import layered_edges, layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
@@ -35,6 +36,7 @@ from flexspline.fea.solid.swept_sizing import (
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.surfaces import Surface, part_surfaces
 
 LARGEST_STEP = radians(10)
@@ -56,8 +58,8 @@ def swept_mesh(
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
-    Holes that are not in a plain column, and a keyway that `block_of` cannot place, need a mesher.
-    So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
+    A shaft with holes that are not in a plain column, or a keyway that `block_of` cannot place, is swept along
+    the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
     part, a volume or a patch area that is not its own, a meridian that cannot be triangulated.
 
     Raises
@@ -70,6 +72,8 @@ def swept_mesh(
     column = column_of(part)
     block = _block_of(part, column)
     try:
+        if not goes_about_axis(part):
+            return layered_mesh(part, sector_deg, spec, most_elements)
         copies = half_holes(part, sector_deg) if column else 1
         wedge = radians(sector_deg) / copies
         polar, tets, bend = _prisms(
@@ -83,6 +87,11 @@ def swept_mesh(
 
 
 def can_be_swept(part: Part) -> bool:
+    """Whether a sweep is tried: about the axis, or, of shafts, along it."""
+    return goes_about_axis(part) or isinstance(part.shape, Shaft)
+
+
+def goes_about_axis(part: Part) -> bool:
     """Whether the part is a body of revolution, or one with holes in a plain column and a plain keyway."""
     column = column_of(part)
     if part.bolts is not None and column is None:
@@ -248,6 +257,8 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
 
     The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
     """
+    if not goes_about_axis(part):
+        return layered_edges(part, sector_deg, spacing)
     outline, column = part.meridian, column_of(part)
     block = _block_of(part, column)
     sector = radians(sector_deg)

@@ -1,0 +1,74 @@
+"""Edges of a tetrahedral mesh's boundary where two surfaces of a part meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.fea.solid.imprint import SMOOTH
+from flexspline.geometry.outline import SAME, distance
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface, Swept
+
+INSIDE_CORNER = 0.1
+"""Sine of the angle by which a facet must rise over its neighbour's plane: chords of a hole's wall rise less."""
+
+
+@dataclass(frozen=True)
+class Seams:
+    """Edges (e, 2) of mesh nodes between two surfaces (e, 2), none of them a plane of symmetry.
+
+    Attributes
+    ----------
+    sharp : mask (e,), where the surfaces meet at an angle or the patch changes.
+    singular : mask (e,), where torsional stress is singular: inside corners and edges of patches.
+    revolved : mask (e,), circles about the axis.
+    """
+
+    nodes: np.ndarray
+    surfaces: np.ndarray
+    sharp: np.ndarray
+    singular: np.ndarray
+    revolved: np.ndarray
+
+
+def seams_of(
+    points: np.ndarray, facets: np.ndarray, facet_surface: np.ndarray, surfaces: Sequence[Surface]
+) -> Seams:
+    """Seams of a closed boundary: facets (k, 3), outward, of points (n, 3) [mm], each on a surface (k,)."""
+    n = len(points)
+    sides = facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    order = np.argsort(sides.min(axis=1).astype(np.int64) * n + sides.max(axis=1), kind="stable")
+    one, other = order[0::2], order[1::2]
+    on = np.column_stack([facet_surface[one // 3], facet_surface[other // 3]])
+    mirror = np.array([s.patch in (SYMMETRY_START, SYMMETRY_END) for s in surfaces])
+    kept = (on[:, 0] != on[:, 1]) & ~mirror[on].any(axis=1)
+    one, other, on = one[kept], other[kept], on[kept]
+    smooth, patches, revolved = _pairs(surfaces)
+    changes = patches[on[:, 0], on[:, 1]]
+    corner = points[facets[one // 3]]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    tip = points[facets[other // 3, (other % 3 + 2) % 3]] - corner[:, 0]
+    rise = (normal * tip).sum(axis=1)
+    size = np.linalg.norm(normal, axis=1) * np.linalg.norm(tip, axis=1)
+    bent = ~smooth[on[:, 0], on[:, 1]]
+    return Seams(
+        sides[one], on, bent | changes, changes | (bent & (rise > INSIDE_CORNER * size)),
+        revolved[on[:, 0], on[:, 1]],
+    )  # fmt: skip
+
+
+def _pairs(surfaces: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each two surfaces: whether they join smoothly, have different patches, are both revolved."""
+    n = len(surfaces)
+    smooth, patches, revolved = (np.zeros((n, n), bool) for _ in range(3))
+    for i, a in enumerate(surfaces):
+        for j, b in enumerate(surfaces):
+            patches[i, j] = a.patch != b.patch
+            if isinstance(a, Swept) and isinstance(b, Swept):
+                revolved[i, j] = True
+                if distance(a.segment.end, b.segment.start) < SAME:
+                    tangents = a.segment.tangent(1) @ b.segment.tangent(0)
+                    smooth[i, j] = smooth[j, i] = tangents > 1 - SMOOTH
+    return smooth, patches, revolved

@@ -1,0 +1,252 @@
+"""A shaft as layers along the axis, each with one cross-section: prisms over one plan for all of them.
+
+The plan has every line of every cross-section as mesh edges; a layer keeps the prisms inside its own. A fillet
+is a layer whose height follows the arc.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, hypot, sqrt
+
+import numpy as np
+
+from flexspline.fea.solid.plan import Plan, triangulated
+from flexspline.fea.solid.plan_curves import Arc, Curve, Line
+from flexspline.geometry.outline import SAME
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import BoltCircle, Shaft
+
+RING_STEP = np.radians(20)
+"""Largest edge about the axis: parabolas of 20° lose 2e-5 of a circle's area."""
+HOLE_STEP = np.radians(22.5)
+"""The same about a hole's axis, before the elements there are made as short as is asked."""
+CORE = 0.4
+"""Of the least radius at which something happens: within it, a plan that reaches the axis is a fan."""
+LAYERS_PER_FAR = 0.5
+"""Of the grading's largest edge: layers are at most twice as high, and halved afterwards where that is asked."""
+SUNK = 0.5
+"""Of the fillet's radius: how far the sharp corner under it moves into the material, so that no edge of
+the mesh is a tangent of the arc."""
+SUNK_OF_NEXT = 0.3
+"""Of the distance to the next node inwards and downwards, at most."""
+
+
+@dataclass(frozen=True)
+class Fillet:
+    """In the corner (`r`, `z`) [mm], of this `radius`; above the corner (`up` 1) or below it (-1)."""
+
+    r: float
+    z: float
+    radius: float
+    up: int
+
+    @property
+    def far(self) -> float:
+        """Its largest radius about the axis [mm]."""
+        return self.r + self.radius
+
+    @property
+    def middle(self) -> float:
+        """Radius of the arc's middle [mm]."""
+        return self.far - self.radius * sqrt(0.5)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Lower and upper end, z [mm]."""
+        low, high = sorted((self.z, self.z + self.up * self.radius))
+        return low, high
+
+    def height(self, r: np.ndarray) -> np.ndarray:
+        """z of the arc [mm] at radii from `r` to `far`."""
+        across = np.clip(self.far - r, 0.0, self.radius)
+        return self.z + self.up * (self.radius - np.sqrt(self.radius**2 - across**2))
+
+
+def fillets_of(shape: Shaft) -> list[Fillet]:
+    """Those of a shaft, from the flange on."""
+    if shape.fillet_mm <= SAME:
+        return []
+    found, z = [], 0.0
+    for below, above in pairwise(shape.segment):
+        z += below.length_mm
+        a, b = below.outer_diameter_mm / 2, above.outer_diameter_mm / 2
+        if abs(a - b) > SAME:
+            found.append(Fillet(min(a, b), z, shape.fillet_mm, 1 if b < a else -1))
+    return found
+
+
+@dataclass(frozen=True)
+class Layers:
+    """The plan's lines and the levels of a shaft's sector.
+
+    `tubes`: z range, bore and outer radius of every segment [mm].
+    """
+
+    part: Part
+    sector: float
+    tubes: tuple[tuple[float, float, float, float], ...]
+    fillets: tuple[Fillet, ...]
+
+    @classmethod
+    def of(cls, part: Part, sector_rad: float) -> Layers:
+        """Of a shaft."""
+        assert isinstance(part.shape, Shaft)
+        tubes, z = [], 0.0
+        for i, s in enumerate(part.shape.segment):
+            top = part.length if i == len(part.shape.segment) - 1 else z + s.length_mm
+            tubes.append((z, top, s.inner_diameter_mm / 2, s.outer_diameter_mm / 2))
+            z = top
+        return cls(part, sector_rad, tuple(tubes), tuple(fillets_of(part.shape)))
+
+    @property
+    def radii(self) -> list[float]:
+        """Of all rings [mm], rising; the first is the bore's, or the core's."""
+        found = {r for *_, bore, outer in self.tubes for r in (bore, outer)}
+        found |= {r for f in self.fillets for r in (f.middle, f.far)}
+        rising = _distinct(found)
+        if rising[0] > 0:
+            return rising
+        least = rising[1]
+        if self.part.bolts is not None:
+            least = min(least, self.part.bolts.radius - self.part.bolts.hole_radius)
+        if self.part.keyway is not None:
+            least = min(least, self.part.keyway.floor)
+        return [CORE * least, *rising[1:]]
+
+    @property
+    def solid(self) -> bool:
+        """Whether material reaches the axis somewhere."""
+        return any(bore == 0 for *_, bore, _ in self.tubes)
+
+    def levels(self, far: float) -> list[float]:
+        """z [mm] of all cross-sections' ends, and between them no farther apart than `far` asks."""
+        grip = self.part.shape.grip_length_mm if isinstance(self.part.shape, Shaft) else 0.0
+        ends = {0.0, self.part.hole_depth, self.part.length - grip, *(t[1] for t in self.tubes)}
+        ends |= {z for f in self.fillets for z in f.span}
+        if self.part.keyway is not None:
+            ends.add(self.part.keyway.start)
+        found = [0.0]
+        whole = {f.span for f in self.fillets}
+        for a, b in pairwise(_distinct(ends)):
+            arc = any(low < b - SAME and a + SAME < high for low, high in whole)
+            count = 1 if arc else ceil(LAYERS_PER_FAR * (b - a) / far)
+            found += [a + (b - a) * k / count for k in range(1, count)] + [b]
+        return found
+
+    def curves(self) -> list[Curve]:
+        """The plan's lines."""
+        radii, sector = self.radii, self.sector
+        ends = [(radii[0], radii[-1], a) for a in (0.0, sector)]
+        found: list[Curve] = [
+            Line((a * np.cos(t), a * np.sin(t)), (b * np.cos(t), b * np.sin(t))) for a, b, t in ends
+        ]
+        found += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
+        if self.part.bolts is not None:
+            found += _holes(self.part.bolts, sector)
+        slot = self.part.keyway
+        if slot is not None:
+            outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME)
+            half, floor = slot.half_width, slot.floor
+            found.append(Line((floor, 0.0), (floor, half)))
+            found.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
+        return found
+
+    def plan(self, smallest_mm: float) -> Plan:
+        """Its triangles; with a fan about the axis where material reaches it.
+
+        Raises
+        ------
+        MeshingError
+        """
+        made = triangulated(self.curves(), self.sector, smallest_mm)
+        if not self.solid:
+            return made
+        rim = np.flatnonzero(made.points[:, 0] < self.radii[0] * (1 + SAME))
+        rim = rim[np.argsort(made.points[rim, 1])]
+        axis = np.full(len(rim) - 1, len(made.points))
+        fan = np.column_stack([axis, rim[:-1], rim[1:]])
+        # φ of a point on the axis is any
+        return Plan(np.vstack([made.points, (0.0, 0.0)]), np.vstack([made.triangles, fan]))
+
+    def within(self, plan: Plan, low: float, high: float) -> np.ndarray:
+        """Mask (m,) of the plan's triangles that the layer from `low` to `high` [mm] is made of.
+
+        Corners' mean coordinates decide: a triangle of a line's chord and a point beyond lies beyond.
+        """
+        corner = plan.points[plan.triangles]
+        r, z = corner[:, :, 0].mean(axis=1), (low + high) / 2
+        _, _, bore, outer = next(t for t in self.tubes if z < t[1])
+        for f in self.fillets:
+            if f.span[0] < z < f.span[1]:
+                outer = f.far
+        x = corner[:, :, 0] * np.cos(corner[:, :, 1])
+        y = corner[:, :, 0] * np.sin(corner[:, :, 1])
+        there = (r > bore) & (r < outer)
+        bolts, slot = self.part.bolts, self.part.keyway
+        if bolts is not None and z < self.part.hole_depth:
+            for a, b in bolts.centres:
+                away = np.hypot(x - a, y - b).mean(axis=1)
+                there &= away > bolts.hole_radius + SAME
+        if slot is not None and z > slot.start:
+            there &= (x.mean(axis=1) < slot.floor) | (y.mean(axis=1) > slot.half_width)
+        return there
+
+    def prisms(self, smallest_mm: float, far: float) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes (n, 3) as (r, φ, z) and prisms (m, 6); nodes within are still in the fillets' corners.
+
+        Raises
+        ------
+        MeshingError
+        """
+        plan, z = self.plan(smallest_mm), np.array(self.levels(far))
+        n, k = len(plan.points), len(z)
+        number = np.arange(n * k).reshape(n, k)
+        nodes = [np.column_stack([np.repeat(plan.points, k, axis=0), np.tile(z, n)])]
+        found, count = [], n * k
+        for j in range(k - 1):
+            kept = plan.triangles[self.within(plan, z[j], z[j + 1])]
+            low, high = number[:, j].copy(), number[:, j + 1].copy()
+            for f in self.fillets:
+                if f.span[0] - SAME < z[j] < f.span[1] - SAME:
+                    on = np.flatnonzero((plan.points[:, 0] > f.r + SAME) & (plan.points[:, 0] < f.far + SAME))
+                    arc, foot = (high, low) if f.up > 0 else (low, high)
+                    end = plan.points[on, 0] > f.far - SAME
+                    arc[on] = np.where(end, foot[on], count + np.arange(len(on)))
+                    r = plan.points[on, 0]
+                    nodes.append(np.column_stack([plan.points[on], f.height(r)]))
+                    count += len(on)
+            found.append(np.hstack([low[kept], high[kept]]))
+        return np.vstack(nodes), np.vstack(found)
+
+
+def _holes(bolts: BoltCircle, sector: float) -> list[Curve]:
+    """Of the sector: half a hole at angle 0 and at its end, whole ones between."""
+    found: list[Curve] = []
+    for x, y in bolts.centres:
+        angle = float(np.arctan2(y, x)) % (2 * np.pi)
+        if angle > sector + SAME:
+            continue
+        start, sweep = angle, 2 * np.pi
+        if angle < SAME:
+            start, sweep = 0.0, np.pi
+        elif angle > sector - SAME:
+            start, sweep = angle - np.pi, np.pi
+        half = sweep / 2  # two arcs: a circle's parameter has one beginning
+        for k in (0, 1):
+            found.append(Arc((x, y), bolts.hole_radius, start + k * half, half, HOLE_STEP / half))
+    return found
+
+
+def _distinct(values: set[float]) -> list[float]:
+    found: list[float] = []
+    for v in sorted(values):
+        if not found or v > found[-1] + SAME:
+            found.append(v)
+    return found
+
+
+def reach(f: Fillet) -> float:
+    """Of a corner from its arc [mm]."""
+    return hypot(f.radius, f.radius)
