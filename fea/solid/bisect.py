@@ -1,9 +1,9 @@
-"""Tetrahedra halved at their longest edges until none is longer than is asked, conforming throughout.
+"""Edges of tetrahedra halved, with all that they belong to.
 
-All edges are ranked by length, of equal ones by number. A marked edge asks for the longest edge of each of its
-tetrahedra too (Rivara, Int. J. Numer. Methods Eng. 20, 1984, 745-756); then each tetrahedron is halved at its highest
-marked edge, and its halves at theirs. What becomes of a face follows from its own edges, so that both its
-tetrahedra, and the boundary's facet, are cut alike.
+Edges are ranked by length, of equal ones by number. Each tetrahedron is halved at the highest of its edges
+that are asked for, as in bisection of longest edges (Rivara, Int. J. Numer. Methods Eng. 20, 1984, 745-756),
+and its halves at theirs. What becomes of a face follows from its own edges alone: both its tetrahedra, and
+the boundary's facet, are cut alike.
 """
 
 from __future__ import annotations
@@ -37,34 +37,29 @@ class Simplices:
 def halved(
     mesh: Simplices, edges: np.ndarray, lengths: np.ndarray, asked: np.ndarray
 ) -> tuple[Simplices, np.ndarray]:
-    """The mesh with those of its edges (e, 2) that are `asked` (e,), and what these ask for, halved.
+    """The mesh with those of its edges (e, 2) halved that are `asked` (e,); `lengths` (e,) rank them.
 
     Also the edges (j, 2) that were: the nodes between are numbered from `mesh.nodes` on, in their order.
     """
     n = mesh.nodes
     key = _keys(edges, n)
     rising = np.argsort(key)
-    edges, lengths, asked, key = edges[rising], lengths[rising], asked[rising], key[rising]
+    edges, lengths, key = edges[rising], lengths[rising], key[rising]
+    halve = np.asarray(asked)[rising]
     order = np.lexsort((np.arange(len(key)), lengths))
     rank = np.empty(len(key), np.int64)
     rank[order] = np.arange(len(key))
-    mine = np.searchsorted(key, _keys(mesh.tets[:, PAIRS], n))
-    longest = np.take_along_axis(mine, rank[mine].argmax(axis=1)[:, None], axis=1)[:, 0]
-    marked = asked.copy()
-    while True:
-        more = longest[marked[mine].any(axis=1)]
-        if marked[more].all():
-            break
-        marked[more] = True
-    cut = np.flatnonzero(marked)
+    cut = np.flatnonzero(halve)
     middle = np.full(len(key), -1)
     middle[cut] = n + np.arange(len(cut))
 
     def marked_rank(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ranks of pairs of nodes, -1 where they are not to be halved, and the nodes between."""
-        old = (pairs < n).all(axis=-1)
-        at = np.minimum(np.searchsorted(key, _keys(np.where(old[..., None], pairs, 0), n)), len(key) - 1)
-        there = old & (key[at] == _keys(pairs, n)) & marked[at]
+        old = np.asarray((pairs < n).all(axis=-1))
+        at = np.minimum(
+            np.searchsorted(key, _keys(np.where(old[..., None], pairs, 0), n)), len(key) - 1
+        )
+        there = old & (key[at] == _keys(pairs, n)) & halve[at]
         return np.where(there, rank[at], -1), middle[at]
 
     tets, _ = _cut(mesh.tets, PAIRS, marked_rank)
@@ -100,5 +95,3 @@ def _cut(
 def _keys(pairs: np.ndarray, nodes: int) -> np.ndarray:
     """One number for each pair (..., 2) of nodes."""
     return pairs.min(axis=-1).astype(np.int64) * nodes + pairs.max(axis=-1)
-
-

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.fea.solid.imprint import SMOOTH
-from flexspline.geometry.outline import SAME, distance
-from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface, Swept
+from flexspline.geometry.outline import SAME, Segment, distance
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Surface, Swept
 
 INSIDE_CORNER = 0.1
-"""Sine of the angle by which a facet must rise over its neighbour's plane: chords of a hole's wall rise less."""
+"""Sine of the angle by which a facet must rise over its neighbour's plane: an inside corner, not rounding."""
 
 
 @dataclass(frozen=True)
@@ -71,4 +71,15 @@ def _pairs(surfaces: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray, np.ndar
                 if distance(a.segment.end, b.segment.start) < SAME:
                     tangents = a.segment.tangent(1) @ b.segment.tangent(0)
                     smooth[i, j] = smooth[j, i] = tangents > 1 - SMOOTH
+            elif isinstance(a, Swept) and isinstance(b, Plane):
+                smooth[i, j] = smooth[j, i] = _lies_in(a.segment, b)
     return smooth, patches, revolved
+
+
+def _lies_in(segment: Segment, plane: Plane) -> bool:
+    """Whether a surface of revolution ends as a part of a plane across the axis: a face at its height."""
+    ends = ((segment.start, segment.tangent(0)), (segment.end, segment.tangent(1)))
+    across = abs(plane.normal[2]) > 1 - SMOOTH
+    return across and any(
+        abs(at[1] - plane.point[2]) < SAME and abs(tangent[0]) > 1 - SMOOTH for at, tangent in ends
+    )

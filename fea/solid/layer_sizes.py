@@ -11,11 +11,11 @@ from flexspline.fea.solid.layers import Layers
 from flexspline.geometry.outline import SAME
 
 POINTS = 64
-"""Gauss's, between two radii at which a line begins or ends: the square roots there leave 1e-6 of the integral."""
+"""Gauss's, between radii at which a line begins or ends: square roots there leave 1e-6 of the integral."""
 
 
 def open_angle(layers: Layers, r: np.ndarray, z: float) -> np.ndarray:
-    """Angle [rad] of the sector that no hole or slot takes from circles of radii `r` (n,) [mm] at height z."""
+    """Angle [rad] of the sector that no hole or slot takes from circles of radii `r` (n,) [mm] at z."""
     part, sector = layers.part, layers.sector
     taken: list[tuple[np.ndarray, np.ndarray]] = []
     if part.bolts is not None and z < part.hole_depth:
@@ -63,7 +63,9 @@ def _radii(layers: Layers, low: float, high: float) -> Iterator[tuple[np.ndarray
 
 def face_area(layers: Layers, bore: float, outer: float, z: float) -> float:
     """Of the cross-section between two radii at height z [mm²]."""
-    return sum(float((w * r * open_angle(layers, r, z)).sum()) for r, w in _radii(layers, bore, outer))
+    return sum(
+        float((w * r * open_angle(layers, r, z)).sum()) for r, w in _radii(layers, bore, outer)
+    )
 
 
 def volume(layers: Layers) -> float:
@@ -83,7 +85,10 @@ def volume(layers: Layers) -> float:
 def wall_area(layers: Layers, r: float, low: float, high: float) -> float:
     """Of a cylinder about the axis between two heights [mm²]."""
     at = np.array([r])
-    return sum(r * (b - a) * float(open_angle(layers, at, (a + b) / 2)[0]) for a, b in _heights(layers, low, high))
+    return sum(
+        r * (b - a) * float(open_angle(layers, at, (a + b) / 2)[0])
+        for a, b in _heights(layers, low, high)
+    )
 
 
 def _heights(layers: Layers, low: float, high: float) -> Iterator[tuple[float, float]]:

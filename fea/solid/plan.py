@@ -14,27 +14,23 @@ import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, edge_lengths, signed_areas
-from flexspline.fea.solid.plan_curves import Curve, pieces
+from flexspline.fea.solid.plan_curves import Curve
+from flexspline.fea.solid.plan_edges import PlanEdges, keys
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 SMALLEST_ANGLE = np.radians(20)
 """Of large triangles: what Ruppert's proof covers."""
-ACUTE = 0.35
-"""Of the shortest line that ends at a crossing: all are cut at this distance from it, so that edges there are
-alike and halving one does not ask for halving the next without end."""
 FLATTENED = 0.3
-"""Of a triangle's area in the map: one that keeps less with straight sides lies along an arc that is too long."""
+"""Of a triangle's area in the map: one that keeps less with straight sides lies along too long an arc."""
 OFF_LINE = 0.12
-"""Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's. A middle node moved
-by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
+"""Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
+middle node moved by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
 TOUCH = 1e-7
 """Relative slack of circle tests: rectangles' corners lie on one circle."""
 ROUNDS = 60
 """Plans of 150 random shafts took 30 at most."""
 MOST_POINTS = 4_000
 """A plan is repeated for each layer: more, and lines lie too near each other."""
-MERGED = 1e-9
-"""In the map: nearer points are one."""
 
 
 @dataclass(frozen=True)
@@ -43,111 +39,6 @@ class Plan:
 
     points: np.ndarray
     triangles: np.ndarray
-
-
-def mapped(points: np.ndarray, sector: float) -> np.ndarray:
-    """(x, y) to (ln r, φ)."""
-    r = np.hypot(points[:, 0], points[:, 1])
-    phi = np.arctan2(points[:, 1], points[:, 0])
-    phi = np.where(phi < sector / 2 - np.pi, phi + 2 * np.pi, phi)
-    return np.column_stack([np.log(r), np.clip(phi, 0.0, sector)])
-
-
-class _Refined:
-    """Points in the map, and the lines' edges: two points, the curve, the parameters of both."""
-
-    def __init__(self, curves: Sequence[Curve], sector: float) -> None:
-        self.curves, self.sector = curves, sector
-        points, ends, owner, share = [], [], [], []
-        for i, t in pieces(curves):
-            first = sum(map(len, points))
-            points.append(mapped(curves[i].at(t), sector))
-            along = first + np.arange(len(t))
-            ends.append(np.column_stack([along[:-1], along[1:]]))
-            owner.append(np.full(len(t) - 1, i))
-            share.append(np.column_stack([t[:-1], t[1:]]))
-        stacked = np.vstack(points)
-        self.points, number = _merged(stacked)
-        self.ends, self.owner, self.share = number[np.vstack(ends)], np.concatenate(owner), np.vstack(share)
-        self._shorten_at_crossings()
-
-    def lengths(self) -> np.ndarray:
-        """Of the edges in the map."""
-        a, b = self.points[self.ends[:, 0]], self.points[self.ends[:, 1]]
-        return np.asarray(np.linalg.norm(b - a, axis=1))
-
-    def middles(self) -> np.ndarray:
-        """Of the edges' lines (k, 2), in the map."""
-        return self._at(self.owner, self.share.mean(axis=1))
-
-    def _at(self, owner: np.ndarray, share: np.ndarray) -> np.ndarray:
-        found = np.empty((len(share), 2))
-        for i in np.unique(owner):
-            mine = owner == i
-            found[mine] = mapped(self.curves[i].at(share[mine]), self.sector)
-        return found
-
-    def split(self, mask: np.ndarray, at: np.ndarray | float = 0.5) -> None:
-        """Cut edges (mask) at this share of their range."""
-        if not mask.any():
-            return
-        share, owner, ends = self.share[mask], self.owner[mask], self.ends[mask]
-        middle = share[:, 0] + np.broadcast_to(at, mask.shape)[mask] * (share[:, 1] - share[:, 0])
-        there = self._at(owner, middle)
-        new = len(self.points) + np.arange(len(middle))
-        self.points = np.vstack([self.points, there])
-        self.ends = np.vstack([self.ends[~mask], np.column_stack([ends[:, 0], new]), np.column_stack([new, ends[:, 1]])])
-        self.owner = np.concatenate([self.owner[~mask], owner, owner])
-        self.share = np.vstack([self.share[~mask], np.column_stack([share[:, 0], middle]), np.column_stack([middle, share[:, 1]])])
-
-    def _shorten_at_crossings(self) -> None:
-        """Equal edges at each vertex where lines meet at less than 60°, both ends of an edge in turn."""
-        sharp = self._acute()
-        if not sharp.any():
-            return
-        reach = np.full(len(self.points), np.inf)
-        length = self.lengths()
-        for side in (0, 1):
-            np.minimum.at(reach, self.ends[:, side], ACUTE * length)
-        for side in (0, 1):
-            length = self.lengths()
-            node = self.ends[:, side]
-            mine = np.flatnonzero((node < len(sharp)) & sharp[np.minimum(node, len(sharp) - 1)])
-            wanted = reach[node[mine]]
-            mine, wanted = mine[length[mine] > wanted * 1.5], wanted[length[mine] > wanted * 1.5]
-            low, high = np.zeros(len(mine)), np.ones(len(mine))
-            for _ in range(40):  # halving a range 40 times leaves rounding
-                middle = (low + high) / 2
-                s = self.share[mine]
-                t = s[:, 0] + (middle if side == 0 else 1 - middle) * (s[:, 1] - s[:, 0])
-                there = self._at(self.owner[mine], t)
-                near = np.linalg.norm(there - self.points[self.ends[mine, side]], axis=1) < wanted
-                low, high = np.where(near, middle, low), np.where(near, high, middle)
-            at = np.full(len(self.ends), 0.5)
-            at[mine] = high if side == 0 else 1 - high
-            mask = np.zeros(len(self.ends), bool)
-            mask[mine] = True
-            self.split(mask, at)
-
-    def _acute(self) -> np.ndarray:
-        """Mask of points where two edges meet at less than 60°."""
-        out = np.zeros(len(self.points), bool)
-        eps = 1e-3
-        node = np.concatenate([self.ends[:, 0], self.ends[:, 1]])
-        directions = np.empty((len(node), 2))
-        n = len(self.ends)
-        for k, (o, (s, t)) in enumerate(zip(self.owner, self.share, strict=True)):
-            c = self.curves[o]
-            p = mapped(c.at(np.array([s, s + eps * (t - s), t - eps * (t - s), t])), self.sector)
-            directions[k], directions[n + k] = p[1] - p[0], p[2] - p[3]
-        directions /= np.maximum(np.linalg.norm(directions, axis=1), ABOVE_ZERO)[:, None]
-        order = np.argsort(node, kind="stable")
-        starts = np.flatnonzero(np.r_[True, np.diff(node[order]) > 0])
-        for group in np.split(order, starts[1:]):
-            d = directions[group]
-            cosine = d @ d.T - 2 * np.eye(len(d))
-            out[node[group[0]]] = cosine.max() > 0.5
-        return out
 
 
 def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> Plan:
@@ -159,7 +50,7 @@ def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> 
     ------
     MeshingError : lines too near each other, or that cross at too small an angle.
     """
-    own = _Refined(curves, sector)
+    own = PlanEdges(curves, sector)
     largest = np.array([c.largest_share for c in curves])
     while (large := (np.diff(own.share, axis=1)[:, 0] > largest[own.owner] * (1 + TOUCH))).any():
         own.split(large)
@@ -184,14 +75,6 @@ def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> 
     raise MeshingError(f"the plan cannot be meshed: still uneven with {len(own.points)} points")
 
 
-def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct points, and which of them each is."""
-    near = cKDTree(points).query_ball_point(points, MERGED)
-    first = np.array([min(group) for group in near])
-    kept, number = np.unique(first, return_inverse=True)
-    return points[kept], number
-
-
 def _delaunay(points: np.ndarray) -> np.ndarray:
     triangles = Delaunay(points).simplices.astype(np.int64)
     area = signed_areas(points, triangles)
@@ -201,15 +84,19 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
 
 
 def _improvements(
-    own: _Refined, triangles: np.ndarray, smallest_mm: float
+    own: PlanEdges, triangles: np.ndarray, smallest_mm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
     none = np.zeros(len(own.ends), bool)
     corner = own.points[triangles]
     sides = edge_lengths(own.points, triangles)
-    radius = sides.prod(axis=1) / (4 * np.maximum(np.abs(signed_areas(own.points, triangles)), ABOVE_ZERO))
+    radius = sides.prod(axis=1) / (
+        4 * np.maximum(np.abs(signed_areas(own.points, triangles)), ABOVE_ZERO)
+    )
     scale = np.exp(corner[:, :, 0].mean(axis=1))
-    bad = (radius > sides.min(axis=1) / (2 * np.sin(SMALLEST_ANGLE))) & (sides.min(axis=1) * scale > smallest_mm)
+    bad = (radius > sides.min(axis=1) / (2 * np.sin(SMALLEST_ANGLE))) & (
+        sides.min(axis=1) * scale > smallest_mm
+    )
     if not bad.any():
         return np.empty((0, 2)), none
     order = np.argsort(-radius[bad])
@@ -228,7 +115,7 @@ def _improvements(
     return centre[taken], halve
 
 
-def _flattened(own: _Refined, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middles (j, 2) of the longest sides of triangles that straight sides flatten, or the edges to halve.
 
     Edges are too that lie too far off their line for the triangles beside them.
@@ -241,23 +128,18 @@ def _flattened(own: _Refined, triangles: np.ndarray) -> tuple[np.ndarray, np.nda
     mine = triangles[signed_areas(straight, triangles) < FLATTENED * scale * area]
     longest = edge_lengths(own.points, mine).argmax(axis=1)
     rows = np.arange(len(mine))
-    flat = _keys(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
-    lines = _keys(own.ends, n)
+    flat = keys(np.column_stack([mine[rows, longest], mine[rows, (longest + 1) % 3]]), n)
+    lines = keys(own.ends, n)
     pairs = triangles[:, [[0, 1], [1, 2], [2, 0]]]
     off = own.middles() - own.points[own.ends].mean(axis=1)
     order = np.argsort(lines)
-    at = order[np.minimum(np.searchsorted(lines[order], _keys(pairs, n)), len(lines) - 1)]
+    at = order[np.minimum(np.searchsorted(lines[order], keys(pairs, n)), len(lines) - 1)]
     along = own.points[pairs[..., 1]] - own.points[pairs[..., 0]]
     inwards = along[..., 0] * off[at, 1] - along[..., 1] * off[at, 0]  # over the edge's length
-    near = (lines[at] == _keys(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
+    near = (lines[at] == keys(pairs, n)) & (inwards > OFF_LINE * 2 * area[:, None])
     free = np.setdiff1d(flat, lines)
     added = (own.points[free // n] + own.points[free % n]) / 2
     return added, np.isin(lines, np.union1d(flat, lines[at[near]]))
-
-
-def _keys(pairs: np.ndarray, n: int) -> np.ndarray:
-    """One number for each pair (..., 2) of `n` points."""
-    return np.asarray(pairs.min(axis=-1).astype(np.int64) * n + pairs.max(axis=-1))
 
 
 def _circumcentres(corner: np.ndarray) -> np.ndarray:
@@ -268,11 +150,11 @@ def _circumcentres(corner: np.ndarray) -> np.ndarray:
     return np.asarray(corner[:, 0] + off / twice[:, None])
 
 
-def _checked(own: _Refined, triangles: np.ndarray) -> Plan:
+def _checked(own: PlanEdges, triangles: np.ndarray) -> Plan:
     """Refuse a plan that lacks an edge of a line, or does not fill its rectangle."""
     n = len(own.points)
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]]
-    missing = ~np.isin(_keys(own.ends, n), _keys(sides, n))
+    missing = ~np.isin(keys(own.ends, n), keys(sides, n))
     span = np.ptp(own.points, axis=0).prod()
     covered = signed_areas(own.points, triangles).sum()
     if missing.any() or not abs(covered / span - 1) < 1e-9:  # rounding of a few thousand areas

@@ -1,4 +1,4 @@
-"""The lines of a shaft's plan: rings about the axis, bolt holes and a keyway's floor and side, cut where they cross."""
+"""Lines and circles' parts of a plan, and where they cross."""
 
 from __future__ import annotations
 
@@ -80,7 +80,8 @@ def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:
             yield from _both_sides(np.array(a.centre), between / away, along, a.radius)
     else:
         arc, line = (a, b) if isinstance(a, Arc) else (b, a)
-        assert isinstance(arc, Arc) and isinstance(line, Line)
+        assert isinstance(arc, Arc)
+        assert isinstance(line, Line)
         d = np.subtract(line.end, line.start)
         normal = np.array([d[1], -d[0]]) / np.hypot(*d)
         along = float(np.subtract(line.start, arc.centre) @ normal)

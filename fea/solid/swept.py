@@ -19,8 +19,10 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.solid.facet_surfaces import surfaces_of
 from flexspline.fea.solid.layered import layered_edges, layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.polar import cartesian, middles
 from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
@@ -37,12 +39,10 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
-from flexspline.geometry.surfaces import Surface, part_surfaces
+from flexspline.geometry.surfaces import part_surfaces
 
 LARGEST_STEP = radians(10)
 """Around the axis: a turn is not a polynomial, and quadratic elements follow it to 1e-5 of K here."""
-ON_SURFACE = 1e-6
-"""[mm] Nodes are computed on their surfaces; what is farther off belongs to another."""
 Bend = Callable[[np.ndarray], np.ndarray]
 """Nodes (n, 3) as (r, φ, z) of the revolved mesh to those of the part's."""
 TOLERANCE = 1e-3
@@ -58,9 +58,10 @@ def swept_mesh(
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
-    A shaft with holes that are not in a plain column, or a keyway that `block_of` cannot place, is swept along
-    the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose sweep fails a check: elements bent too far, a facet off every surface of the
-    part, a volume or a patch area that is not its own, a meridian that cannot be triangulated.
+    A shaft with holes that are not in a plain column, or a keyway that `block_of` cannot place, is swept
+    along the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose
+    sweep fails a check: elements bent too far, a facet off every surface of the part, a volume or a patch
+    area that is not its own, a meridian that cannot be triangulated.
 
     Raises
     ------
@@ -175,12 +176,12 @@ def _curved(
     bend: Bend,
 ) -> TetMesh:
     """Ten-node tetrahedra: middle nodes follow the angle, those of the surface lie on it."""
-    corners = _cartesian(bend(polar))
+    corners = cartesian(bend(polar))
     faces = boundary_faces(tets)
     surfaces = part_surfaces(part, sector_deg)
-    facet_surface = _surface_of(corners, faces, surfaces)
+    facet_surface = surfaces_of(corners, faces, surfaces)
     edges, cells, facets = with_middles(corners, tets, faces)
-    nodes = np.vstack([corners, _cartesian(bend(_middles(polar[edges])))])
+    nodes = np.vstack([corners, cartesian(bend(middles(polar[edges])))])
     longest = np.linalg.norm(corners[edges[:, 0]] - corners[edges[:, 1]], axis=1).max()
     nodes = snap_to_surfaces(nodes, facets, facet_surface, surfaces, longest)
     nodes[: len(corners)] = corners
@@ -194,31 +195,6 @@ def _curved(
 
 def _unbent(polar: np.ndarray) -> np.ndarray:
     return polar
-
-
-def _middles(ends: np.ndarray) -> np.ndarray:
-    """Middles (e, 3) of edges (e, 2, 3), all as (r, φ, z); an end on the axis has the other's angle."""
-    off_axis = ends[:, :, 0] > 0
-    middles = ends.mean(axis=1)
-    middles[:, 1] = (ends[:, :, 1] * off_axis).sum(axis=1) / np.maximum(1, off_axis.sum(axis=1))
-    return middles
-
-
-def _surface_of(corners: np.ndarray, faces: np.ndarray, surfaces: list[Surface]) -> np.ndarray:
-    """Index of the surface that each facet's corners lie on exactly; of several, its centre decides.
-
-    Of two that coincide, the planes of a half part, it is the first, as in `geometry.tagged`.
-    """
-    centres = corners[faces].mean(axis=1)
-    off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
-    away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
-    lies = off[:, faces].max(axis=2) < ON_SURFACE
-    if not lies.any(axis=0).all():
-        raise MeshQualityError(
-            f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
-        )
-    away = np.where(lies, away, np.inf)
-    return (away < away.min(axis=0) + ON_SURFACE).argmax(axis=0)
 
 
 def _check(mesh: TetMesh, part: Part, column: Column | None, block: Block | None) -> None:
@@ -246,12 +222,6 @@ def _check(mesh: TetMesh, part: Part, column: Column | None, block: Block | None
             raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {wanted:.6g} in the part")
 
 
-def _cartesian(polar: np.ndarray) -> np.ndarray:
-    """(r, φ, z) to (x, y, z), both (n, 3)."""
-    r, phi, z = polar.T
-    return np.column_stack([r * np.cos(phi), r * np.sin(phi), z])
-
-
 def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
 
@@ -265,7 +235,7 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
     found = []
     for r, z in {*outline.sharp_corners, *outline.patch_edges}:
         phi = np.linspace(0, sector, max(2, ceil(r * sector / spacing) + 1))
-        found.append(_cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
+        found.append(cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
     if column is not None:
         rim = max(2, ceil(np.pi * column.hole_radius / spacing) + 1)
         turn = np.linspace(0, np.pi, rim)
@@ -277,7 +247,7 @@ def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
         for k in range(copies):
             around = mirrored(turned, wedge, k)
             for z in (column.low, column.depth):
-                found.append(_cartesian(np.column_stack([away, around, np.full_like(away, z)])))
+                found.append(cartesian(np.column_stack([away, around, np.full_like(away, z)])))
     points = np.vstack(found)
     if block is None:
         return points

@@ -247,27 +247,10 @@ def test_same_design_gives_the_same_mesh() -> None:
 @pytest.mark.parametrize(
     ("file", "part", "changes"),
     [
-        # a keyway over a step, one whose corner is 0.05 mm under the outer wall, and one that ends at a step
-        ("keyed-shaft.toml", "shaft", {"keyway": keyway(5.0, 3.0, 22.0)}),
-        ("keyed-shaft.toml", "shaft", {"keyway": keyway(10.4, 2.0, 16.0)}),
-        (
-            "keyed-shaft.toml",
-            "shaft",
-            {
-                "keyway": keyway(5.0, 3.0, 20.0),
-                "segment": segments((4, 20, 6), (12, 15, 6), (20, 16, 6)),
-            },
-        ),
         # a land of 0.005 mm beside the interface: fair triangles would be 400 000 elements
         ("xb1-40.toml", "flexspline", {"bolt_circle_diameter_mm": 15.49}),
-        # steps of the outside or of the bore across the holes, at their rim, and a fillet there
-        ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 6), (24, 13, 6))}),
+        # a step that touches the holes from within, where the material between has no angle
         ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 6), (24, 15.5, 6)), "fillet_mm": 0}),
-        ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 6), (24, 14.8, 6))}),
-        ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 6), (24, 18, 13)), "fillet_mm": 0}),
-        # holes between two steps
-        ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 6), (24, 18, 10)), "fillet_mm": 0}),
-        ("xb1-40.toml", "shaft", {"segment": segments((4, 20, 8), (24, 18, 5)), "fillet_mm": 0}),
     ],
 )
 def test_what_cannot_be_swept_is_left_to_the_mesher(

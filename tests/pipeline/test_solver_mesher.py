@@ -56,17 +56,17 @@ def test_auto_sweeps_what_can_be_swept(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("wanted", ["swept", "auto", "tetwild"])
-def test_a_keyway_over_a_step_cannot_be_swept(wanted: str, tmp_path: Path) -> None:
-    """A slot over a step of the shaft."""
-    keyed = load_design(EXAMPLES / "keyed-shaft.toml").changed(
-        {"solver.mesher": wanted, "shaft.keyway.length_mm": 22.0}
+def test_holes_beside_a_narrow_land_cannot_be_swept(wanted: str, tmp_path: Path) -> None:
+    """Of the example cup, 0.005 mm from its boss's edge."""
+    cup = load_design(EXAMPLES / "xb1-40.toml").changed(
+        {"solver.mesher": wanted, "flexspline.bolt_circle_diameter_mm": 15.49}
     )
-    context, _ = context_of(keyed, tmp_path)
+    context, _ = context_of(cup, tmp_path)
     if wanted != "swept":
-        assert not context.part("shaft").is_swept
+        assert not context.part("flexspline").is_swept
         return
-    with pytest.raises(DesignError, match=r"solver.mesher.*keyway.*\"tetwild\" or \"auto\" works"):
-        stiffnesses(context, flexspline=False)
+    with pytest.raises(DesignError, match=r"solver.mesher.*holes.*\"tetwild\" or \"auto\" works"):
+        stiffnesses(context, shaft=False)
     assert not (tmp_path / "mesh").exists()  # before the long work
 
 

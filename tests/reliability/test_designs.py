@@ -17,7 +17,7 @@ from in_process import flexspline
 from random_designs import design_of, toml
 from reliability_page import counted
 
-from flexspline.fea.solid.swept import can_be_swept
+from flexspline.fea.solid.swept import goes_about_axis
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
@@ -28,7 +28,7 @@ SOLID = {"swept": (160, 5), "meshed": (40, 4)}
 """How many designs of each sort, and how many in a block."""
 SORTS = {
     "swept": "their prisms swept from the meridian",
-    "meshed": "one or both parts by fTetWild",
+    "meshed": "one or both parts in layers or by fTetWild",
 }
 HANG_S = 1800.0
 """Beyond six time limits of the mesher something hangs: two parts, three attempts each."""
@@ -111,7 +111,7 @@ def solid_designs(sort: str) -> Iterator[tuple[int, dict]]:
             design = design_from(tomllib.loads(toml(tables)))
         except DesignError:
             continue
-        swept = all(can_be_swept(design.part(part)) for part in ("flexspline", "shaft"))
+        swept = all(goes_about_axis(design.part(part)) for part in ("flexspline", "shaft"))
         if swept == (sort == "swept"):
             yield seed, tables
 

@@ -1,0 +1,38 @@
+"""Which surface of a part each facet of a mesh lies on, where corners are computed on them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.geometry.surfaces import Surface
+
+ON_SURFACE = 1e-6
+"""[mm] Nodes are computed on their surfaces; what is farther off belongs to another."""
+
+
+def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surface]) -> np.ndarray:
+    """Index (k,) of the surface that each face's corners lie on exactly; of several, its centre decides.
+
+    Of two that coincide, the planes of a half part, it is the first, as in `geometry.tagged`.
+
+    Parameters
+    ----------
+    corners : (n, 3) mm. faces : (k, 3) indices.
+
+    Raises
+    ------
+    MeshQualityError : a face lies on none.
+    """
+    centres = corners[faces].mean(axis=1)
+    off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
+    away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
+    lies = off[:, faces].max(axis=2) < ON_SURFACE
+    if not lies.any(axis=0).all():
+        raise MeshQualityError(
+            f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
+        )
+    away = np.where(lies, away, np.inf)
+    return np.asarray((away < away.min(axis=0) + ON_SURFACE).argmax(axis=0))

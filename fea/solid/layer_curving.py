@@ -1,0 +1,88 @@
+"""Ten-node tetrahedra of a shaft's layers: curved edges, halved where they bend an element too far."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from flexspline.fea.solid.bisect import Simplices, halved
+from flexspline.fea.solid.elements import jacobian_ratio
+from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
+from flexspline.fea.solid.layer_grading import with_middles_of
+from flexspline.fea.solid.polar import cartesian, middles, polar
+from flexspline.fea.solid.quadratic import JACOBIAN_RATIO, with_middles
+from flexspline.fea.solid.snap import snap_to_surfaces
+from flexspline.fea.types import TetMesh
+from flexspline.geometry.surfaces import Surface
+
+BENT_ROUNDS = 5
+"""Of halving bent edges; their number falls from round to round, or no more are."""
+BENT = 0.03
+"""Of an edge's length: how far its middle lies off the straight line, where halving helps: an arc of 14°
+has so much. Of what loses less, a few edges may be straight within the check of areas."""
+
+
+def quadratic(
+    points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], sector_deg: float, most: float
+) -> TetMesh:
+    """Ten-node tetrahedra; edges of the surface that bend one too far are halved, and straight in the end."""
+    before = inf
+    for _ in range(BENT_ROUNDS):
+        nodes, edges, cells, facets = _curved(points, mesh, surfaces)
+        n = len(points)
+        bent = np.zeros(len(edges), bool)
+        bent[np.unique(cells[jacobian_ratio(nodes, cells) < JACOBIAN_RATIO, 4:]) - n] = True
+        off = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
+        length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+        bent &= off > BENT * length
+        if not 0 < bent.sum() < before:
+            break
+        before = bent.sum()
+        mesh, cut_edges = halved(mesh, edges, length, bent)
+        if len(mesh.tets) > most:
+            raise TooManyElementsError(len(mesh.tets), most)
+        points = with_middles_of(points, mesh, cut_edges, surfaces)
+    nodes, edges, cells, facets = _curved(points, mesh, surfaces, straight=True)
+    names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
+    facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
+    return TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
+
+
+def _curved(
+    points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], straight: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes with middle ones, edges, ten-node cells and six-node facets.
+
+    Middle nodes follow the angle, those of the boundary lie on its surfaces. Within the part edges are
+    straight where elements would be bent too far, so that those of its surface may stay.
+    """
+    n = len(points)
+    edges, cells, facets = with_middles(points, mesh.tets, mesh.facets)
+    nodes = np.vstack([points, cartesian(middles(polar(points)[edges]))])
+    longest = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).max())
+    nodes = snap_to_surfaces(nodes, facets, mesh.facet_surface, surfaces, longest)
+    nodes[:n] = points
+    own = np.zeros(len(nodes), bool)
+    own[facets.ravel()] = True
+    for movable in [~own, np.ones_like(own)] if straight else [~own]:
+        nodes = _straightened(nodes, cells, edges, movable)
+    if straight and jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
+        raise MeshQualityError("elements are badly bent even with straight edges")
+    return nodes, edges, cells, facets
+
+
+def _straightened(
+    nodes: np.ndarray, cells: np.ndarray, edges: np.ndarray, movable: np.ndarray
+) -> np.ndarray:
+    """Nodes (n, 3), `movable` (n,) middle ones of elements that are bent too far on straight edges."""
+    n = len(nodes) - len(edges)
+    left, out, mine = movable.copy(), nodes.copy(), cells
+    while len(mine):
+        bad = np.unique(mine[jacobian_ratio(out, mine) < JACOBIAN_RATIO, 4:])
+        bad = bad[left[bad]]
+        out[bad] = out[edges[bad - n]].mean(axis=1)
+        left[bad] = False
+        mine = cells[np.isin(cells[:, 4:], bad).any(axis=1)]
+    return out

@@ -1,0 +1,83 @@
+"""The coarsest mesh of a shaft's layers: their prisms cut into tetrahedra, each facet on its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.fea.solid.bisect import Simplices
+from flexspline.fea.solid.facet_surfaces import surfaces_of
+from flexspline.fea.solid.layers import Layers
+from flexspline.fea.solid.polar import cartesian
+from flexspline.fea.solid.prisms import cut
+from flexspline.fea.solid.quadratic import boundary_faces
+from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.snap import undo_inverted
+from flexspline.geometry.outline import SAME
+from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface
+
+SUNK = 0.5
+"""Of the fillet's radius: how far the sharp corner under it moves into the material, so that no edge of
+the mesh is a tangent of the arc."""
+SUNK_OF_NEXT = 0.3
+"""Of the distance to the next node inwards and downwards, at most."""
+
+
+def coarsest(
+    layers: Layers, surfaces: Sequence[Surface], grading: Grading
+) -> tuple[np.ndarray, Simplices]:
+    """Corners (n, 3) [mm] and tetrahedra of the layers' prisms, as few as the lines allow."""
+    polar, prisms = layers.prisms(grading.near, grading.far)
+    polar, prisms = _corners_first(layers, polar, prisms)
+    tets = cut(prisms)
+    used, compact = np.unique(tets, return_inverse=True)
+    polar, tets = polar[used], compact.reshape(tets.shape)
+    points = cartesian(polar)
+    faces = boundary_faces(tets)
+    on = surfaces_of(points, faces, surfaces)
+    points = _sunk(layers, polar, points, tets, faces, on, surfaces)
+    return points, Simplices(len(points), tets, faces, on)
+
+
+def _corners_first(
+    layers: Layers, polar: np.ndarray, prisms: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Corners under fillets have the least numbers, so that prisms are cut from there, not along the arc."""
+    corner = np.zeros(len(polar), bool)
+    for f in layers.fillets:
+        corner |= (np.abs(polar[:, 0] - f.r) < SAME) & (np.abs(polar[:, 2] - f.z) < SAME)
+    order = np.argsort(~corner, kind="stable")
+    number = np.empty_like(order)
+    number[order] = np.arange(len(order))
+    return polar[order], number[prisms]
+
+
+def _sunk(
+    layers: Layers,
+    polar: np.ndarray,
+    points: np.ndarray,
+    tets: np.ndarray,
+    faces: np.ndarray,
+    on: np.ndarray,
+    surfaces: Sequence[Surface],
+) -> np.ndarray:
+    """Nodes in the sharp corners under fillets moved into the material, inwards and away from the arc."""
+    mirrors = [i for i, s in enumerate(surfaces) if s.patch in (SYMMETRY_START, SYMMETRY_END)]
+    inside = np.ones(len(polar), bool)
+    inside[faces[~np.isin(on, mirrors)]] = False
+    r, _, z = polar.T
+    a, b = Simplices(len(polar), tets, faces, on).edges().T
+    length = np.linalg.norm(points[a] - points[b], axis=1)
+    moved = polar.copy()
+    for f in layers.fillets:
+        corner = inside & (r > f.r - SAME) & (r < f.far - SAME) & (np.abs(z - f.z) < SAME)
+        beyond = (r < f.r - SAME) | ((z - f.z) * f.up < -SAME)
+        room = np.full(len(polar), np.inf)
+        for one, other in ((a, b), (b, a)):
+            mine = beyond[other]
+            np.minimum.at(room, one[mine], length[mine])
+        step = np.minimum(SUNK * f.radius, SUNK_OF_NEXT * room[corner])
+        moved[corner, 0] -= np.where(r[corner] < f.r + SAME, step, 0.0)
+        moved[corner, 2] -= f.up * step
+    return undo_inverted(points, cartesian(moved), tets)
