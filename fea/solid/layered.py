@@ -20,11 +20,11 @@ from flexspline.fea.solid.layer_mesh import coarsest
 from flexspline.fea.solid.layer_sizes import face_area, volume, wall_area
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.mesh_checks import refuse_flat
 from flexspline.fea.solid.polar import cartesian, polar
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import common_point
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
+from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import part_surfaces
@@ -49,7 +49,8 @@ def layered_mesh(
     points, mesh = coarsest(layers, surfaces, grading)
     most = min(most_elements, MOST_ELEMENTS)
     points, mesh = graded(points, mesh, surfaces, grading, most)
-    refuse_flat(points, mesh.tets)
+    if (signed_volumes(points, mesh.tets) <= 0).any():
+        raise MeshQualityError("elements are flat once their nodes are on the part's surfaces")
     made = quadratic(points, mesh, surfaces, sector_deg, most)
     _check(made, layers)
     return made

@@ -19,6 +19,7 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import Solved, torsion
+from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
@@ -26,6 +27,7 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
 
 Mesher = Callable[[MeshSpec], TetMesh]
+"""Raises TooManyElementsError where a specification asks for a larger mesh than the caller wants."""
 MAX_LEVELS = 5
 """Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
 their edges go to as little as 1/256."""
@@ -39,6 +41,8 @@ length there, so that is refined by as much as is still missing, within this ran
 far away the error falls with the fourth power of growth and length: both take the second factor."""
 LONGER = 2.0
 """Time of the next mesh and its solution over that of the last, at least: it has about twice the elements."""
+MILDER = 1.6
+"""Of a step at the singular edges that gives too large a mesh: the next that is tried."""
 AIM = 0.7
 """Share of the tolerance that the next mesh aims at."""
 
@@ -119,9 +123,20 @@ class _SolidTorsion:
         if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began_s = now_s
-        self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
         left_s = self._deadline.limit_s - now_s
-        return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
+        step = near_step(self._tolerance, self.half)
+        while True:
+            spec = _finer(self._spec, step)
+            spec = replace(spec, time_limit_s=min(spec.time_limit_s, left_s))
+            try:
+                made = self._mesher(spec)
+            except TooManyElementsError:
+                if step == NEAR_STEP[1]:
+                    raise
+                step = min(NEAR_STEP[1], step * MILDER)
+                continue
+            self._spec = spec
+            return made
 
 
 def near_step(tolerance: float, half: float) -> float:

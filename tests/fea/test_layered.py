@@ -17,15 +17,17 @@ from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
 from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
+from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.layer_sizes import volume
 from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.layers import Layers
-from flexspline.fea.solid.mesh import mesh_surface
+from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.plan import triangulated
 from flexspline.fea.solid.plan_curves import Arc, Line
 from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.sizing import Grading
+from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept import goes_about_axis, swept_edges, swept_mesh
 from flexspline.fea.solid.tetwild import signed_volumes
@@ -292,3 +294,22 @@ def test_a_plan_has_its_lines_as_edges() -> None:
     # chords of 1° lose 5e-5 of a circle's area
     assert area[within].sum() == pytest.approx(sector / 2 * (ring**2 - bore**2), rel=1e-4)
     assert area[off < hole + 1e-9].sum() == pytest.approx(pi / 2 * hole**2, rel=1e-4)
+
+
+def test_a_next_mesh_that_is_too_large_is_made_with_longer_edges() -> None:
+    """Shortened to a quarter, edges at singular edges are refused here; to 0.4 of their length, they are not."""
+    part = shaft_of("step over the holes")
+    degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(2.5)
+    asked: list[float] = []
+
+    def mesher(spec: MeshSpec) -> TetMesh:
+        asked.append(spec.grading.near / first.grading.near)
+        if asked[-1] < 0.35:
+            raise TooManyElementsError(1e6, 1e5)
+        return layered_mesh(part, degrees, spec)
+
+    # a tolerance that two meshes cannot meet: each next one is asked for with the shortest step
+    found = solid_stiffness(mesher, first, Elastic.of(part.material), "grip", 1e-4, "", print)
+    assert asked[:3] == pytest.approx([1.0, 0.25, 0.4])
+    assert len(found.meshes) == 2  # 0.4 times 0.6 is refused too
+    assert "elements" in found.stiffness.shortfall
