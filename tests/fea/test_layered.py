@@ -297,9 +297,9 @@ def test_a_plan_has_its_lines_as_edges() -> None:
 
 
 def test_a_next_mesh_that_is_too_large_is_made_with_longer_edges() -> None:
-    """Shortened to a quarter, edges at singular edges are refused here; to 0.4 of their length, they are not."""
+    """Singular edges are refused at a quarter of their length here, and made at 0.4 of it."""
     part = shaft_of("step over the holes")
-    degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(2.5)
+    degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(4.0)
     asked: list[float] = []
 
     def mesher(spec: MeshSpec) -> TetMesh:
