@@ -31,6 +31,8 @@ from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
 
 ROUNDS = 3
 """Races at most, each with the friction that the last one's terms make the best."""
+ROUNDS_OF_BOTH = 6
+"""The same beside a shifted reading, whose place and the friction's move each other."""
 SETTLED_SHARE, SETTLED_LOG = 0.003, 0.3
 """Friction found again within this of the largest torque, and its stiffness ratio within this of its log, is
 the last: neither moves what counts."""
@@ -62,7 +64,9 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     if guess is None:
         return None
     try:
-        found, std = _raced_with(prepared, ahead_element(guess.friction_Nm, history))
+        found, std = _raced_with(
+            prepared, ahead_element(guess.friction_Nm, history), guess.offset_Nm
+        )
     except TooFewRowsError:
         return None
     nats = guess.nats
@@ -74,14 +78,16 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     return replace(found, ahead=FoundAhead(std, nats))
 
 
-def _raced_with(plain: PreparedSweep, element: Element) -> tuple[ExplainedSweep, float]:
+def _raced_with(
+    plain: PreparedSweep, element: Element, offset: float
+) -> tuple[ExplainedSweep, float]:
     """The race with friction, and the friction found anew from it; with the deviation of its torque."""
-    offset, guess = 0.0, element
+    guess = element
     element = _alone(prepare(plain.sweep, plain.prediction, offset, guess)).element
     if abs(float(np.log(element.amplitudes[0] / guess.amplitudes[0]))) > GUESS_LOG:
         element = replace(element, amplitudes=guess.amplitudes)
     seen: Crossing | None = None
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS_OF_BOTH if offset else ROUNDS):
         explained = run_race(prepare(plain.sweep, plain.prediction, offset, element))
         now = explained.prepared
         identified = explained.identified
@@ -92,7 +98,7 @@ def _raced_with(plain: PreparedSweep, element: Element) -> tuple[ExplainedSweep,
         if seen is not None:
             found = _held_at(found, seen)
         shifted = offset_of(explained)
-        if abs(shifted) < _step_across(now.rig.history):
+        if not offset and abs(shifted) < _step_across(now.rig.history):
             shifted = 0.0
         moved = abs(found.element.amplitudes[0] - element.amplitudes[0])
         bent = abs(float(np.log(found.element.shape[AHEAD] / element.shape[AHEAD])))

@@ -39,10 +39,11 @@ BESIDE = (0.04, 0.12, 0.3)
 
 @dataclass(frozen=True)
 class AheadGuess:
-    """A friction torque, and the nats of the step's place over the best one without it."""
+    """A friction torque, and the nats of the step's place over the best one without it; beside an offset."""
 
     friction_Nm: float
     nats: float
+    offset_Nm: float = 0.0
 
 
 def first_ahead(
@@ -52,7 +53,7 @@ def first_ahead(
 
     The angle is fitted by smooth functions of torque, friction elements and one step of free height, crossed
     where the torque beyond a play operator changes sign; the play's width is the guess, if it is clearly
-    better than none, and than a shifted torque reading.
+    better than none, and than a shifted torque reading; or both, if they are clearly better than either.
     """
     largest = float(np.abs(history.torque_Nm).max())
     if not both_ways(history.torque_Nm):
@@ -72,20 +73,49 @@ def first_ahead(
         beyond = history.torque_Nm - carried_Nm
         return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, least)
 
+    places = np.linspace(-REACH, REACH, OFFSETS) * largest
     table = [misfit(carried[:, k]) for k in range(COARSE)]
     best = int(np.argmin(table))
     if not np.isfinite(table[best]) or table[best] <= 0:
         return None
-    step = coarse[0]
-    fine = coarse[best] + step * np.linspace(-1, 1, FINE + 2)[1:-1]
-    finer = stops(history, torque, fine, np.zeros(FINE))
-    again = [misfit(finer[:, k]) for k in range(FINE)]
-    k = int(np.argmin(again))
-    least, rows = min(again[k], table[best]), len(x)
+    rows = len(x)
+
+    def finer(best: int, coarsest: float, offset: float) -> tuple[float, float]:
+        """The friction near one of the coarse places, and its misfit."""
+        fine = coarse[best] + coarse[0] * np.linspace(-1, 1, FINE + 2)[1:-1]
+        near = stops(history, torque, fine, np.zeros(FINE))
+        again = [misfit(near[:, k] + offset) for k in range(FINE)]
+        k = int(np.argmin(again))
+        return (fine[k], again[k]) if again[k] <= coarsest else (coarse[best], coarsest)
+
+    friction, least = finer(best, table[best], 0.0)
     nats = nats_over(misfit(0.0, -np.inf), least, rows)
     if nats < FIRST_NATS:
         return None
-    shifted = min(misfit(p) for p in np.linspace(-REACH, REACH, OFFSETS) * largest)
-    nats = min(nats, nats_over(shifted, least, rows))
-    friction = fine[k] if again[k] <= table[best] else coarse[best]
+
+    def placed(carried_Nm: np.ndarray | float) -> tuple[int, float]:
+        """The best place of a shifted reading, and its misfit."""
+        found = [misfit(carried_Nm + p) for p in places]
+        return int(np.argmin(found)), min(found)
+
+    def rubbed(place: int) -> tuple[int, float]:
+        """The best friction beside a shifted reading, and its misfit."""
+        found = [misfit(carried[:, k] + places[place]) for k in range(COARSE)]
+        return int(np.argmin(found)), min(found)
+
+    shifted, of_offset = placed(0.0)
+    # both at once: the best of the one for the best of the other, begun with either
+    beside_friction = placed(carried[:, best])[0]
+    beside_offset = rubbed(shifted)[0]
+    pairs = [
+        (*rubbed(beside_friction), beside_friction),
+        (beside_offset, *placed(carried[:, beside_offset])[::-1]),
+    ]
+    k, joint, place = min(pairs, key=lambda pair: pair[1])
+    if nats_over(min(least, of_offset), joint, rows) >= FIRST_NATS:
+        offset = float(places[place])
+        friction, joint = finer(k, joint, offset)
+        nats = nats_over(min(least, of_offset), joint, rows)
+        return AheadGuess(float(friction), nats, offset)
+    nats = min(nats, nats_over(of_offset, least, rows))
     return AheadGuess(float(friction), nats) if nats >= OFFSET_NATS else None
