@@ -21,7 +21,7 @@ class PositionStiffness(PeriodicShapes, Cause):
     id = "position_stiffness"
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
-    shape_doubt = 0.012
+    shape_doubt = 0.009
     """With the usual doubt one and two deviations cover 60 and 80 % of 10 made-up pairs."""
     shows_as = "compliance"
     reveals = "the same sweep at many wave generator angles"

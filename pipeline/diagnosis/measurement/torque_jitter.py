@@ -12,8 +12,13 @@ from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torq
 
 FAR = 4.0
 """Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
-WIDEST = 7
-"""Rows on either side: torque amid 15 is known to 0.39 of its noise, and its rate to 0.06 a row."""
+USUAL, WIDEST = 7, 20
+"""Rows on either side: torque amid 15 is known to 0.39 of its noise, its rate to 0.06 a row; amid 41 to
+0.23."""
+PART = 40
+"""Of a cycle, on either side: of a sine a parabola there leaves (2π/40)⁴/24 of its height at most, 3e-5."""
+BESIDE = 4
+"""Rows by which a hold's ends and the corners there may differ, both together."""
 FEWEST = 4
 """Rows of a straight way: a parabola leaves nothing of three."""
 
@@ -22,29 +27,39 @@ def jitter(history: History, width: int) -> np.ndarray:
     """(n,) torque less a parabola through `width` rows on either side: its noise, and little else.
 
     No parabola reaches over a corner of the programme (`corners.py`): it would leave the corner there. Beside
-    one, and at the record's ends, as many rows lie on one side. Of a hold it is the torque less its mean.
+    one, and at the record's ends, as many rows lie on one side. Of a hold between corners it is the torque
+    less its mean.
     """
     key = ("jitter", float(width))
     if key not in history.memo:
         out, corners = np.zeros(len(history)), corners_of(history)
+        way = np.zeros(len(history), int)
         for unit, rows in enumerate(history.unit_slices):
             time = history.time_s
             t = np.arange(len(rows), dtype=float) if time is None else time[rows]
             turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
             edges = np.unique([0, *turned, len(rows)])
             out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
+            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
         for hold in holds(history):
-            out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
+            if np.median(way[hold]) <= len(hold) + BESIDE:  # a sine's turn ends at no corner
+                out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
         # beyond its noise it is a corner that was not seen
         history.memo[key] = np.where(np.abs(out) < FAR * torque_noise_Nm(history), out, 0.0)
     return history.memo[key]
+
+
+def widest(history: History) -> int:
+    """Rows on either side that many rows a cycle allow."""
+    cycles = sum(len(np.unique(history.cycle[rows])) for rows in history.unit_slices)
+    return int(np.clip(len(history) / cycles / PART, USUAL, WIDEST))
 
 
 def less_jitter(history: History) -> History:
     """The history with its torque less the noise, as far as the rows around each one know it."""
     key = ("less_jitter", 0.0)
     if key not in history.memo:
-        torque = history.torque_Nm - jitter(history, WIDEST)
+        torque = history.torque_Nm - jitter(history, widest(history))
         history.memo[key] = replace(history, torque_Nm=torque)
     found: History = history.memo[key]
     return found

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_history
-from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS, base_columns
+from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, base_columns
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing
 
 STEPS = 8
@@ -120,7 +120,7 @@ class _Trial:
         p, sweep = self.prepared, self.prepared.sweep
         history = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
         rig = Rig(p.prediction, history)
-        base, prior = base_columns(rig, self.evidence.columns.base[:, -len(NOISE_WINDOWS) :])
+        base, prior = base_columns(rig, self.evidence.columns.base[:, -NOISE_COLUMNS:])
         blocks = [base]
         precision = [prior**-2]
         for i in self.terms:

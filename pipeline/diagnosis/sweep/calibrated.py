@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS, DesignMatrix, base_columns
+from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, DesignMatrix, base_columns
 
 ALLOWED = 2.0
 """Standard deviations by which a calibration may move without being a finding."""
@@ -42,7 +42,7 @@ def _of_all_torque(evidence: GaussianEvidence, carried_Nm: np.ndarray) -> Gaussi
     teeth, prediction = old.rig.history, old.rig.prediction
     read = replace(teeth, torque_Nm=teeth.torque_Nm + carried_Nm)
     rig = replace(old.rig, history=read)
-    base, prior = base_columns(rig, old.base[:, -len(NOISE_WINDOWS) :])
+    base, prior = base_columns(rig, old.base[:, -NOISE_COLUMNS:])
     target = evidence.target + prediction.angle_arcsec(teeth) - prediction.angle_arcsec(read)
     return gaussian_evidence(
         DesignMatrix(rig, base, prior, old.all[:, :0], ()), target, evidence.kept, evidence.noise

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
     Posterior,
     posterior_of,
 )
-from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_WINDOWS, Regressor
+from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, Regressor
 
 SOFT = "stiffness_hardening"
 """The elastic cause that is not in the measured compliance."""
@@ -154,7 +154,7 @@ class SweepFit:
 
     def residual_as_read(self) -> np.ndarray:
         """(n,) measured less predicted from the torque as it was read, its noise included."""
-        of_noise = slice(self.posterior.base_count - len(NOISE_WINDOWS), self.posterior.base_count)
+        of_noise = slice(self.posterior.base_count - NOISE_COLUMNS, self.posterior.base_count)
         return (
             self.residual()
             + self.evidence.columns.base[:, of_noise] @ self.posterior.mean[of_noise]

@@ -10,7 +10,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import WIDEST, jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL, jitter, widest
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -138,8 +138,9 @@ def _nuisance_regressor(
     )  # fmt: skip
 
 
-NOISE_WINDOWS = (2, WIDEST)
-"""Rows on each side over which the torque is taken as a parabola."""
+NARROW = 2
+"""Rows on each side over which the torque is taken as a parabola; `USUAL` and `widest` beside it."""
+NOISE_COLUMNS = 3
 
 
 def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +150,7 @@ def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray,
     The noise's columns take that away from every term, so that no cause is found in it.
 
     Zero of each unit; deviation of compliance and gap, common, and per unit if several; torque noise, which
-    may be known already: (n, len(NOISE_WINDOWS)).
+    may be known already: (n, NOISE_COLUMNS).
     """
     h, p = rig.history, rig.prediction
     units = [np.isin(np.arange(len(h)), rows).astype(float) for rows in h.unit_slices]
@@ -159,6 +160,8 @@ def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray,
         for own in units:
             columns += [own * h.torque_Nm, own * h.sign / 2]
             prior += [p.compliance_std, p.gap_std_arcsec]
-    columns += [jitter(h, w) for w in NOISE_WINDOWS] if noise is None else list(noise.T)
-    prior += [p.compliance] * len(NOISE_WINDOWS)
+    columns += (
+        [jitter(h, w) for w in (NARROW, USUAL, widest(h))] if noise is None else list(noise.T)
+    )
+    prior += [p.compliance] * NOISE_COLUMNS
     return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)
