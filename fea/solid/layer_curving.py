@@ -27,9 +27,14 @@ has so much. Of what loses less, a few edges may be straight within the check of
 def quadratic(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], sector_deg: float, most: float
 ) -> TetMesh:
-    """Ten-node tetrahedra; edges of the surface that bend one too far are halved, and straight in the end."""
+    """Ten-node tetrahedra; edges of the surface that bend one too far are halved, and straight in the end.
+
+    Raises
+    ------
+    TooManyElementsError : more than `most`. MeshQualityError : elements are bent too far nevertheless.
+    """
     before = inf
-    for _ in range(BENT_ROUNDS):
+    for left in reversed(range(BENT_ROUNDS + 1)):
         nodes, edges, cells, facets = _curved(points, mesh, surfaces)
         n = len(points)
         bent = np.zeros(len(edges), bool)
@@ -37,21 +42,23 @@ def quadratic(
         off = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
         length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
         bent &= off > BENT * length
-        if not 0 < bent.sum() < before:
+        if not left or not 0 < bent.sum() < before:
             break
         before = bent.sum()
         mesh, cut_edges = halved(mesh, edges, length, bent)
         if len(mesh.tets) > most:
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)
-    nodes, edges, cells, facets = _curved(points, mesh, surfaces, straight=True)
+    nodes = _straightened(nodes, cells, edges, np.ones(len(nodes), bool))
+    if jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
+        raise MeshQualityError("elements are badly bent even with straight edges")
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
     return TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
 
 
 def _curved(
-    points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], straight: bool = False
+    points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Nodes with middle ones, edges, ten-node cells and six-node facets.
 
@@ -64,13 +71,9 @@ def _curved(
     longest = float(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1).max())
     nodes = snap_to_surfaces(nodes, facets, mesh.facet_surface, surfaces, longest)
     nodes[:n] = points
-    own = np.zeros(len(nodes), bool)
-    own[facets.ravel()] = True
-    for movable in [~own, np.ones_like(own)] if straight else [~own]:
-        nodes = _straightened(nodes, cells, edges, movable)
-    if straight and jacobian_ratio(nodes, cells).min() < JACOBIAN_RATIO:
-        raise MeshQualityError("elements are badly bent even with straight edges")
-    return nodes, edges, cells, facets
+    inside = np.ones(len(nodes), bool)
+    inside[facets.ravel()] = False
+    return _straightened(nodes, cells, edges, inside), edges, cells, facets
 
 
 def _straightened(
