@@ -35,7 +35,7 @@ SLOWEST = (
     "test_studio_process", "test_studio_design", "test_documents", "test_studio_reading",
     "test_studio_widths", "test_studio_work", "test_without_opengl", "test_hidden", "test_mesher",
     "test_files", "test_estimate_honesty", "test_optimum", "test_legibility_diagnosis",
-    "test_studio_stale", "test_report_browser",
+    "test_studio_stale", "test_report_browser", "test_layered",
 )  # fmt: skip
 """Files that take twenty seconds or more, begun first so that no worker is left alone with one at the end.
 The first makes the run that others read, the second the solves of specimens that the third does."""
