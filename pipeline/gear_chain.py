@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.model import GearModel
+from flexspline.fea.threads import one_thread
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
@@ -54,8 +55,9 @@ class Chain:
         EquilibriumError
         """
         found: list[Equilibrium] = []
-        for torque in torques_Nm:
-            found.append(self.model.at_torque(torque, found[-1] if found else start))
+        with one_thread():
+            for torque in torques_Nm:
+                found.append(self.model.at_torque(torque, found[-1] if found else start))
         return found
 
     def angles(self, torques_Nm: Sequence[float]) -> np.ndarray:

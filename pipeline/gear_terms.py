@@ -27,8 +27,9 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
     EquilibriumError
     """
     model = chain.model
-    no_flank = replace(model, mesh=replace(model.mesh, clearance=0.0))
-    no_play = replace(no_flank, wave_generator=replace(model.wave_generator, play=0.0))
+    tight = replace(model.mesh, clearance=0.0)
+    no_flank = model.with_gaps(tight, model.wave_generator)
+    no_play = model.with_gaps(tight, replace(model.wave_generator, play=0.0))
 
     small = SMALL * min(load_Nm, rated_Nm)
 

@@ -7,7 +7,7 @@ of the two, so half the torque is theirs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, pi, sin
 
@@ -116,6 +116,12 @@ class GearModel:
         yields = 2 / 3 * self.wave_generator.hertz * force[on] ** (-1 / 3)
         found["bearing"] += 2 * float(ball[on] ** 2 @ yields)
         return found
+
+    def with_gaps(self, mesh: Mesh, wave_generator: WaveGenerator) -> GearModel:
+        """The same bodies with another clearance, play or stroke: how they yield is not found anew."""
+        other = replace(self, mesh=mesh, wave_generator=wave_generator)
+        other.__dict__["shares"] = self.shares
+        return other
 
     def at_torque(self, torque_Nm: float, start: Equilibrium | None = None) -> Equilibrium:
         """At a torque on the whole gear [N·m]; `Equilibrium.torque` is that of one half [N·mm].

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.identification import FittedInput, GearInputs
+    from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair
 
 
 def gear_inputs_record(found: GearInputs) -> dict[str, Any]:
@@ -25,6 +26,23 @@ def gear_inputs_record(found: GearInputs) -> dict[str, Any]:
     }  # fmt: skip
     if found.outcome == "named":
         record |= {"named": found.fitted[0].key, "rivals": list(found.rivals)}
+    if found.pairs:
+        record["pairs"] = [
+            {
+                "inputs": [
+                    {
+                        "key": one.key,
+                        "unit": one.unit,
+                        "nominal": one.nominal,
+                        "value": value,
+                        "value_std": std,
+                    }
+                    for one, value, std in zip(pair.inputs, pair.values, pair.stds, strict=True)
+                ],
+                "chi_square": pair.chi_square,
+            }
+            for pair in found.pairs
+        ]
     if found.left_arcsec is not None:
         record |= {"rmse_before": found.before_arcsec, "rmse_after": found.left_arcsec}
     if found.apart is not None:
@@ -43,10 +61,22 @@ def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
         )
     if found.outcome == "unknown":
         return (
-            f"no single input of the gear explains the {found.remainder_arcsec:.3g} arcsec rms that its "
+            f"no one or two inputs of the gear explain the {found.remainder_arcsec:.3g} arcsec rms that its "
             f"curve leaves at {found.places} torques; nearest is {best.key} = {best.value:.3g} {best.unit}, "
             f"chi square {best.chi_square:.0f}",
         )
+    if found.outcome == "pair":
+        first, *more = found.pairs
+        said = [
+            "no single input of the gear explains what its curve leaves, two together do: "
+            f"{_both(first)}{_gain(found)}"
+        ]
+        if more:
+            said.append(
+                f"as well as these fit {'; or '.join(_both(pair) for pair in more)}: measure one of "
+                "them itself"
+            )
+        return tuple(said)
     said = [
         f"{_value(best)} explains what the gear's curve leaves, all else as drawn{_gain(found)}"
     ]
@@ -54,6 +84,13 @@ def gear_inputs_notes(found: GearInputs) -> tuple[str, ...]:
         others = ", ".join(_value(one) for one in found.fitted if one.key in found.rivals)
         said.append(f"as well as {best.key} fits: {others}; {_next(found)}")
     return tuple(said)
+
+
+def _both(pair: FittedPair) -> str:
+    return " and ".join(
+        f"{one.key} = {value:.4g} ± {std:.2g} {one.unit} (nominal {one.nominal:.4g})"
+        for one, value, std in zip(pair.inputs, pair.values, pair.stds, strict=True)
+    )
 
 
 def _value(one: FittedInput) -> str:

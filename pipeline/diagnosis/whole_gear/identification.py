@@ -1,13 +1,13 @@
 """Which input of the whole gear's model explains what a sweep leaves of its curve.
 
 Each input alone is moved from its nominal value until the curve fits the middle of the measured loop best,
-by chi square. One that fits is named, with those that fit as well as its rivals; where none fits, nothing is
-named. A torque that would tell the first two apart is given.
+by chi square. One that fits is named, with those that fit as well as its rivals, and a torque that would tell
+the first two apart. Where none fits, two together are tried (`pairs`); where no two do, nothing is named.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -22,6 +22,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
 from flexspline.pipeline.diagnosis.whole_gear.inputs import Input, inputs_of
+from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
 
 NUMERICAL = 0.005
@@ -38,7 +39,7 @@ MEASURABLE = 3.0
 """Deviations of a place by which two rivals must differ to be told apart there."""
 KNOTS = 16
 """Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
-Outcome = Literal["consistent", "named", "unknown"]
+Outcome = Literal["consistent", "named", "pair", "unknown"]
 
 
 @dataclass(frozen=True)
@@ -68,14 +69,15 @@ class GearInputs:
 
     Attributes
     ----------
-    outcome : "consistent": the nominal curve fits; "named": an input alone explains the rest; "unknown":
-        none does.
+    outcome : "consistent": the nominal curve fits; "named": an input alone explains the rest; "pair": two
+        together do; "unknown": no two do.
     remainder_arcsec : root mean square of measured less nominal curve.
     chi_square, places : of the nominal curve, and how many torques it is of.
     fitted : every input, the best first. rivals : keys of those that fit as well as the best, if that is
         named.
-    left_arcsec : root mean square with the best input, on cycles that were not fitted, and `before_arcsec`
-        without it on the same; None of one cycle.
+    pairs : those of two that fit, the best first, where no input alone does.
+    left_arcsec : root mean square with the best input or pair, on cycles that were not fitted, and
+        `before_arcsec` without it on the same; None of one cycle.
     apart : None where nothing is named, or no torque up to twice the largest tells the first two apart.
     """
 
@@ -85,6 +87,7 @@ class GearInputs:
     places: int
     fitted: tuple[FittedInput, ...]
     rivals: tuple[str, ...] = ()
+    pairs: tuple[FittedPair, ...] = ()
     before_arcsec: float | None = None
     left_arcsec: float | None = None
     apart: Apart | None = None
@@ -114,9 +117,14 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
         return plain
     best = found[0]
     if chi2.sf(best.chi_square, len(off) - 1) < SURE:
-        return replace(plain, outcome="unknown")
+        return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis)
     rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL]
-    before, left = _on_other_cycles(inputs[best.key], chain, analysis)
+    one = inputs[best.key]
+
+    def alone(learnt: CentralCurve) -> Chain:
+        return one.changed(chain, fitted(one, chain, learnt, _angles(chain, learnt)).value)
+
+    before, left = _on_other_cycles(alone, chain, analysis)
     return replace(
         plain,
         outcome="named",
@@ -125,6 +133,36 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
         left_arcsec=left,
         apart=_apart(inputs, chain, curve, (best, rivals[0])) if rivals else None,
     )
+
+
+def _of_pairs(
+    plain: GearInputs,
+    inputs: tuple[Input, ...],
+    chain: Chain,
+    curve: CentralCurve,
+    analysis: SweepAnalysis,
+) -> GearInputs:
+    """The pair that fits, and those that fit as well; "unknown" where none does."""
+
+    def together(learnt: CentralCurve, of: tuple[Input, ...]) -> list[FittedPair]:
+        start = chain.model.at_torque(learnt.smallest_Nm)
+        return fitted_pairs(
+            of,
+            chain,
+            lambda each: _angles(each, learnt, start),
+            learnt.angle_arcsec,
+            learnt.std_arcsec,
+        )
+
+    fit = [p for p in together(curve, inputs) if chi2.sf(p.chi_square, plain.places - 2) >= SURE]
+    if not fit:
+        return replace(plain, outcome="unknown")
+    best = fit[0]
+    pairs = tuple(p for p in fit if p.chi_square < best.chi_square + RIVAL)
+    before, left = _on_other_cycles(
+        lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis
+    )
+    return replace(plain, outcome="pair", pairs=pairs, before_arcsec=before, left_arcsec=left)
 
 
 def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -> FittedInput:
@@ -175,20 +213,17 @@ def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
 
 
 def _on_other_cycles(
-    one: Input, chain: Chain, analysis: SweepAnalysis
+    learn: Callable[[CentralCurve], Chain], chain: Chain, analysis: SweepAnalysis
 ) -> tuple[float | None, float | None]:
-    """Root mean square on every second cycle, without the input and with its value from the others."""
+    """Root mean square on every second cycle, of the gear as drawn and as learnt on the others."""
     cycles = np.unique(analysis.explained.prepared.rig.history.cycle)
     if len(cycles) < 2:
         return None, None
     learnt, other = (central_curve(analysis, cycles[start::2].tolist()) for start in (0, 1))
     if learnt is None or other is None:
         return None, None
-    nominal = _angles(chain, learnt)
-    value = fitted(one, chain, _with_numerical(learnt, nominal), nominal).value
-    before, after = (
-        other.angle_arcsec - _angles(each, other) for each in (chain, one.changed(chain, value))
-    )
+    better = learn(_with_numerical(learnt, _angles(chain, learnt)))
+    before, after = (other.angle_arcsec - _angles(each, other) for each in (chain, better))
     return float(np.sqrt((before**2).mean())), float(np.sqrt((after**2).mean()))
 
 

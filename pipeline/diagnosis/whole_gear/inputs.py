@@ -39,13 +39,13 @@ def inputs_of(design: Design, chain: Chain) -> tuple[Input, ...]:
         return lambda chain, value: replace(chain, model=change(chain.model, value))
 
     def flanks(model: GearModel, value: float) -> GearModel:
-        return replace(model, mesh=replace(model.mesh, clearance=value / 1e3))
+        return model.with_gaps(replace(model.mesh, clearance=value / 1e3), model.wave_generator)
 
     def bearing_play(model: GearModel, value: float) -> GearModel:
-        return replace(model, wave_generator=replace(model.wave_generator, play=value / 1e3))
+        return model.with_gaps(model.mesh, replace(model.wave_generator, play=value / 1e3))
 
     def stroke(model: GearModel, value: float) -> GearModel:
-        return replace(model, wave_generator=replace(model.wave_generator, deflection=value))
+        return model.with_gaps(model.mesh, replace(model.wave_generator, deflection=value))
 
     pair = chain.model.pair
     return (
