@@ -221,7 +221,7 @@ CHANGES: tuple[tuple[str, Change], ...] = (
         "`gear.circular_spline_diameter_mm` / 1.1",
         proportion("gear.circular_spline_diameter_mm", 1 / 1.1),
     ),
-    ("wall and diaphragm of `examples/xb1-40.toml`, × 1.67", proportions(THICK_WALL)),
+    ("wall and diaphragm of `examples/xb1-40.toml`, × 1.63", proportions(THICK_WALL)),
     ("ring and race × 0.5", proportions(THIN)),
     ("ring and race × 0.5, pressure angle 30", proportions(THIN | {"gear.pressure_angle_deg": 1.5})),
     ("plain flanks", lambda d, m: replace(m, mesh=replace(m.mesh, flanks="plain"))),

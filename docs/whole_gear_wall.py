@@ -10,7 +10,7 @@ from pathlib import Path
 from scipy.optimize import brentq
 from whole_gear_figures import CATALOGUE, sized_design
 
-from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, Tube
+from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, Ends, Tube
 from flexspline.geometry.sized import PITCH_RADIUS_PER_SIZE_mm
 from flexspline.pipeline.largest_torques import tube_of
 
@@ -37,11 +37,11 @@ def buckling_torques() -> dict[float, float]:
     return found
 
 
-def wall_share(tube: Tube, torque_Nm: float, pitch_radius: float) -> float:
+def wall_share(tube: Tube, torque_Nm: float, pitch_radius: float, ends: Ends) -> float:
     """Of the pitch radius: the wall of a perfect tube that buckles at that torque."""
 
     def excess(share: float) -> float:
-        return replace(tube, wall=share * pitch_radius).torque_Nm("clamped") - torque_Nm
+        return replace(tube, wall=share * pitch_radius).torque_Nm(ends) - torque_Nm
 
     return float(brentq(excess, THINNEST, THICKEST))
 
@@ -54,7 +54,10 @@ def catalogue_table() -> str:
         if tube is None:
             raise ValueError(f"the cup of size {size:g} has no tube")
         radius = PITCH_RADIUS_PER_SIZE_mm * size
-        walls = [wall_share(tube, torque / knock, radius) for knock in (LOWER_EDGE_OF_TESTS, 1.0)]
+        walls = [
+            wall_share(tube, torque / LOWER_EDGE_OF_TESTS, radius, "hinged"),
+            wall_share(tube, torque, radius, "clamped"),
+        ]
         lines.append(
             f"| {size:g} | {torque:g} | {1e3 * torque / radius**3:.1f} | {walls[0]:.4f} | {walls[1]:.4f} |"
         )

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from flexspline.geometry.material import Material
+from flexspline.geometry.material import ElasticMaterial
 
 NMM_PER_NM = 1000.0
 """N·mm in one N·m: inside lengths are mm, stiffnesses are told in N·m/rad."""
@@ -21,7 +21,7 @@ class Elastic:
     poissons_ratio: float
 
     @classmethod
-    def of(cls, material: Material) -> Elastic:
+    def of(cls, material: ElasticMaterial) -> Elastic:
         return cls(material.youngs_modulus_GPa * 1e3, material.poissons_ratio)
 
     @property

@@ -15,7 +15,7 @@ from pydantic import Field
 from flexspline.geometry import ranges
 from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
 from flexspline.geometry.fields import Length, Micrometre, Percent, Table, within
-from flexspline.geometry.material import Material
+from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
 from flexspline.geometry.wave_generator import WaveGenerator
@@ -26,15 +26,15 @@ class Materials(Table):
 
     flexspline: Material
     shaft: Material | None = Field(default=None, description="absent: as the flexspline's")
-    circular_spline: Material | None = Field(
+    circular_spline: ElasticMaterial | None = Field(
         default=None, description="of the whole gear; absent: as the flexspline's"
     )
-    bearing: Material | None = Field(
+    bearing: ElasticMaterial | None = Field(
         default=None, description="races and balls, of the whole gear; absent: 100Cr6"
     )
 
     @property
-    def stated(self) -> dict[str, Material]:
+    def stated(self) -> dict[str, ElasticMaterial]:
         """By key."""
         return {key: value for key, value in self if value is not None}
 
@@ -78,6 +78,11 @@ class Gear(Table):
     def centre_distance_mm(self) -> float:
         """a = m(z2 − z1)/2 [mm], which is also w0, the wave generator's radial stroke."""
         return self.module_mm * (self.teeth_circular_spline - self.teeth_flexspline) / 2
+
+    @property
+    def ratio(self) -> float:
+        """z1/(z2 − z1): of the gear whose circular spline is held."""
+        return self.teeth_flexspline / (self.teeth_circular_spline - self.teeth_flexspline)
 
     @property
     def bearing_play_limit_um(self) -> float:

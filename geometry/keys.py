@@ -12,6 +12,8 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.part import Part
 
 STEP = re.compile(r"([A-Za-z_]\w*)(?:\[(\d+)\])?")
+WITH_DEFAULTS = ("material.circular_spline", "material.bearing")
+"""Tables that may be missing although their keys have values: one key of them makes the table."""
 HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
 """Not in the meridian: no sensitivity without holes."""
 
@@ -84,7 +86,10 @@ def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:
     """The table that holds a key, and the key's last name."""
     *path, last = key.split(".")
     here: Any = tables
-    for name in path:
+    for depth, name in enumerate(path, 1):
+        if ".".join(path[:depth]) in WITH_DEFAULTS:
+            here = here.setdefault(name, {})
+            continue
         match = STEP.fullmatch(name)
         try:
             if name.isdigit() and isinstance(here, list):  # shaft.segment.1.length_mm

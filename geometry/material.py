@@ -13,13 +13,24 @@ STEEL_KG_PER_M3 = 7850.0
 """Density where the file states none: that of steel."""
 
 
-class Material(Table):
+class ElasticMaterial(Table):
     """Isotropic linear elastic material."""
 
-    name: str = Field(min_length=1, max_length=200, description="for the report")
+    name: str = Field(
+        default="not named", min_length=1, max_length=200, description="for the report"
+    )
     youngs_modulus_GPa: Annotated[float, within(ranges.YOUNGS_MODULUS_GPa)] = Field(
         description="GPa, E"
     )
+    poissons_ratio: Annotated[float, within(ranges.POISSONS_RATIO)] = Field(
+        default=0.3, description="1, ν; default 0.3, of metals"
+    )
+
+
+class Material(ElasticMaterial):
+    """That of a part whose stress and mass are computed, too."""
+
+    name: str = Field(min_length=1, max_length=200, description="for the report")
     poissons_ratio: Annotated[float, within(ranges.POISSONS_RATIO)] = Field(description="1, ν")
     fatigue_limit_MPa: Annotated[float, within(ranges.FATIGUE_LIMIT_MPa)] | None = Field(
         default=None, description="MPa, optional, compared with stress"
@@ -34,5 +45,5 @@ class Material(Table):
         return "density_kg_per_m3" in self.model_fields_set
 
 
-BEARING_STEEL = Material(name="100Cr6", youngs_modulus_GPa=208.0, poissons_ratio=0.3)
+BEARING_STEEL = ElasticMaterial(name="100Cr6", youngs_modulus_GPa=208.0, poissons_ratio=0.3)
 """Of races and balls where the file states none (makers' data sheets)."""

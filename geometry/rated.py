@@ -16,7 +16,8 @@ RATED_Nm_per_mm3 = 2.9e-3
 """The median of sizes 14, 17, 20 and 25 at ratio 100, which have 1.8, 3.1, 3.2 and 2.7 (10, 31, 52 and 87 N·m
 at 17.78, 21.59, 25.40 and 31.75 mm; Schaeffler TPI 275, examples/catalogue/)."""
 RATED_WHY = (
-    f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes"
+    f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes at "
+    "ratio 100"
 )
 
 

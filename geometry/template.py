@@ -7,7 +7,7 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.material import BEARING_STEEL
+from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
 from flexspline.geometry.toml_text import quoted
 
@@ -154,8 +154,10 @@ def first_values(kind: str) -> Table:
         "material": {
             "flexspline": _STEEL,
             "shaft": _STEEL,
-            "circular_spline": _STEEL,
-            "bearing": BEARING_STEEL.model_dump(exclude_none=True),
+            "circular_spline": {
+                k: v for k, v in _STEEL.items() if k in ElasticMaterial.model_fields
+            },
+            "bearing": BEARING_STEEL.model_dump(),
         },
         "gear": {
             "module_mm": 0.2,

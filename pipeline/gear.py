@@ -23,8 +23,8 @@ from flexspline.geometry.rated import rated_in_proportion, rated_torque
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
-from flexspline.pipeline.gear_notes import both_press_N, inseparable, notes, warnings
-from flexspline.pipeline.gear_terms import gear_terms
+from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, warnings
+from flexspline.pipeline.gear_terms import SMALL, gear_terms, play_effect
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -107,20 +107,22 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
         with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
             rated, _ = rated_torque(design)
             terms = gear_terms(chain, load.torque_Nm, rated)
+            play = play_effect(chain.model, SMALL * min(load.torque_Nm, rated))
             curve = curve_of(design, chain)
         with context.progress.stage("torque at which no tooth is left in its space"), one_thread():
             limit = Engagement(chain.model).limit(
                 rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
             )
         tube = tube_of(design)
-        warned, noted = largest_torques(limit, tube, rated)
+        full = chain.model.wave_generator.deflection == design.gear.centre_distance_mm
+        said = [of_play(terms, play, full), largest_torques(limit, tube, rated)]
         return replace(
             curve,
             terms_arcsec=terms,
             buckling_torque_Nm=None if tube is None else two_digits(tube.lower_edge_Nm),
             ratcheting_torque_Nm=limit and two_digits(limit),  # found to 5 %
-            warnings=(*curve.warnings, *warned),
-            notes=(*curve.notes, *inseparable(terms), *noted),
+            warnings=(*curve.warnings, *(line for warned, _ in said for line in warned)),
+            notes=(*curve.notes, *(line for _, noted in said for line in noted)),
         )
 
     depends_on = {

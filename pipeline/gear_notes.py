@@ -15,6 +15,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import even
+from flexspline.pipeline.gear_terms import PlayEffect
 from flexspline.pipeline.largest_torques import rounded
 
 LOW_RIM = 0.05
@@ -25,8 +26,16 @@ LEAST_RELIEF = 1e-3
 """mm: what is less is no change of a flank's shape."""
 LEAST_OVERLAP = 1e-6
 """mm: rounding."""
+LOW_RATIO = 45
+"""Below 50, where catalogues and the model agree, and above 30, where they do not."""
 BEYOND_RATED = 5.0
 """Times rated torque: more than any catalogue's peak torque, 2 to 4.5 times (HD, CSF)."""
+
+
+LEAST_ANGLE = 0.1
+"""arcsec: what is less is rounding of the equilibrium."""
+ACT_TOGETHER = 0.2
+"""Of the play's own effect: a smaller difference of the two orders is a matter of taste."""
 
 
 def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
@@ -100,6 +109,11 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
         lines.append(f"{balls} balls are computed as {even(balls)}, half of them in each lobe")
+    if design.gear.ratio < LOW_RATIO:
+        lines.append(
+            f"below a ratio of {LOW_RATIO} the model is too stiff: with thicknesses in proportion to the "
+            "pitch radius catalogues' gears of ratio 30 are about half as stiff (docs/whole-gear.md)"
+        )
     mesh = model.mesh
     if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
         lines.append(
@@ -128,11 +142,29 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
     return lines
 
 
-def inseparable(terms_arcsec: Mapping[str, float]) -> list[str]:
-    """Where a clearance alone makes the free angle smaller."""
-    if terms_arcsec["bearing_play"] >= 0:
-        return []
-    return [
-        "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
-        "bearing_play and tight_gear together"
-    ]
+def of_play(
+    terms_arcsec: Mapping[str, float], play: PlayEffect, full_stroke: bool
+) -> tuple[list[str], list[str]]:
+    """Warnings and notes where the bearing's play does not simply open the mesh.
+
+    `full_stroke`: the plug's stroke is m(z2 - z1)/2.
+    """
+    warned, noted = [], []
+    if play.last_tenth < -LEAST_ANGLE:
+        warned.append(
+            "more bearing play makes the free angle smaller here: the rim stands so low on its balls that "
+            "teeth off the major axis touch first. That is no better gear: take less play"
+        )
+    term = terms_arcsec["bearing_play"]
+    if term < 0 and not full_stroke:
+        noted.append(
+            "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
+            "bearing_play and tight_gear together"
+        )
+    elif term >= 0 and abs(play.whole - term) > max(LEAST_ANGLE, ACT_TOGETHER * abs(play.whole)):
+        noted.append(
+            f"flank clearance and bearing play act together: without play alone the free angle is "
+            f"{rounded(play.whole)} arcsec smaller; the terms take the flank clearance away first, and "
+            f"leave {rounded(term)} arcsec to the play"
+        )
+    return warned, noted

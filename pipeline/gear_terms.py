@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from flexspline.fea.gear.model import GearModel
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
@@ -32,14 +32,8 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
     no_play = model.with_gaps(tight, replace(model.wave_generator, play=0.0))
 
     small = SMALL * min(load_Nm, rated_Nm)
-
-    def gap_of(of: GearModel) -> float:
-        """Where the curve's first tangent meets zero torque; the curve is odd."""
-        at = of.at_torque(small)
-        return 2 * ARCSEC_PER_RAD * (at.rotation - at.slope * at.torque)
-
     loaded = float(Chain(model, 0.0, chain.holes).angles([load_Nm])[0])
-    gap, without_flank, without_any = (gap_of(of) for of in (model, no_flank, no_play))
+    gap, without_flank, without_any = (free_angle(of, small) for of in (model, no_flank, no_play))
     terms = {
         "shaft": 2 * load_Nm * chain.shaft * ARCSEC_PER_RAD,
         "flexspline": 2 * ARCSEC_PER_RAD * loaded - gap,
@@ -49,3 +43,28 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
     }
     # a difference of equal angles is rounding, and has no sign
     return {key: round(v, 9) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}
+
+
+def free_angle(of: GearModel, small_Nm: float) -> float:
+    """Between both flanks [arcsec]: where the first tangent meets zero torque; the curve is odd."""
+    at = of.at_torque(small_Nm)
+    return 2 * ARCSEC_PER_RAD * (at.rotation - at.slope * at.torque)
+
+
+@dataclass(frozen=True)
+class PlayEffect:
+    """Of the bearing's play on the free angle [arcsec]: all of it, and its last tenth, taken away alone."""
+
+    whole: float
+    last_tenth: float
+
+
+def play_effect(model: GearModel, small_Nm: float) -> PlayEffect:
+    """What the play opens while the flanks keep their clearance; errors as `gear_terms`."""
+
+    def with_play(share: float) -> float:
+        bearing = replace(model.wave_generator, play=share * model.wave_generator.play)
+        return free_angle(model.with_gaps(model.mesh, bearing), small_Nm)
+
+    as_drawn = free_angle(model, small_Nm)
+    return PlayEffect(as_drawn - with_play(0.0), as_drawn - with_play(0.9))

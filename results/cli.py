@@ -230,7 +230,11 @@ def init(
 
         if size is None and ratio is not None:
             raise DesignError("--ratio", ratio, "needs a --size, such as 25")
-        text = template(kind) if size is None else sized_template(kind, size, ratio or 100)
+        text = (
+            template(kind)
+            if size is None
+            else sized_template(kind, size, 100 if ratio is None else ratio)
+        )
         show(text.removesuffix("\n"))
 
 

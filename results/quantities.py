@@ -199,14 +199,14 @@ QUANTITIES: tuple[Quantity, ...] = (
             f"{key}_Nm_per_rad",
             f"{key}_Nm_per_rad",
             _STIFFNESS,
-            f"Whole gear, {name}",
+            f"{key} of the whole gear, {name}",
             f"K_{key[1]}",
             digits=3,
         )
         for key, name in (
-            ("K1", "stiffness from 0 to T1"),
-            ("K2", "stiffness from T1 to T2"),
-            ("K3", "stiffness from T2 to rated torque"),
+            ("K1", "from 0 to T1"),
+            ("K2", "from T1 to T2"),
+            ("K3", "from T2 to rated torque"),
         )
     ),
     *(

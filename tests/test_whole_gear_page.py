@@ -53,7 +53,7 @@ def test_what_is_said_of_ratcheting_holds() -> None:
     for ratio, row in by.items():
         # "within 2 to 7 % at each ratio, within a fifth over all"
         assert float(row[7]) <= (0.2 if ratio == "all" else 0.07)
-    assert by["all"][4:6] == ["2.1", "1.4 to 3.0"]
+    assert by["all"][4:6] == ["2.2", "1.5 to 3.1"]
     changed = [float(x) for row in rows_below("ratcheting sensitivity") for x in row[1:]]
     assert min(changed) > 0.5  # "no assumption carries it": that takes a fifth to a fiftieth
 
@@ -81,14 +81,14 @@ def test_the_words_beside_the_tables_hold() -> None:
     assert all(1.8 < K < 2.4 for K in by["30"][:3])  # "about twice too stiff"
     others = {(row[1], row[2]): float(row[5]) for row in rows_below("rows") if row[2] != "30"}
     off = {key: K3 for key, K3 in others.items() if abs(K3 - 1) > 0.3}
-    assert {size for size, _ in off} == {"14"}  # "the three of size 14 are 1.31 to 1.35"
-    assert (min(off.values()), max(off.values())) == (1.31, 1.35)
+    assert {size for size, _ in off} == {"14"}  # "the three of size 14 are 1.33 to 1.37"
+    assert (min(off.values()), max(off.values())) == (1.33, 1.37)
     thin = {row[0]: row[1:] for row in rows_below("ratio 30")}[
         "ring and race × 0.5, pressure angle 30"
     ]
     size_25 = next(r for r in rows_below("rows") if r[1:3] == ["25", "30"])
     over = [float(k) * float(x) for k, x in zip(size_25[3:6], thin, strict=True)]
-    assert over == pytest.approx([0.98, 1.62, 1.27], abs=0.02)
+    assert over == pytest.approx([0.99, 1.64, 1.27], abs=0.02)
     terms = {(row[0], row[1].split(",")[0]): row[2:] for row in rows_below("terms")}
     for name in ("xb1-40", "hat-25"):
         of_sum, of_model = map(float, terms[name, "flexspline"])
@@ -133,14 +133,14 @@ def test_the_whole_page_is_what_the_program_finds() -> None:
 
 
 def test_the_wall_of_the_catalogue_is_what_the_first_design_takes() -> None:
-    """Each of 15 sizes asks for 0.0115 to 0.0125 of the pitch radius; all rows are found again."""
+    """Each of 15 sizes asks for 0.0117 to 0.0127 of the pitch radius; all rows are found again."""
     assert wall.catalogue_table().splitlines() == [
         "| " + " | ".join(row) + " |" for row in rows_below("wall")
     ]
     asked = [float(row[3]) for row in rows_below("wall")]
     assert len(asked) == 15
-    assert min(asked) == 0.0115
-    assert max(asked) == 0.0125
+    assert min(asked) == 0.0117
+    assert max(asked) == 0.0127
     assert min(asked) < WALL_SHARE < max(asked)
     assert wall.calculix_table().splitlines() == [
         "| " + " | ".join(row) + " |" for row in rows_below("tube")

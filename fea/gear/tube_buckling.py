@@ -2,7 +2,8 @@
 
 Donnell, Stability of thin-walled tubes under torsion, NACA Report 479 (1933); in this form in Roark's
 Formulas for Stress and Strain, 7th ed., table 15.2. Tests lie below it: their lower edge is 0.67 of the
-theory (NASA SP-8007). Elastic, and without the oval shape that the wave generator gives the tube.
+theory of hinged ends (NASA SP-8007). Diaphragm and ring clamp the perfect tube (benchmarks/tube_buckling.py).
+Elastic, and without the oval shape that the wave generator gives the tube.
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ class Tube:
 
     @property
     def lower_edge_Nm(self) -> float:
-        """Of a real tube: diaphragm and ring clamp it, as benchmarks/tube_buckling.py shows."""
-        return LOWER_EDGE_OF_TESTS * self.torque_Nm("clamped")
+        """Of a real tube: the factor belongs to the theory of hinged ends, though tests clamp them."""
+        return LOWER_EDGE_OF_TESTS * self.torque_Nm("hinged")
 
     def stress_MPa(self, torque_Nm: float) -> float:
         """Shear in the wall."""

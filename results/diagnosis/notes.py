@@ -15,6 +15,11 @@ from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped
 
+NOT_SOUGHT = (
+    "which input of the gear explains the rest was not sought: that takes one unit, loaded and unloaded at "
+    "both signs of torque at three sizes of torque at least"
+)
+
 
 def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     """How the file was read, and notes of the kind that was measured."""
@@ -24,7 +29,12 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec",
     )  # fmt: skip
     found = diagnosis.gear_inputs
-    inputs = () if found is None else gear_inputs_notes(found)
+    if found is not None:
+        inputs = gear_inputs_notes(found)
+    elif bend is not None and diagnosis.sweep is not None:
+        inputs = (NOT_SOUGHT,)
+    else:
+        inputs = ()
     return (*reading_notes(diagnosis.measurement.read_as), *against, *inputs, *_of_kind(diagnosis))
 
 

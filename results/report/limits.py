@@ -46,7 +46,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Left out of the sum",
             "Friction hysteresis, stiffness that grows with load, temperature, wear, the "
             "compliance of circular spline, housing, bearings and bolts. Measured lost motion "
-            "contains all of them and is as a rule larger and softer near zero torque.",
+            "contains all of them; it is often larger, and softer near zero torque.",
         ],
     ]
     if content.linear_limit is not None:

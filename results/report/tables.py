@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.material import Material
+from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
@@ -190,10 +190,14 @@ def _materials(design: Design) -> list[list[str]]:
         ]
     )
     if of.circular_spline:
-        rows.append(["Material, circular spline", _material(of.circular_spline)])
+        rows.append(["Material, circular spline", _elastic(of.circular_spline)])
     if of.bearing:
-        rows.append(["Material, races and balls", _material(of.bearing)])
+        rows.append(["Material, races and balls", _elastic(of.bearing)])
     return rows
+
+
+def _elastic(m: ElasticMaterial) -> str:
+    return f"{m.name}: E = {m.youngs_modulus_GPa:g} GPa, ν = {m.poissons_ratio:g}"
 
 
 def _material(m: Material) -> str:
@@ -201,5 +205,4 @@ def _material(m: Material) -> str:
     density = f"{m.density_kg_per_m3:g} kg/m³"
     if not m.density_stated:
         density += " (steel's, not stated)"
-    elastic = f"E = {m.youngs_modulus_GPa:g} GPa, ν = {m.poissons_ratio:g}"
-    return f"{m.name}: {elastic}{limit}, density {density}"
+    return f"{_elastic(m)}{limit}, density {density}"

@@ -48,6 +48,7 @@ def test_every_assumed_value_says_so_where_it_stands() -> None:
     [
         ("cup", 1.0, 100, "--size = 1.0: must be from 3 to 200"),
         ("cup", 25.0, 10, "--ratio = 10: must be from 30 to 320"),
+        ("cup", 25.0, 0, "--ratio = 0: must be from 30 to 320"),
         ("pancake", 25.0, 100, 'must be "cup" or "hat"'),
     ],
 )

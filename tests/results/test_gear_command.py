@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import tomllib
 from pathlib import Path
 
 import in_process
@@ -12,6 +13,8 @@ import pytest
 
 import flexspline
 from flexspline.geometry.gear_assumptions import gear_assumptions
+from flexspline.geometry.load import design_from
+from flexspline.geometry.sized import sized_template
 from flexspline.geometry.template import design_text
 from flexspline.pipeline.gear import LAWS, GearCurve
 from flexspline.pipeline.gear_model import pair_compliance
@@ -133,7 +136,7 @@ def test_the_command_prints_the_figures_and_what_it_assumed(tmp_path: Path) -> N
     assert record == json.loads((tmp_path / "cup.out" / "gear.json").read_text(encoding="utf-8"))
     assert record["rated_torque_Nm"] == 20.0
     shown = table(record, tmp_path)
-    assert "Whole gear, stiffness from 0 to T1" in shown
+    assert "K1 of the whole gear, from 0 to T1" in shown
     assert "assumed: wave_generator.ball_count = 23" in shown
 
 
@@ -248,13 +251,37 @@ def test_a_clearance_that_makes_the_gap_smaller_is_explained() -> None:
 
 
 def test_the_tube_of_the_example_buckles_beyond_what_its_teeth_carry(curve: GearCurve) -> None:
-    """0.67 of Donnell's clamped tube, 1232 N·m by hand: r 19.4, t 0.4, L 20.65 mm, and CalculiX' 1248."""
-    assert curve.buckling_torque_Nm == pytest.approx(
-        0.67 * 1232, rel=0.02
-    )  # two digits are printed
+    """0.67 of Donnell's hinged tube, 1176 N·m by hand: r 19.4, t 0.4, L 21.25 mm."""
+    # two digits are printed
+    assert curve.buckling_torque_Nm == pytest.approx(0.67 * 1176, rel=0.02)
     strong = flexspline.gear(DESIGN.changed({"gear.rated_torque_Nm": 900.0}))
     assert any("tube buckles" in line for line in strong.warnings)
     assert not any("tube buckles" in line for line in curve.warnings)
+
+
+def test_a_material_of_the_gear_needs_its_modulus_alone(curve: GearCurve) -> None:
+    """One key makes the table, as a study varies it; what nothing reads is refused."""
+    softer = DESIGN.changed({"material.bearing.youngs_modulus_GPa": 104.0})
+    assert flexspline.gear(softer).K1_Nm_per_rad < curve.K1_Nm_per_rad
+    with pytest.raises(flexspline.FlexsplineError, match="fatigue_limit_MPa"):
+        DESIGN.changed({"material.circular_spline": {**STEEL, "fatigue_limit_MPa": 500.0}})
+
+
+def low_ratio(play_um: float) -> GearCurve:
+    """A gear of ratio 30, whose rim stands low with much play."""
+    sized = design_from(tomllib.loads(sized_template("cup", 25, 30)))
+    return flexspline.gear(sized.changed({"bearing.radial_clearance_um": play_um}))
+
+
+def test_play_that_closes_the_gap_is_warned_of() -> None:
+    """From 95 to 116 µm the lost motion falls; from 0 to 32 it grows."""
+    loose, looser, tight = (low_ratio(play) for play in (95.0, 116.0, 32.0))
+    assert looser.lost_motion_arcsec < loose.lost_motion_arcsec
+    for found in (loose, looser):
+        assert any("take less play" in line for line in found.warnings)
+    assert not any("take less play" in line for line in tight.warnings)
+    assert any("act together" in line for line in tight.notes)
+    assert any("below a ratio of 45" in line for line in tight.notes)
 
 
 def test_materials_of_the_other_parts_count(curve: GearCurve) -> None:

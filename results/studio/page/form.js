@@ -116,7 +116,10 @@ export class Form {
     if (at === "material.flexspline") {
       const others = [["shaft", "the shaft"], ["circular_spline", "the circular spline"], ["bearing", "races and balls"]];
       const made = others.filter(([key]) => !state.tables.material[key]).map(([key, name]) =>
-        button(`Other material for ${name}`, (t) => { t.material[key] = { ...t.material.flexspline }; }));
+        button(`Other material for ${name}`, (t) => { 
+          const { name: called, youngs_modulus_GPa, poissons_ratio, ...rest } = t.material.flexspline;
+          t.material[key] = { name: called, youngs_modulus_GPa, poissons_ratio, ...(key === "shaft" ? rest : {}) };
+        }));
       return el("p", { class: "actions" }, ...made);
     }
     return null;
