@@ -46,13 +46,14 @@ def tables() -> dict[str, str]:
 
 
 def three_dimensional() -> dict[str, str]:
-    """The tables that stand beside the recorded contact solution of benchmarks/gear_contact_3d.py."""
+    """The tables that stand beside recorded contact solutions of other programs."""
     found = contact_3d.record()
     return {
         "three-dimensional curves": contact_3d.curves_table(found),
         "three-dimensional meshes": contact_3d.meshes_table(found),
         "three-dimensional surface contact": contact_3d.surface_table(found),
         "three-dimensional assumptions": contact_3d.assumptions_table(found),
+        "meshed teeth": contact_3d.teeth_table(),
     }
 
 

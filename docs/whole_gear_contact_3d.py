@@ -20,6 +20,7 @@ from flexspline.pipeline.gear import CARRIES
 from flexspline.pipeline.gear_model import gear_model
 
 RECORD = Path(__file__).parents[1] / "benchmarks" / "gear_contact_3d.json"
+TEETH = RECORD.with_name("tooth_pair_contact.json")
 BEARINGS = ("plug", "race")
 CASES = (
     ("rigid plug, 5 places", "plug", 5),
@@ -172,4 +173,19 @@ def surface_table(found: dict[str, Any]) -> str:
         ]
         cells = " | ".join(f"{one / 1e3:.2f}" for one in K)
         lines.append(f"| {torques[0]:.2f} to {torques[1]:.2f} | {cells} |")
+    return "\n".join(lines)
+
+
+def teeth_table() -> str:
+    """Compliance of a pair of meshed teeth by NGSolve, over the model's."""
+    record = json.loads(TEETH.read_text(encoding="utf-8"))
+    model = record["model_mm2_N"]
+    lines = []
+    for row in record["pairs"]:
+        flanks = "straight" if row["crown_mm"] is None else f"one crowned, {row['crown_mm']:g} mm"
+        meshed = row["compliance_mm2_N"]
+        lines.append(
+            f"| {row['behind_mm']:.3g} | {flanks} | {row['force_N_mm']:.1f} | "
+            f"{1e5 * meshed:.2f} | {1e5 * model:.2f} | {model / meshed:.2f} |"
+        )
     return "\n".join(lines)
