@@ -21,7 +21,11 @@ from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({"shaft.bolt_count": 0})
+DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({
+    "shaft.bolt_count": 0,
+    "gear.module_mm": 0.4, "gear.teeth_flexspline": 100, "gear.teeth_circular_spline": 102,
+})  # fmt: skip
+"""As large as the example with half as many teeth, in less than half the time."""
 LARGEST_Nm, FRICTION_arcsec = 10.0, 6.0
 FLANK, PLAY, STROKE = (
     "gear.flank_clearance_um", "bearing.radial_clearance_um", "wave_generator.deflection_mm",
@@ -122,7 +126,7 @@ def test_two_inputs_that_both_changed_are_named_together(
 def test_another_gap_is_the_model_built_anew(chain: Chain) -> None:
     """What the bodies yield is kept: the angle at a torque is that of the changed drawing."""
     inputs = {each.key: each for each in inputs_of(DESIGN, chain)}
-    for key, value in ((FLANK, 7.0), (PLAY, 4.0), (STROKE, 0.204)):
+    for key, value in ((FLANK, 7.0), (PLAY, 4.0), (STROKE, 0.408)):
         drawn = chain_of(analysis_context(DESIGN.changed({key: value})), 1 / chain.shaft)
         kept = inputs[key].changed(chain, value)
         assert kept.angles([1.0, 8.0]) == pytest.approx(drawn.angles([1.0, 8.0]), rel=1e-6)
