@@ -23,9 +23,11 @@ from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_
 from flexspline.results.streams import show
 from flexspline.results.studio.command import register as register_studio
 from flexspline.results.study.command import register as register_study
+from flexspline.results.usage import Commands, number, whole_number
 
 app = typer.Typer(
     name="flexspline",
+    cls=Commands,
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
@@ -216,10 +218,13 @@ def init(
     kind: Annotated[str, typer.Argument(metavar="[cup|hat]", help="Kind of flexspline.")] = "cup",
     size: Annotated[
         float | None,
-        typer.Option(metavar="S", help="Of a catalogue: in proportion, assumptions marked."),
+        typer.Option(
+            metavar="S", parser=number, help="Of a catalogue: in proportion, assumptions marked."
+        ),
     ] = None,
     ratio: Annotated[
-        int | None, typer.Option(metavar="I", help="Reduction, with a size; default 100.")
+        int | None,
+        typer.Option(metavar="I", parser=whole_number, help="Reduction, with a size; default 100."),
     ] = None,
 ) -> None:
     """Print a commented design file to start from."""

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from flexspline.results.job import tell
+from flexspline.results.usage import number
 
 DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
 
@@ -30,10 +31,12 @@ Out = Annotated[
     ),
 ]
 Kb = Annotated[
-    float | None, typer.Option("--Kb", metavar="X", help="K_b in N·m/rad, instead of FEA")
+    float | None,
+    typer.Option("--Kb", metavar="X", parser=number, help="K_b in N·m/rad, instead of FEA"),
 ]
 Ke = Annotated[
-    float | None, typer.Option("--Ke", metavar="X", help="K_e in N·m/rad, instead of FEA")
+    float | None,
+    typer.Option("--Ke", metavar="X", parser=number, help="K_e in N·m/rad, instead of FEA"),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 

@@ -11,6 +11,7 @@ import typer
 from flexspline.results.job import answered, begin, folder_of, tell
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
+from flexspline.results.usage import number
 
 MeasuredFile = Annotated[
     Path, typer.Argument(metavar="MEASURED.csv", help="Torque sweep, end points or specimens.")
@@ -26,6 +27,7 @@ CountsPerTurn = Annotated[
     typer.Option(
         "--counts-per-turn",
         metavar="N",
+        parser=number,
         help="Counts of a turn of the encoder, where an angle is in counts",
     ),
 ]

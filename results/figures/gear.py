@@ -63,7 +63,9 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
             axes.set_xlim(-93, 93)
             axes.set_xticks(range(-90, 91, 30))
             axes.grid(True, axis="y")
-        axes.set_xlabel("Angle from the major axis in degrees. Rated torque; the other half turn is alike")
+        axes.set_xlabel(
+            "Angle from the major axis in degrees. Rated torque; the other half turn is alike"
+        )
         save_png(figure, path)
 
 

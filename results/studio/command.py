@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from flexspline.results.job import answered
+from flexspline.results.usage import whole_number
 
 
 def register(app: typer.Typer) -> None:
@@ -25,7 +26,9 @@ def studio(
     host: Annotated[
         str, typer.Option(help="Address to listen on; 127.0.0.1 is reached from this machine only.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="0: any free port.")] = 0,
+    port: Annotated[
+        int, typer.Option(metavar="N", parser=whole_number, help="0: any free port.")
+    ] = 0,
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
 ) -> None:
     """A page on this machine: every dimension a slider, stiffness, stress and backlash follow."""

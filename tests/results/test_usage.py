@@ -1,0 +1,38 @@
+"""Words of the command line that cannot be read: one line that names the word, exit status 2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import in_process
+import pytest
+
+from flexspline.results.cli import app
+
+WRONG = {
+    "backlash": "DESIGN.toml",
+    "gear cup.toml --jso": "--json",
+    "stifness cup.toml": "stifness",
+    "--foo": "--foo",
+    "init cup --size abc": '"abc"',
+    "init cup --size 25 --ratio 1.5": '"1.5"',
+    "studio --port eighty": '"eighty"',
+    "export cup.toml --format": "--format",
+    "backlash cup.toml more.toml": "more.toml",
+    "backlash cup.toml --Kb 30.000,5": '"30.000,5"',
+    "diagnose cup.toml sweep.csv --against curve": "'curve'",
+}
+
+
+@pytest.mark.parametrize("line", WRONG)
+def test_one_line_names_what_is_wrong(line: str, tmp_path: Path) -> None:
+    ended = in_process.flexspline(*line.split(), folder=tmp_path)
+    assert ended.status == 2
+    assert WRONG[line] in ended.said[0]  # the only one: in_process sees to that
+    assert "--help" in ended.said[0]
+
+
+def test_no_words_at_all_are_answered_with_the_help(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        app([])
+    assert "Commands:" in "".join(capfd.readouterr())
