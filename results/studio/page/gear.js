@@ -57,7 +57,8 @@ function curve({ line, marks }, pinned) {
     chart.append(svg("path", { d: `M${EDGE.left} ${y(a)}H${W - EDGE.right}`, class: a ? "grid" : "axis" }),
       svg("text", { x: EDGE.left - 5, y: y(a) + 3.5, "text-anchor": "end" }, grouped(a, 0)));
   }
-  chart.append(svg("path", { d: `M${EDGE.left} ${EDGE.top}V${H - EDGE.bottom}`, class: "axis" }));
+  chart.append(svg("path", { d: `M${EDGE.left} ${EDGE.top}V${H - EDGE.bottom}`, class: "axis" }),
+    svg("text", { x: EDGE.left + 5, y: EDGE.top + 8 }, "arcsec"));
   for (const [name, t] of marks) {
     const words = `${name.replace("_", "")} ${t.toPrecision(3)}${name === "T_N" ? " N·m" : ""}`;
     chart.append(svg("path", { d: `M${x(t)} ${EDGE.top}V${H - EDGE.bottom}`, class: "load" }),
