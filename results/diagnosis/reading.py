@@ -12,6 +12,8 @@ from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 MARKS = {".": "point", ",": "comma"}
+FOOTER_LINES = 3
+"""As many are named; a remark is seldom longer."""
 HEAD_LETTERS = 60
 """Of a column's head in a sentence: the longest of our own names and a unit; a file may hold anything."""
 
@@ -54,6 +56,10 @@ def reading_notes(read_as: ReadAs) -> list[str]:
     found = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
     if read_as.empty:
         found.append(f"columns empty in every row: {heads(read_as.empty)}")
+    if read_as.footer:
+        lines = ", ".join(str(n) for n in read_as.footer[:FOOTER_LINES])
+        more = " …" if len(read_as.footer) > FOOTER_LINES else ""
+        found.append(f"words below the last row, left out: line {lines}{more}")
     return found
 
 

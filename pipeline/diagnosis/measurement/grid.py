@@ -11,6 +11,7 @@ from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name, is_unit
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.file_text import text_of
+from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
 from flexspline.pipeline.diagnosis.measurement.number_text import number_of
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
@@ -34,7 +35,8 @@ class Grid:
     ----------
     head : one text for each column; `head_line` where it stands. unit_row : units below it, () for none.
     rows : as many texts each as `head`. line : of each row. separator : "" in a workbook.
-    misfit : what is wrong with the first row that has more or fewer cells, None for none.
+    misfit : what is wrong with the first row that has more or fewer cells, None for none. footer : lines of
+        words below the last row.
     """
 
     path: Path
@@ -47,6 +49,7 @@ class Grid:
     rows: list[list[str]]
     line: list[int]
     misfit: MeasurementError | None = None
+    footer: tuple[int, ...] = ()
 
     @property
     def separator_name(self) -> str:
@@ -236,7 +239,7 @@ def _parsed(path: Path, lines: list[str], numbers: list[int], separator: str) ->
 def _grid(
     path: Path, raw: bytes, encoding: str, head: _Head, rows: list[list[str]], numbers: list[int]
 ) -> Grid:
-    """The body under the head, each row made as long as it; what is empty at the ends is left out."""
+    """The body under the head, each row made as long as it, without what is empty and the remarks below."""
     names = [c.strip() for c in rows[0]]
     first = 2 if head.units else 1
     body, line = rows[first:], numbers[first:]
@@ -244,6 +247,8 @@ def _grid(
     kept = [i for i, row in enumerate(body) if any(row) and any(c.strip() for c in row)]
     if len(kept) < len(body):
         body, line = [body[i] for i in kept], [line[i] for i in kept]
+    last = rows_above_footer(names, body)
+    body, line, footer = body[:last], line[:last], tuple(line[last:])
     named = max((i + 1 for i, name in enumerate(names) if name), default=0)
     fewest = named if head.separator else 0
     misfit = None
@@ -256,8 +261,8 @@ def _grid(
         row[:] = (row + [""] * (width - fields))[:width]
     units = tuple(u for _, u in _paired(names, head.units)) if head.units else ()
     return Grid(
-        path, raw, encoding, head.separator, tuple(names), numbers[0], units, body, line, misfit
-    )
+        path, raw, encoding, head.separator, tuple(names), numbers[0], units, body, line, misfit, footer
+    )  # fmt: skip
 
 
 def _misfit(path: Path, line: int, fields: int, wanted: int, separator: str) -> MeasurementError:

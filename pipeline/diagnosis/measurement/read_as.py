@@ -17,6 +17,7 @@ class ReadAs:
         columns without any value. encoding : "UTF-8", "UTF-16", "cp1252", "xlsx". separator : in words.
     decimal_mark : "." or ",". head_line : of the file. unit_row : whether units stand below the head.
     began : the first row's date and time, "" where time is no date. sha256 : of the file's bytes.
+    footer : lines of words below the last row.
     """
 
     columns: tuple[ReadColumn, ...] = ()
@@ -29,6 +30,7 @@ class ReadAs:
     unit_row: bool = False
     began: str = ""
     sha256: str = ""
+    footer: tuple[int, ...] = ()
 
     @property
     def heads(self) -> tuple[str, ...]:
@@ -42,7 +44,7 @@ class ReadAs:
             c.head in (c.name, f"{c.name.partition('_')[0]}_{c.unit}") for c in self.columns
         )
         form = (self.separator, self.decimal_mark, self.unit_row) == ("comma", ".", False)
-        return plain and form and not self.empty
+        return plain and form and not self.empty and not self.footer
 
 
 AS_OURS = ReadAs()

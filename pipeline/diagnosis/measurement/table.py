@@ -95,7 +95,7 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
         ReadAs(
             columns, tuple(h for i, h in enumerate(grid.head) if i not in used and h),
             tuple(c.head for c in empty), grid.encoding, grid.separator_name, mark, grid.head_line,
-            bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(),
+            bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(), grid.footer,
         ),
     )  # fmt: skip
 

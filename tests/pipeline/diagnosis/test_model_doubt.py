@@ -141,7 +141,8 @@ def test_the_file_holds_it_exactly(tmp_path: Path) -> None:
     back = read_model_file(path).doubt
     assert back is not None
     np.testing.assert_array_equal(back.covariance, COVARIANCE)
-    assert replace(back, covariance=COVARIANCE) == doubt()
+    none = np.zeros((0, 0))  # the same object on both sides: arrays have no truth value
+    assert vars(replace(back, covariance=none)) == vars(replace(doubt(), covariance=none))
 
 
 @pytest.mark.parametrize(
