@@ -23,7 +23,7 @@ from flexspline.pipeline.backlash import backlash
 from flexspline.pipeline.gear import LOADING, GearCurve, curve_of
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import gear_model
-from flexspline.pipeline.gear_terms import TIGHT, gear_terms
+from flexspline.pipeline.gear_terms import TIGHT, gear_terms, small_torque
 from flexspline.pipeline.part_stiffness import part_stiffness
 
 ROOT = Path(__file__).parents[1]
@@ -274,7 +274,9 @@ def _figures(curve: GearCurve) -> str:
 def four_terms(name: str, design: Design, chain: Chain, K_b: float) -> str:
     """Each term of the sum at ± T_L, and what the contact model has in its place [arcsec]."""
     total = backlash(design, K_b, 1 / chain.shaft)
-    own = gear_terms(chain, design.load.torque_Nm, rated_torque(design)[0])
+    load = design.load.torque_Nm
+    start = chain.model.at_torque(small_torque(load, rated_torque(design)[0]))
+    own = gear_terms(chain, load, start)
     lines = []
     for key, words in (
         ("shaft", "shaft, 2T/K_e"),

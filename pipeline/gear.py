@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexspline.fea.gear.engagement import Engagement
+from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.threads import one_thread
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
@@ -24,7 +25,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
 from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, warnings
-from flexspline.pipeline.gear_terms import SMALL, gear_terms, play_effect
+from flexspline.pipeline.gear_terms import gear_terms, play_effect, small_torque
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -106,9 +107,10 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
         chain = chain_of(context, K_e)
         with context.progress.stage("contact of teeth, rim, race and balls"), one_thread():
             rated, _ = rated_torque(design)
-            terms = gear_terms(chain, load.torque_Nm, rated)
-            play = play_effect(chain.model, SMALL * min(load.torque_Nm, rated))
-            curve = curve_of(design, chain)
+            start = chain.model.at_torque(small_torque(load.torque_Nm, rated))
+            terms = gear_terms(chain, load.torque_Nm, start)
+            play = play_effect(chain.model, start)
+            curve = curve_of(design, chain, start)
         with context.progress.stage("torque at which no tooth is left in its space"), one_thread():
             limit = Engagement(chain.model).limit(
                 rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
@@ -134,11 +136,11 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
     return context.cache.get("gear", depends_on, solve)[0]
 
 
-def curve_of(design: Design, chain: Chain) -> GearCurve:
-    """K1 to K3, lost motion, the loop, and what carries at rated torque."""
+def curve_of(design: Design, chain: Chain, start: Equilibrium | None = None) -> GearCurve:
+    """K1 to K3, lost motion, the loop, and what carries at rated torque; `start`: at a small torque."""
     rated, _ = rated_torque(design)
     up = rated * np.array(LOADING)
-    states = chain.along(up.tolist())
+    states = chain.along(up.tolist(), start)
     angles = np.array([chain.angle(s) for s in states])
     marks = [LOADING.index(share) for share in (LOADING[0], T1_SHARE, T2_SHARE, 1.0)]
     K1, K2, K3 = chords(up[marks], angles[marks])

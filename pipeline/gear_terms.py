@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain
@@ -15,12 +16,17 @@ TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
 
 
-def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, float]:
+def small_torque(load_Nm: float, rated_Nm: float) -> float:
+    """At which the gear's gaps are taken [N·m]."""
+    return SMALL * min(load_Nm, rated_Nm)
+
+
+def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str, float]:
     """Twist [arcsec] by the sum's names: shaft, flexspline, flank_clearance, bearing_play, tight_gear, total.
 
-    "flexspline" is the wind-up of flexspline, teeth and bearing together. A clearance is what the
-    free angle loses when first the flanks', then the bearing's is taken away; "tight_gear" is what is left:
-    balls and rim give way, and the rim is no ideal ellipse.
+    `start`: the gear at its `small_torque`. "flexspline" is the wind-up of flexspline, teeth and bearing
+    together. A clearance is what the free angle loses when first the flanks', then the bearing's is taken
+    away; "tight_gear" is what is left: balls and rim give way, and the rim is no ideal ellipse.
 
     Raises
     ------
@@ -31,9 +37,9 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
     no_flank = model.with_gaps(tight, model.wave_generator)
     no_play = model.with_gaps(tight, replace(model.wave_generator, play=0.0))
 
-    small = SMALL * min(load_Nm, rated_Nm)
-    loaded = float(Chain(model, 0.0, chain.holes).angles([load_Nm])[0])
-    gap, without_flank, without_any = (free_angle(of, small) for of in (model, no_flank, no_play))
+    loaded = Chain(model, 0.0, chain.holes).angle(model.at_torque(load_Nm, start))
+    gap = free_angle(start)
+    without_flank, without_any = (free_angle(of.like(start)) for of in (no_flank, no_play))
     terms = {
         "shaft": 2 * load_Nm * chain.shaft * ARCSEC_PER_RAD,
         "flexspline": 2 * ARCSEC_PER_RAD * loaded - gap,
@@ -45,9 +51,8 @@ def gear_terms(chain: Chain, load_Nm: float, rated_Nm: float) -> Mapping[str, fl
     return {key: round(v, 9) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}
 
 
-def free_angle(of: GearModel, small_Nm: float) -> float:
-    """Between both flanks [arcsec]: where the first tangent meets zero torque; the curve is odd."""
-    at = of.at_torque(small_Nm)
+def free_angle(at: Equilibrium) -> float:
+    """Between both flanks [arcsec]: where the tangent at a small torque meets zero; the curve is odd."""
     return 2 * ARCSEC_PER_RAD * (at.rotation - at.slope * at.torque)
 
 
@@ -59,12 +64,12 @@ class PlayEffect:
     last_tenth: float
 
 
-def play_effect(model: GearModel, small_Nm: float) -> PlayEffect:
-    """What the play opens while the flanks keep their clearance; errors as `gear_terms`."""
+def play_effect(model: GearModel, start: Equilibrium) -> PlayEffect:
+    """What the play opens while the flanks keep their clearance; `start` and errors as `gear_terms`."""
 
     def with_play(share: float) -> float:
         bearing = replace(model.wave_generator, play=share * model.wave_generator.play)
-        return free_angle(model.with_gaps(model.mesh, bearing), small_Nm)
+        return free_angle(model.with_gaps(model.mesh, bearing).like(start))
 
-    as_drawn = free_angle(model, small_Nm)
+    as_drawn = free_angle(start)
     return PlayEffect(as_drawn - with_play(0.0), as_drawn - with_play(0.9))

@@ -132,6 +132,10 @@ class GearModel:
         """
         return equilibrium(self.contacts, torque_Nm * NMM_PER_NM / 2, start)
 
+    def like(self, other: Equilibrium) -> Equilibrium:
+        """At the torque of an equilibrium of a gear that differs by its gaps only; errors as `at_torque`."""
+        return equilibrium(self.contacts, other.torque, other)
+
     def flank_forces(self, at: Equilibrium) -> np.ndarray:
         """Of one tooth's front and back flank at each of `tooth_angles` (2, t) [N]."""
         each = at.forces[self.flanks].reshape(2, len(self.tooth_angles), -1).sum(axis=2)
