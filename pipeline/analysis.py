@@ -100,10 +100,13 @@ def stiffnesses(
     )
 
 
-def run(context: AnalysisContext) -> RunResult:
+def run(
+    context: AnalysisContext, told: Callable[[str, SolidField], None] = lambda name, field: None
+) -> RunResult:
     """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
 
-    A field or a curve that fails is absent, with its reason in `stiffnesses.missing`.
+    A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `told` is given each of
+    `RunResult.fields` as soon as it is there.
 
     Raises
     ------
@@ -112,17 +115,23 @@ def run(context: AnalysisContext) -> RunResult:
     """
     design = context.design
     flexspline, shaft = context.part("flexspline"), context.part("shaft")
+    for part in (flexspline, shaft):
+        part.refuse_settings()
+    tried, fields = Attempts(), dict[str, SolidField]()
+
+    def solve(name: str, make: Callable[[], SolidField]) -> None:
+        field = tried.get(name, make)
+        if field is not None:
+            fields[name] = field
+            told(name, field)
+
+    # a part's stiffness comes from the same solution, which the cache keeps
+    solve("flexspline_torque", lambda: torque_field(flexspline))
+    solve("shaft_torque", lambda: torque_field(shaft))
     found = stiffnesses(context)
     found.require(design)
     total = backlash_of(design, found)
-    tried = Attempts()
-    asked = {
-        "flexspline_torque": lambda: torque_field(flexspline),
-        "shaft_torque": lambda: torque_field(shaft),
-        "wave_generator": lambda: ellipse_field(flexspline),
-    }
-    made = {name: tried.get(name, solve) for name, solve in asked.items()}
-    fields = {name: solved for name, solved in made.items() if solved is not None}
+    solve("wave_generator", lambda: ellipse_field(flexspline))
     gear = tried.get("gear", lambda: _gear(context))
     found = replace(found, missing={**found.missing, **tried.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}

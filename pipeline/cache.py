@@ -52,8 +52,8 @@ class Cache:
         ------
         ComputationError : from `make`, now or when it was asked before.
         """
-        key = content_key({"format": FORMAT, "stage": stage, **inputs})
-        path = self.folder / stage / f"{key}.npz"
+        key = self._key(stage, inputs)
+        path = self._path(stage, key)
         found = self._read(path, key)
         if found is not _MISSING:
             return found, True
@@ -72,6 +72,17 @@ class Cache:
         else:
             self.passing[key] = value
         return value, False
+
+    def has(self, stage: str, inputs: Mapping[str, Any]) -> bool:
+        """Whether a value for `inputs` is stored; `get` may yet find it damaged."""
+        return self._path(stage, self._key(stage, inputs)).exists()
+
+    @staticmethod
+    def _key(stage: str, inputs: Mapping[str, Any]) -> str:
+        return content_key({"format": FORMAT, "stage": stage, **inputs})
+
+    def _path(self, stage: str, key: str) -> Path:
+        return self.folder / stage / f"{key}.npz"
 
     def _read(self, path: Path, key: str) -> Any:
         try:

@@ -71,30 +71,31 @@ def run(
         job = begin(design, out)
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
-        from flexspline.results.pictures import write_pictures
+        from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record, write_record
         from flexspline.results.report.build import write_run_page, write_run_report
 
-        with kept(job, json):
-            result = run_chain(job.context)
-        warn(job.design, result.stiffnesses, result.fields)
-        tell_all(result.linear_limit.passed(job.design))
-        for line in result.gear.notes if result.gear else ():
-            tell(f"note: {line}")
-        extended = None
-        if measured is not None:
-            torque = job.design.load.torque_Nm
-            extended = extended_backlash(result.backlash, measured.model, torque)
-        name = measured.path.name if measured else ""
+        with RunDrawings(job.context) as drawings:
+            with kept(job, json):
+                result = run_chain(job.context, drawings.add_field)
+            warn(job.design, result.stiffnesses, result.fields)
+            tell_all(result.linear_limit.passed(job.design))
+            for line in result.gear.notes if result.gear else ():
+                tell(f"note: {line}")
+            extended = None
+            if measured is not None:
+                torque = job.design.load.torque_Nm
+                extended = extended_backlash(result.backlash, measured.model, torque)
+            name = measured.path.name if measured else ""
 
-        def record() -> Record:
-            added = extended_record(extended, name) if extended is not None else {}
-            return run_record(result, job.wall_s) | added
+            def record() -> Record:
+                added = extended_record(extended, name) if extended is not None else {}
+                return run_record(result, job.wall_s) | added
 
-        write_record(job.folder, record())  # the answer first: drawing may fail
-        pictures = write_pictures(job.context, result, job.folder, extended)
-        for line in pictures.warnings:
-            tell(f"warning: {line}")
+            write_record(job.folder, record())  # the answer first: drawing may fail
+            pictures = write_pictures(drawings, result, job.folder, extended)
+            for line in pictures.warnings:
+                tell(f"warning: {line}")
         with job.context.progress.stage("report"):
             files = (job.file,)
             write_run_report(job.folder / "report.pdf", result, pictures, name, files)

@@ -20,27 +20,30 @@ REACH = 1.25
 """How far beyond ±T_L the line is drawn."""
 
 
+def drawn_branch(
+    angle_arcsec: Callable[[np.ndarray], np.ndarray], torque_Nm: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Torques [N·m] above 0 that are drawn at a load of `torque_Nm`, and the line at them [arcsec]."""
+    torque = np.linspace(1e-6, REACH, 60) * torque_Nm
+    return torque, angle_arcsec(torque)
+
+
 def write_torque_angle(
-    path: Path,
-    angle_arcsec: Callable[[np.ndarray], np.ndarray],
-    torque_Nm: float,
-    backlash: Backlash,
+    path: Path, branch: tuple[np.ndarray, np.ndarray], torque_Nm: float, backlash: Backlash
 ) -> None:
     """Write the chart of θ(T) with T_L, the gap and the lost motion.
 
     Parameters
     ----------
-    angle_arcsec : the model's line, torque [N·m] of shape (n,) to angle [arcsec].
+    branch : `drawn_branch` of the model's line, which is odd.
     torque_Nm : T_L.
     backlash : its terms set the gap and the 1σ band; its total is the lost motion drawn.
     """
     with styled():
         figure = new_figure(8.0, 4.6)
         axes = figure.add_axes((0.095, 0.125, 0.875, 0.775))
-        torque = np.linspace(1e-6, REACH, 60) * torque_Nm
         for sign in (-1.0, 1.0):
-            t = sign * torque
-            angle = angle_arcsec(t)
+            t, angle = sign * branch[0], sign * branch[1]
             spread = band(t, torque_Nm, backlash)
             axes.fill_between(
                 t, angle - spread, angle + spread, color=PALETTE[1], alpha=0.22, lw=0,
@@ -50,7 +53,7 @@ def write_torque_angle(
                 t, angle, color=PALETTE[0], lw=2.4, solid_capstyle="round",
                 label="model" if sign > 0 else None,
             )  # fmt: skip
-        _annotate(axes, angle_arcsec, torque_Nm, backlash)
+        _annotate(axes, branch, torque_Nm, backlash)
         keep_inside(axes)
         save_png(figure, path)
 
@@ -64,16 +67,14 @@ def band(torque: np.ndarray, load_Nm: float, backlash: Backlash) -> np.ndarray:
 
 
 def _annotate(
-    axes: Axes,
-    angle_arcsec: Callable[[np.ndarray], np.ndarray],
-    load: float,
-    backlash: Backlash,
+    axes: Axes, branch: tuple[np.ndarray, np.ndarray], load: float, backlash: Backlash
 ) -> None:
-    low, high = angle_arcsec(np.array([-load, load]))
+    high = float(np.interp(load, *branch))
+    low = -high
     gap = backlash.flank_clearance_arcsec + backlash.bearing_play_arcsec
     arcsec = quantity("backlash_arcsec.total")
     end = np.array([REACH * load])
-    highest = float(angle_arcsec(end)[0])
+    highest = float(branch[1][-1])
     top = max(1.35 * highest, 1.08 * (highest + float(band(end, load, backlash)[0])))
     axes.plot([0, 0], [-gap / 2, gap / 2], color=PALETTE[0], lw=2.4, ls=(0, (1.5, 1.5)))
     axes.axhline(0, color=MUTED, lw=0.8)

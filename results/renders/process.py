@@ -21,13 +21,10 @@ from threading import Lock, Timer
 from typing import Any, TextIO
 
 from flexspline.fea.child_python import child_command
-from flexspline.fea.types import SolidField, StressPeak, TetMesh
 from flexspline.geometry.errors import ComputationError, one_line
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.results.renders.opengl import ADVICE
 
-TYPES: tuple[type, ...] = (SolidField, StressPeak, TetMesh)
-"""What may be drawn, beside arrays and plain values."""
 SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
 STOPPED = "drawing was stopped"
@@ -176,6 +173,19 @@ def serve() -> None:
         print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
 
 
+def _types() -> tuple[type, ...]:
+    """What may be drawn, beside arrays and plain values."""
+    from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
+    from flexspline.geometry.assumed import Assumed
+    from flexspline.pipeline.backlash import Backlash
+    from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
+    from flexspline.pipeline.gear import GearCurve
+
+    return (
+        Assumed, Backlash, ExtendedBacklash, GearCurve, MeshLevel, SolidField, Stiffness, StressPeak, TetMesh,
+    )  # fmt: skip
+
+
 def _private_stdout() -> TextIO:
     """Standard output for the answers alone; what libraries print goes to standard error."""
     alone = os.fdopen(os.dup(1), "w", encoding="utf-8")
@@ -188,7 +198,7 @@ def _drawn(function: str, asked: str, made: str) -> str:
     module, _, name = function.partition(":")
     try:
         write = getattr(import_module(module), name)
-        write(Path(made), *unpacked(Path(asked).read_bytes(), TYPES))
+        write(Path(made), *unpacked(Path(asked).read_bytes(), _types()))
     except ComputationError as error:
         return one_line(str(error))
     except Exception as error:  # whatever a library raises costs its own picture

@@ -9,7 +9,7 @@ from flexspline import __version__
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
-from flexspline.results.pictures import RunPictures, small
+from flexspline.results.pictures import RunPictures
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.page import page_of, png
@@ -17,11 +17,6 @@ from flexspline.results.report.sections import run_document
 from flexspline.results.report.versions import library_versions
 from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
-
-RENDERED = (
-    "flexspline_torque", "shaft_torque", "wave_generator", "flexspline_mesh", "shaft_mesh",
-)  # fmt: skip
-"""Pictures that are large as PNG."""
 
 
 def write_run_report(
@@ -43,15 +38,12 @@ def write_run_page(
     extended_model: str = "",
     attached: tuple[Attachment, ...] = (),
 ) -> None:
-    """`report.html` of `flexspline run`: the same content, with 3-D views, in one file.
-
-    Shrunk pictures are kept in the context's cache.
-    """
+    """`report.html` of `flexspline run`: the same content, with 3-D views, in one file."""
     content = report_content(result, pictures, extended_model, attached)
     images = {}
     for name, source in content.pictures.items():
         image = png(source)
-        images[name] = replace(image, data=small(context, source)) if name in RENDERED else image
+        images[name] = replace(image, data=pictures.small.get(name, image.data))
     with context.progress.stage("report.html"):
         write_bytes(path, page_of(run_document(content), images, pictures.views))
 

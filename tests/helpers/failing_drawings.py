@@ -3,7 +3,6 @@
 import os
 import signal
 import time
-from pathlib import Path
 
 
 def good(path, words):
@@ -27,14 +26,3 @@ def raising(path):
 
 def hanging(path):
     time.sleep(3600)
-
-
-def meeting(path, folder, mine, other):
-    """Ends when the other one has begun; within 30 s, or not at all."""
-    (Path(folder) / mine).touch()
-    end = time.monotonic() + 30
-    while not (Path(folder) / other).exists():
-        if time.monotonic() > end:
-            raise TimeoutError(f"{other} has not begun")
-        time.sleep(0.01)
-    path.write_bytes(b"met")

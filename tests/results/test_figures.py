@@ -7,7 +7,7 @@ from PIL import Image
 
 from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
-from flexspline.results.figures.torque_angle import band, write_torque_angle
+from flexspline.results.figures.torque_angle import band, drawn_branch, write_torque_angle
 
 
 def line(torque):
@@ -16,7 +16,7 @@ def line(torque):
 
 DRAWINGS = {
     "budget": lambda path: write_budget(path, BACKLASH),
-    "torque_angle": lambda path: write_torque_angle(path, line, 0.5, BACKLASH),
+    "torque_angle": lambda path: write_torque_angle(path, drawn_branch(line, 0.5), 0.5, BACKLASH),
     "convergence": lambda path: write_convergence(
         path, {"K_b_Nm_per_rad": K_B, "K_e_Nm_per_rad": K_E}
     ),

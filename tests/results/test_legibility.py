@@ -10,7 +10,7 @@ from unlike_gears import GEARS
 from flexspline.fea.types import MeshLevel
 from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
-from flexspline.results.figures.torque_angle import write_torque_angle
+from flexspline.results.figures.torque_angle import drawn_branch, write_torque_angle
 from flexspline.results.style import new_figure
 
 
@@ -60,7 +60,8 @@ def test_budget(tmp_path, name, measured):
 def test_torque_angle(tmp_path, name):
     gear = GEARS[name]
     with drawn_figures() as found:
-        write_torque_angle(tmp_path / "t.png", gear.angle_arcsec, gear.torque_Nm, gear.backlash)
+        branch = drawn_branch(gear.angle_arcsec, gear.torque_Nm)
+        write_torque_angle(tmp_path / "t.png", branch, gear.torque_Nm, gear.backlash)
     (figure,) = found
     assert faults(figure) == []
 

@@ -1,0 +1,14 @@
+"""A picture as WebP, a fifth of its PNG: for pages, which carry their pictures."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+
+def write_webp(path: Path, png: bytes) -> None:
+    """Write the picture again."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(png)) as image:
+        image.convert("RGB").save(path, "WEBP", quality=82, method=4)

@@ -1,0 +1,82 @@
+"""A run's pictures are drawn while it goes on, one after the other, and end with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import failing_drawings
+import pytest
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.analysis import CACHED_TYPES
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.progress import Progress
+from flexspline.results.drawings import Drawing
+from flexspline.results.pictures import RunDrawings
+
+CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1] / "helpers"))
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> AnalysisContext:
+    cache = Cache(tmp_path / "cache", CACHED_TYPES)
+    return AnalysisContext(load_design(CUP), cache, Progress())
+
+
+def charts(count: int) -> Iterator[Drawing]:
+    for i in range(count):
+        yield Drawing(f"chart {i}", "chart", {}, failing_drawings.good, (i,))
+
+
+def test_every_picture_comes_back_to_whom_it_belongs(context, tmp_path: Path) -> None:
+    with RunDrawings(context) as drawings:
+        drawings.add(charts(6))
+        drawn = drawings.kept_in(tmp_path)
+    assert {n: p.read_text() for n, p in drawn.paths.items()} == {
+        f"chart {i}": f"drawn: {i}" for i in range(6)
+    }
+    assert not drawn.missing
+
+
+def test_what_crashes_costs_itself_and_its_view_and_an_older_picture_goes(
+    context, tmp_path: Path
+) -> None:
+    noted = tmp_path / "calls"
+    (tmp_path / "part.png").write_bytes(b"an earlier design's")
+    with RunDrawings(context) as drawings:
+        for kind in ("chart", "view"):
+            drawings.add(
+                [Drawing("part", kind, {"of": kind}, failing_drawings.crashing, (str(noted),))]
+            )
+        drawings.add(charts(1))
+        drawn = drawings.kept_in(tmp_path)
+    assert set(drawn.paths) == {"chart 0"}
+    assert set(drawn.missing) == {"part"}
+    assert "SIGSEGV" in drawn.missing["part"]
+    assert not (tmp_path / "part.png").exists()
+    assert noted.read_text() == "called\n"  # what crashed once is not tried again
+
+
+def test_a_stop_ends_the_drawing(context) -> None:
+    """One picture hangs, another waits: neither keeps the command, and nothing is kept of them."""
+    with RunDrawings(context) as drawings:
+        drawings.add([Drawing("endless", "chart", {}, failing_drawings.hanging, ())])
+        drawings.add(charts(1))
+    assert not list((context.cache.folder / "picture").glob("*.npz"))
+
+
+def test_what_is_kept_needs_no_process(context, tmp_path: Path) -> None:
+    with RunDrawings(context) as drawings:
+        drawings.add(charts(1))
+        drawings.kept_in(tmp_path)
+    with RunDrawings(context) as drawings:
+        drawings._process.__exit__()  # so it can draw nothing
+        drawings.add(charts(1))
+        assert set(drawings.kept_in(tmp_path).paths) == {"chart 0"}
