@@ -12,6 +12,8 @@ from flexspline.pipeline.gear_chain import Chain
 
 SMALL = 1e-3
 """Of load or rated torque, the smaller: it turns the gear through its gaps, and hardly winds it up."""
+DIGITS = 6
+"""Of an arcsec: an equilibrium is found to some 1e-9, whichever the state that it is begun from."""
 TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
 
@@ -47,8 +49,8 @@ def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str,
         "bearing_play": without_flank - without_any,
         TIGHT: without_any,
     }
-    # a difference of equal angles is rounding, and has no sign
-    return {key: round(v, 9) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}
+    # a difference of equal angles is what both solutions leave open, and has no sign
+    return {key: round(v, DIGITS) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}
 
 
 def free_angle(at: Equilibrium) -> float:
