@@ -161,7 +161,9 @@ def of_play(
             "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
             "bearing_play and tight_gear together"
         )
-    elif term >= -LEAST_ANGLE and abs(play.whole - term) > max(LEAST_ANGLE, ACT_TOGETHER * abs(play.whole)):
+    elif term >= -LEAST_ANGLE and abs(play.whole - term) > max(
+        LEAST_ANGLE, ACT_TOGETHER * abs(play.whole)
+    ):
         noted.append(
             f"flank clearance and bearing play act together: without play alone the free angle is "
             f"{rounded(play.whole)} arcsec smaller; the terms take the flank clearance away first, and "

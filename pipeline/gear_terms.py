@@ -50,7 +50,9 @@ def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str,
         TIGHT: without_any,
     }
     # a difference of equal angles is what both solutions leave open, and has no sign
-    return {key: round(v, DIGITS) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()}
+    return {
+        key: round(v, DIGITS) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()
+    }
 
 
 def free_angle(at: Equilibrium) -> float:
