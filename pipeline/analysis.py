@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
+from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.peak import stress_field
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
@@ -32,7 +33,7 @@ from flexspline.pipeline.wave_generator import sharp_edges
 
 CACHED_TYPES: tuple[type, ...] = (
     Assumed, EquivalentRing, GearCurve, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,
-    TetMesh, TwistedPart,
+    LayeredMesh, TetMesh, TwistedPart,
 )  # fmt: skip
 """What may stand in a cache entry."""
 

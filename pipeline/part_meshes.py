@@ -101,15 +101,14 @@ class PartMeshes:
     def _keep(self, spec: MeshSpec, made: MeshedPart) -> None:
         self._kept(spec, lambda: made)
 
-    def meshed(self, spec: MeshSpec, most_elements: float = inf) -> MeshedPart:
+    def meshed(self, spec: MeshSpec) -> MeshedPart:
         """To a specification, by `solver.mesher`: "auto" sweeps where that works. From the cache, or made.
 
         Raises
         ------
         DesignError : as `PartModel.is_swept`. SolidError : a sweep is asked for and fails a check.
-        TooManyElementsError : a sweep would have more than `most_elements`.
         """
-        return self._kept(spec, lambda: self._made(spec, most_elements))
+        return self._kept(spec, lambda: self._made(spec))
 
     def _kept(self, spec: MeshSpec, make: Callable[[], MeshedPart]) -> MeshedPart:
         """From the cache, or made; how long making it may take is no part of what is asked."""
@@ -122,13 +121,11 @@ class PartMeshes:
         }
         return model.context.cache.get("mesh", inputs, make)[0]
 
-    def _made(self, spec: MeshSpec, most_elements: float) -> MeshedPart:
+    def _made(self, spec: MeshSpec) -> MeshedPart:
         model, progress = self.model, self.model.context.progress
         if model.is_swept and self.sweeps:
             with progress.stage(f"mesh of the {model.name}"):
-                swept = self.swept(spec, most_elements=most_elements) or self.swept(
-                    spec.scaled(ANOTHER), most_elements=ANOTHER**-3 * most_elements
-                )
+                swept = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
             if swept is not None:
                 return swept
             if model.mesher == "swept":

@@ -9,7 +9,9 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.errors import SolidError
+from flexspline.fea.solid.errors import MeshQualityError, SolidError
+from flexspline.fea.solid.layer_curving import LayeredMesh
+from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import goes_about_axis
@@ -28,10 +30,11 @@ FIRST_ELEMENTS = 20_000
 """Of a first mesh: 85 000 unknowns, 3 to 5 s in a compact part. On 12 random keyed shafts mostly half the
 processor time of 30 000, and nine met the tolerance by it, as many as before. One of 57 000 took more than
 two minutes on a disc with small holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds."""
-NEXT_ELEMENTS, NEXT_TIMES = 40_000, 4.0
-"""Of the next mesh of a shaft in layers, and over those of the last. With edges a quarter as long at singular
-edges it may have ten times as many, which the time limit refuses once it is made; shortened less, they still
-bring the bounds nearer: K ± 0.71 to 0.19 % on a shaft with holes, 5.7 to 2.8 % on another."""
+LAYERED_TIMES, LAYERED_LEAST = 2.0, 1.5
+"""Elements of the next mesh of a shaft in layers over those of the last, and at least."""
+LAYERED_ELEMENTS, LAYERED_LAST = 50_000, 35_000
+"""Of such a mesh at most: its solution takes 12 s of the processor and 1.7 GB; and the number beyond which
+none follows. A first mesh is followed by a second whatever its size: one alone cannot tell its own error."""
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
@@ -171,13 +174,26 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
     made: list[MeshedPart] = []
 
     def mesher(spec: MeshSpec) -> TetMesh:
-        layered = made and not goes_about_axis(model.part)
-        most = max(NEXT_ELEMENTS, NEXT_TIMES * made[-1].mesh.elements) if layered else inf
-        made.append(meshes.meshed(spec, most))
+        made.append(meshes.meshed(spec))
         if made[-1].swept != made[0].swept:
             raise OtherKindError
         return made[-1].mesh
 
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh | None:
+        if not isinstance(mesh, LayeredMesh):
+            return None
+        most = max(LAYERED_LEAST * mesh.elements, LAYERED_ELEMENTS)
+        with model.context.progress.stage(f"mesh of the {model.name}"):
+            try:
+                return finer_layers(
+                    model.part, mesh, error, min(LAYERED_TIMES * mesh.elements, most)
+                )
+            except MeshQualityError:  # other edges are halved for fewer elements
+                return finer_layers(model.part, mesh, error, LAYERED_LEAST * mesh.elements)
+
+    most = inf
+    if model.is_swept and meshes.sweeps and not goes_about_axis(model.part):
+        most = max(LAYERED_LAST, meshes.meshed(first).mesh.elements)
     found = solid_stiffness(
         mesher,
         first,
@@ -187,6 +203,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
         Deadline(SOLID_SECONDS),
+        by_error,
+        most,
     )
     meshed = [replace(made[0], mesh=mesh) for mesh in found.meshes]
     sizes = [m.mesh.elements * copies_in_rim(model) for m in meshed]

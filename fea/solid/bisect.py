@@ -21,12 +21,16 @@ SIDES = np.array([[0, 1], [1, 2], [2, 0]])
 
 @dataclass(frozen=True)
 class Simplices:
-    """Tetrahedra (m, 4), positive, and facets (k, 3), outward, each on a surface (k,), of `nodes` nodes."""
+    """Tetrahedra (m, 4), positive, and facets (k, 3), outward, each on a surface (k,), of `nodes` nodes.
+
+    `parents` (m,): of halved ones, the tetrahedron that each is a part of.
+    """
 
     nodes: int
     tets: np.ndarray
     facets: np.ndarray
     facet_surface: np.ndarray
+    parents: np.ndarray | None = None
 
     def edges(self) -> np.ndarray:
         """(e, 2), each once, the lesser node first."""
@@ -62,9 +66,9 @@ def halved(
         there = old & (key[at] == _keys(pairs, n)) & halve[at]
         return np.where(there, rank[at], -1), middle[at]
 
-    tets, _ = _cut(mesh.tets, PAIRS, marked_rank)
+    tets, whose = _cut(mesh.tets, PAIRS, marked_rank)
     facets, parent = _cut(mesh.facets, SIDES, marked_rank)
-    found = Simplices(n + len(cut), tets, facets, mesh.facet_surface[parent])
+    found = Simplices(n + len(cut), tets, facets, mesh.facet_surface[parent], whose)
     return found, edges[cut]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -24,9 +25,27 @@ BENT = 0.03
 has so much. Of what loses less, a few edges may be straight within the check of areas."""
 
 
+@dataclass(frozen=True)
+class LayeredMesh(TetMesh):
+    """A mesh of a shaft's layers; `facet_surface` (k,) numbers the part's surface of each facet."""
+
+    facet_surface: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(n, 3) mm."""
+        return self.nodes[: int(self.cells[:, :4].max()) + 1]
+
+    @property
+    def simplices(self) -> Simplices:
+        """Of the corners."""
+        tets, facets = self.cells[:, :4], self.facets[:, :3]
+        return Simplices(len(self.corners), tets, facets, self.facet_surface)
+
+
 def quadratic(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], sector_deg: float, most: float
-) -> TetMesh:
+) -> LayeredMesh:
     """Ten-node tetrahedra; edges of the surface that bend one too far are halved, and straight in the end.
 
     Raises
@@ -54,7 +73,7 @@ def quadratic(
         raise MeshQualityError("elements are badly bent even with straight edges")
     names = tuple(dict.fromkeys(["", *(s.patch for s in surfaces)]))
     facet_patch = np.array([names.index(s.patch) for s in surfaces])[mesh.facet_surface]
-    return TetMesh(nodes, cells, facets, facet_patch, names, sector_deg)
+    return LayeredMesh(nodes, cells, facets, facet_patch, names, sector_deg, mesh.facet_surface)
 
 
 def _curved(

@@ -7,16 +7,19 @@ mesh.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf, radians
 
 import numpy as np
 
+from flexspline.fea.solid.bisect import Simplices
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
-from flexspline.fea.solid.layer_curving import quadratic
+from flexspline.fea.solid.layer_curving import LayeredMesh, quadratic
 from flexspline.fea.solid.layer_edges import seams_of
 from flexspline.fea.solid.layer_grading import graded
 from flexspline.fea.solid.layer_mesh import coarsest
+from flexspline.fea.solid.layer_refining import refined
 from flexspline.fea.solid.layer_sizes import face_area, volume, wall_area
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec
@@ -25,9 +28,8 @@ from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import common_point
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
 from flexspline.fea.solid.tetwild import signed_volumes
-from flexspline.fea.types import TetMesh
 from flexspline.geometry.part import Part
-from flexspline.geometry.surfaces import part_surfaces
+from flexspline.geometry.surfaces import Surface, part_surfaces
 
 TOLERANCE = 1e-3
 """Of volume and patch areas; parabolas for arcs of 20° leave 2e-5, a few straight edges of holes more."""
@@ -35,7 +37,7 @@ TOLERANCE = 1e-3
 
 def layered_mesh(
     part: Part, sector_deg: float, spec: MeshSpec, most_elements: float = inf
-) -> TetMesh:
+) -> LayeredMesh:
     """Mesh of a shaft's sector, graded as `spec` says.
 
     Raises
@@ -49,6 +51,30 @@ def layered_mesh(
     points, mesh = coarsest(layers, surfaces, grading)
     most = min(most_elements, MOST_ELEMENTS)
     points, mesh = graded(points, mesh, surfaces, grading, most)
+    return _curved(points, mesh, layers, surfaces, sector_deg, most)
+
+
+def finer_layers(part: Part, mesh: LayeredMesh, error: np.ndarray, wanted: float) -> LayeredMesh:
+    """The mesh with so many elements as are `wanted`, shorter edges where its elements' errors (m,) are.
+
+    Raises
+    ------
+    MeshQualityError, TooManyElementsError : as `layered_mesh`.
+    """
+    surfaces = part_surfaces(part, mesh.sector_deg)
+    points, finer = refined(mesh.corners, mesh.simplices, surfaces, error, wanted)
+    layers = Layers.of(part, radians(mesh.sector_deg))
+    return _curved(points, finer, layers, surfaces, mesh.sector_deg, MOST_ELEMENTS)
+
+
+def _curved(
+    points: np.ndarray,
+    mesh: Simplices,
+    layers: Layers,
+    surfaces: Sequence[Surface],
+    sector_deg: float,
+    most: float,
+) -> LayeredMesh:
     if (signed_volumes(points, mesh.tets) <= 0).any():
         raise MeshQualityError("elements are flat once their nodes are on the part's surfaces")
     made = quadratic(points, mesh, surfaces, sector_deg, most)
@@ -56,7 +82,7 @@ def layered_mesh(
     return made
 
 
-def _check(mesh: TetMesh, layers: Layers) -> None:
+def _check(mesh: LayeredMesh, layers: Layers) -> None:
     """Volume and patch areas against integrals over the cross-sections."""
     pairs = {"volume": (float(element_volumes(mesh.nodes, mesh.cells).sum()), volume(layers))}
     segments = layers.part.meridian.segments

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
@@ -19,7 +20,6 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.cases import Solved, torsion
-from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
@@ -27,7 +27,8 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
 
 Mesher = Callable[[MeshSpec], TetMesh]
-"""Raises TooManyElementsError where a specification asks for a larger mesh than the caller wants."""
+FinerByError = Callable[[TetMesh, np.ndarray], TetMesh | None]
+"""A mesh made finer where its elements' errors (m,) are; None where a specification tells the next one."""
 MAX_LEVELS = 5
 """Four refinements: far from the singular edges the error falls to 1/36 (FAR_STEP to the 16th power), and
 their edges go to as little as 1/256."""
@@ -41,8 +42,6 @@ length there, so that is refined by as much as is still missing, within this ran
 far away the error falls with the fourth power of growth and length: both take the second factor."""
 LONGER = 2.0
 """Time of the next mesh and its solution over that of the last, at least: it has about twice the elements."""
-MILDER = 1.6
-"""Of a step at the singular edges that gives too large a mesh: the next that is tried."""
 AIM = 0.7
 """Share of the tolerance that the next mesh aims at."""
 
@@ -65,21 +64,23 @@ def solid_stiffness(
     symmetry: str,
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
+    by_error: FinerByError = lambda mesh, error: None,
+    most_elements: float = inf,
 ) -> SolidStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
-    or MAX_LEVELS are solved.
+    the last has more than `most_elements`, or MAX_LEVELS are solved.
 
     Raises
     ------
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
-    found = _SolidTorsion(mesher, first, material, driven, tolerance, progress, deadline)
+    found = _SolidTorsion(mesher, by_error, first, material, driven, tolerance, progress, deadline)
     mesh = mesher(first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
-    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline)
+    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements)
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {found.half:.2%} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)
@@ -90,9 +91,10 @@ class _SolidTorsion:
     """The meshes so far, the finest one's solution for 1 rad, and how far off its K is."""
 
     def __init__(
-        self, mesher: Mesher, first: MeshSpec, material: Elastic, driven: str, tolerance: float,
-        progress: Callable[[str], None], deadline: Deadline,
+        self, mesher: Mesher, by_error: FinerByError, first: MeshSpec, material: Elastic, driven: str,
+        tolerance: float, progress: Callable[[str], None], deadline: Deadline,
     ) -> None:  # fmt: skip
+        self._by_error = by_error
         self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
         self._began_s = deadline.elapsed()
@@ -102,7 +104,7 @@ class _SolidTorsion:
     def solve(self, mesh: TetMesh) -> None:
         solved = torsion(Model.of(mesh, self._material), self._driven)
         error = energy_error(mesh, solved.displacement, self._material)
-        self.solved = solved
+        self.solved, self._errors = solved, error.error
         self.meshes.append(mesh)
         self.estimate.add(level_of(solved), error.relative)
         self._progress(f"{mesh.elements} elements, K ± {self.half:.2%}")
@@ -123,20 +125,12 @@ class _SolidTorsion:
         if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began_s = now_s
-        left_s = self._deadline.limit_s - now_s
-        step = near_step(self._tolerance, self.half)
-        while True:
-            spec = _finer(self._spec, step)
-            spec = replace(spec, time_limit_s=min(spec.time_limit_s, left_s))
-            try:
-                made = self._mesher(spec)
-            except TooManyElementsError:
-                if step == NEAR_STEP[1]:
-                    raise
-                step = min(NEAR_STEP[1], step * MILDER)
-                continue
-            self._spec = spec
+        made = self._by_error(mesh, self._errors)
+        if made is not None:
             return made
+        self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
+        left_s = self._deadline.limit_s - now_s
+        return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
 
 def near_step(tolerance: float, half: float) -> float:

@@ -17,9 +17,9 @@ from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
 from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
-from flexspline.fea.solid.errors import TooManyElementsError
+from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layer_sizes import volume
-from flexspline.fea.solid.layered import layered_mesh
+from flexspline.fea.solid.layered import finer_layers, layered_mesh
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.model import Model
@@ -296,20 +296,58 @@ def test_a_plan_has_its_lines_as_edges() -> None:
     assert area[off < hole + 1e-9].sum() == pytest.approx(pi / 2 * hole**2, rel=1e-4)
 
 
-def test_a_next_mesh_that_is_too_large_is_made_with_longer_edges() -> None:
-    """Singular edges are refused at a quarter of their length here, and made at 0.4 of it."""
+def test_a_mesh_is_finer_where_its_error_is_and_nowhere_else() -> None:
+    """All of the error below the step."""
     part = shaft_of("step over the holes")
+    mesh = meshed(part)
+    z = mesh.nodes[mesh.cells[:, :4], 2]
+    step = part.hole_depth
+    error = np.where(z.max(axis=1) < step + 1e-9, 1.0, 0.0)
+    assert (error > 0).mean() > 0.05  # more than one round halves
+    finer = finer_layers(part, mesh, error, 2 * mesh.elements)
+    # the last round's neighbours are cut too
+    assert 2 * mesh.elements <= finer.elements < 2.5 * mesh.elements
+    both = [m.nodes[m.cells[:, :4], 2] for m in (mesh, finer)]
+    # neighbours are cut at the edges that they share with the lowest, and reach over one layer
+    low = step + np.ptp(z, axis=1).max()
+    kept, new = (int((b.min(axis=1) > low).sum()) for b in both)
+    assert new == kept > 100
+    volumes = [element_volumes(m.nodes, m.cells).sum() for m in (mesh, finer)]
+    assert volumes[1] == pytest.approx(volumes[0], rel=3e-4)  # as against the CAD
+    assert jacobian_ratio(finer.nodes, finer.cells).min() >= 0.3
+    sides = np.sort(finer.facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(sides, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_a_narrow_neck_is_found_by_its_error() -> None:
+    """A thin last segment of a thick shaft turns most, and its first mesh is the thick one's.
+
+    Without holes and keyway K lies between theorems, far nearer to each other than what is asked.
+    """
+    data = tomllib.loads((EXAMPLES / HOLED).read_text(encoding="utf-8"))
+    rows = segments((14, 36, 5), (6, 34, 5), (10, 38, 5), (8, 10.5, 5))
+    data["shaft"] |= {"segment": rows, "bolt_count": 0, "fillet_mm": 0.0, "grip_length_mm": 3.0}
+    part = design_from(data).part("shaft")
+    material = Elastic.of(part.material)
+    exact = torsional_stiffness(part.meridian, material, "grip", 2e-4)
     degrees, first = sector_of(part, "torsion").degrees, first_spec(part).scaled(4.0)
-    asked: list[float] = []
+
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh:
+        assert isinstance(mesh, LayeredMesh)
+        return finer_layers(part, mesh, error, 2 * mesh.elements)
 
     def mesher(spec: MeshSpec) -> TetMesh:
-        asked.append(spec.grading.near / first.grading.near)
-        if asked[-1] < 0.35:
-            raise TooManyElementsError(1e6, 1e5)
         return layered_mesh(part, degrees, spec)
 
-    # a tolerance that two meshes cannot meet: each next one is asked for with the shortest step
-    found = solid_stiffness(mesher, first, Elastic.of(part.material), "grip", 1e-4, "", print)
-    assert asked[:3] == pytest.approx([1.0, 0.25, 0.4])
-    assert len(found.meshes) == 2  # 0.4 times 0.6 is refused too
-    assert "elements" in found.stiffness.shortfall
+    wanted = 0.01
+    found = solid_stiffness(
+        mesher, first, material, "grip", wanted, "", print, by_error=by_error
+    ).stiffness
+    assert not found.shortfall
+    assert found.half_width <= wanted
+    assert len(found.levels) > 1
+    assert found.lower_Nm_per_rad < exact.lower_Nm_per_rad
+    assert exact.upper_Nm_per_rad < found.upper_Nm_per_rad
+    K = [level.K_Nm_per_rad for level in found.levels]
+    # each mesh holds the last one's displacements but for curved edges' middles
+    assert sorted(K, reverse=True) == K

@@ -1,0 +1,117 @@
+"""A mesh of a shaft's layers made finer where its solution's error is.
+
+Elements with the largest errors are halved in rounds. After each, the parts have the errors that theory
+promises, so that a singular edge with most of the error is refined several times in one mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
+from flexspline.fea.solid.layer_edges import Seams, seams_of
+from flexspline.fea.solid.layer_grading import ALONG, WHOLE_STEP, with_middles_of
+from flexspline.fea.solid.layers import RING_STEP
+from flexspline.fea.solid.polar import polar
+from flexspline.geometry.surfaces import Surface
+
+GROWTH = 0.7
+"""Of the length about the axis beyond that across, per distance from holes and keyway: as in a first mesh."""
+CUT = 0.7
+"""Of an element's longest edge: shorter ones are not halved with it, so that long elements become fair."""
+LEFT_AT_EDGE, LEFT_AWAY = 1 / 4, 1 / 64
+"""Of an element's squared error in each of its parts. At a singular edge all errors together halve with the
+length (a change of patch, the slowest), and two or three parts stay there; elsewhere they fall with its
+fourth power, in eight parts: 1/128, and half of them are halved along fewer edges."""
+AT_ONCE = 0.04
+"""Of the elements, that a round halves at most."""
+PARTS = 7.0
+"""More elements by one that is halved; its neighbours' parts come on top, so that the last round is small."""
+ROUNDS = 40
+"""Of halving: 2 to 3 double the elements."""
+
+
+def refined(
+    points: np.ndarray,
+    mesh: Simplices,
+    surfaces: Sequence[Surface],
+    error: np.ndarray,
+    wanted: float,
+) -> tuple[np.ndarray, Simplices]:
+    """Corners (n, 3) [mm] and tetrahedra with the largest errors halved until there are `wanted` or more.
+
+    `error` (m,) is the elements' share of the energy's, any unit; new nodes of the boundary are on its
+    surfaces. A few more than wanted are made.
+    """
+    for _ in range(ROUNDS):
+        elements = len(mesh.tets)
+        if elements >= wanted:
+            break
+        count = 1 + int(min(AT_ONCE * elements, (wanted - elements) / PARTS))
+        largest = np.zeros(elements, bool)
+        largest[np.argpartition(error, -count)[-count:]] = True
+        seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
+        edges, lengths, of_element = _lengths(points, mesh, seams)
+        mine = of_element[largest]
+        asked = np.zeros(len(edges), bool)
+        asked[mine[lengths[mine] > CUT * lengths[mine].max(axis=1, keepdims=True)]] = True
+        finer, cut_edges = halved(mesh, edges, lengths, asked)
+        points = with_middles_of(points, finer, cut_edges, surfaces)
+        error = _promised(points, finer, surfaces, error, largest)
+        mesh = finer
+    return points, mesh
+
+
+def _promised(
+    points: np.ndarray,
+    mesh: Simplices,
+    surfaces: Sequence[Surface],
+    error: np.ndarray,
+    largest: np.ndarray,
+) -> np.ndarray:
+    """Errors of a halved mesh's elements, from those of the elements before and which of them were chosen."""
+    assert mesh.parents is not None
+    seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
+    singular = np.zeros(len(points), bool)
+    singular[seams.nodes[seams.singular]] = True
+    left = np.where(singular[mesh.tets].any(axis=1), LEFT_AT_EDGE, LEFT_AWAY)
+    parts = np.bincount(mesh.parents)[mesh.parents]
+    return np.asarray(error[mesh.parents] * np.where(largest[mesh.parents], left, 1 / parts))
+
+
+def _lengths(
+    points: np.ndarray, mesh: Simplices, seams: Seams
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Edges (e, 2), their lengths (e,) [mm], and the numbers (m, 6) of each element's edges.
+
+    About the axis they count for less with the distance from holes and keyway.
+    """
+    edges = mesh.edges()
+    n = len(points)
+    pairs = np.sort(mesh.tets[:, PAIRS], axis=2).astype(np.int64)
+    of_element = np.searchsorted(
+        edges[:, 0].astype(np.int64) * n + edges[:, 1], pairs[..., 0] * n + pairs[..., 1]
+    )
+    ends = polar(points)[edges]
+    dr, turn, dz = (ends[:, 1] - ends[:, 0]).T
+    turn = np.where((ends[:, :, 0] > 0).all(axis=1), turn, 0.0)
+    r = ends[:, :, 0].mean(axis=1)
+    meridian = np.hypot(dr, dz)
+    across = np.full(len(edges), np.inf)
+    np.minimum.at(across, of_element, meridian[of_element].max(axis=1, keepdims=True))
+    away = _away(points, seams.nodes[seams.singular & ~seams.revolved])[edges].mean(axis=1)
+    around = np.minimum(across + GROWTH * away, WHOLE_STEP * RING_STEP * r)
+    share = np.divide(across, around, out=np.ones_like(r), where=around > across)
+    return edges, np.hypot(meridian, r * turn * share), of_element
+
+
+def _away(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Distance (n,) [mm] of each point from the nearest of these edges (k, 2)."""
+    if not len(edges):
+        return np.full(len(points), np.inf)
+    along = np.linspace(0, 1, ALONG)[None, :, None]
+    a, b = points[edges[:, 0]][:, None], points[edges[:, 1]][:, None]
+    return np.asarray(cKDTree((a + along * (b - a)).reshape(-1, 3)).query(points)[0])
