@@ -40,7 +40,7 @@ def cup(far: float, sector: float) -> TetMesh:
 
 @pytest.fixture(scope="module")
 def quarter() -> Model:
-    return Model.of(cup(3.0, 90.0), STEEL)
+    return Model.of(cup(5.0, 90.0), STEEL)
 
 
 CASES = {
