@@ -127,7 +127,7 @@ def test_outliers_are_isolated_and_far() -> None:
 def test_what_is_left_beside_the_truth_is_the_noise() -> None:
     """About the drawn gear and its effects the mean square of the residual is the claimed variance."""
     ratio = []
-    for k in range(60):
+    for k in range(30):
         for unit in draw_case(11, k).units:
             width = 5 * np.hypot(unit.noise.torque, unit.noise.crossing)
             clear = np.minimum(np.abs(unit.torque), np.abs(unit.true_torque)) > width
@@ -137,7 +137,7 @@ def test_what_is_left_beside_the_truth_is_the_noise() -> None:
             rest = (unit.angle - line - sum(unit.effects))[clear]
             claimed = unit.spread.independent + unit.spread.coloured**2
             ratio.append(np.mean(rest**2) / claimed[clear].mean())
-    # a coloured record has some 30 independent samples: 25 % each, 3 % on the mean of 60
+    # a coloured record has some 30 independent samples: 25 % each, 5 % on the mean of 30
     assert np.mean(ratio) == pytest.approx(1.0, abs=0.1)
     assert max(ratio) < 2.5  # 6 deviations of the worst record: no effect is left out
 
