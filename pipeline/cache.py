@@ -35,7 +35,9 @@ class Cache:
     failed: dict[str, ComputationError] = field(default_factory=dict, compare=False)
     """What failed since this object was made, by key: nobody waits for the same failure twice."""
     passing: dict[str, Any] = field(default_factory=dict, compare=False)
-    """What is not for the disk, by key."""
+    """What is not for the disk, or found no room there, by key."""
+    told: set[str] = field(default_factory=set, compare=False)
+    """Why results could not be stored: each reason is said once."""
 
     def get(
         self,
@@ -67,9 +69,7 @@ class Cache:
         except ComputationError as fault:
             self.failed[key] = fault
             raise
-        if is_lasting(value):
-            self._write(path, key, value)
-        else:
+        if not (is_lasting(value) and self._written(path, key, value)):
             self.passing[key] = value
         return value, False
 
@@ -111,7 +111,7 @@ class Cache:
         except OSError as fault:
             self.notice(f"could not remove it: {fault.strerror}")
 
-    def _write(self, path: Path, key: str, value: Any) -> None:
+    def _written(self, path: Path, key: str, value: Any) -> bool:
         data = packed({"key": key, "value": value})
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -121,7 +121,12 @@ class Cache:
             finally:
                 made.unlink(missing_ok=True)
         except OSError as error:
-            self.notice(f"could not store a result in {path.parent}: {error.strerror}")
+            why = f"could not store a result in {self.folder}: {error.strerror}"
+            if why not in self.told:
+                self.told.add(why)
+                self.notice(f"{why}; FLEXSPLINE_CACHE names another folder")
+            return False
+        return True
 
 
 _MISSING: Any = object()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import logging
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -19,6 +21,8 @@ def own_scratch() -> Iterator[None]:
     from flexspline.pipeline.temporary_files import discard, mark
     from flexspline.results.job import tell
 
+    # where a user's home cannot be written to, it takes a folder of ours and says so in two lines
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     before = tempfile.tempdir
     try:
         parent = Path(tempfile.gettempdir())
@@ -27,9 +31,10 @@ def own_scratch() -> Iterator[None]:
     except OSError:
         yield
         return
+    # at the very end: libraries that come later clear what they put there before
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     tempfile.tempdir = folder
     try:
         yield
     finally:
         tempfile.tempdir = before
-        shutil.rmtree(folder, ignore_errors=True)

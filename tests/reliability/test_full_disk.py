@@ -17,6 +17,8 @@ from bases import CUP, GIVEN, head
 from in_process import Ended, flexspline
 from shell import run
 
+from flexspline.pipeline.cache import Cache
+
 FREE_BYTES = 24_000
 """Room for result.json and one small picture, not for more."""
 
@@ -147,3 +149,14 @@ def test_a_full_scratch_disk(full: Path, plain: Path, tmp_path: Path) -> None:
     assert "Traceback" not in done.stderr
     assert "full" in done.stderr.splitlines()[-1] or "No space" in done.stderr.splitlines()[-1]
     assert list((tmp_path / "out").glob("*")) == []
+
+
+def test_a_result_that_cannot_be_stored_is_kept_for_this_command_and_told_once() -> None:
+    said: list[str] = []
+    made: list[int] = []
+    cache = Cache(Path("/dev/null/cache"), (), said.append)
+    for number in (1, 2, 1):
+        assert cache.get("stage", {"n": number}, lambda n=number: made.append(n) or n)[0] == number
+    assert made == [1, 2]
+    assert len(said) == 1
+    assert "FLEXSPLINE_CACHE" in said[0]

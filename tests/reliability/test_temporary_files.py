@@ -67,15 +67,37 @@ def test_a_write_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.M
     assert list(tmp_path.iterdir()) == []
 
 
-def test_scratch_files_lie_together_and_go_together(tmp_path: Path, monkeypatch) -> None:
+def test_scratch_files_lie_together(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with own_scratch():
         made = Path(tempfile.mkdtemp())
         assert made.parent.parent == tmp_path
         assert made.parent.name.startswith(mark())
-        (made / "file").write_bytes(b"")
-    assert list(tmp_path.iterdir()) == []
     assert tempfile.gettempdir() == str(tmp_path)
+
+
+WITHOUT_A_HOME = """
+import tempfile
+from pathlib import Path
+from flexspline.results.scratch import own_scratch
+with own_scratch():
+    (Path(tempfile.mkdtemp()) / "file").write_bytes(b"")
+    from matplotlib import get_configdir
+    get_configdir()
+"""
+
+
+def test_scratch_files_go_together_and_after_those_of_libraries(tmp_path: Path) -> None:
+    """A home that cannot be written to: matplotlib takes a temporary folder and clears it at the end."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("XDG_", "MPL"))}
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_A_HOME], capture_output=True, text=True, check=True,
+        env=env | {"HOME": "/dev/null/home", "TMPDIR": str(scratch)},
+    )  # fmt: skip
+    assert done.stderr == ""
+    assert list(scratch.iterdir()) == []
 
 
 def test_who_discards_says_so(
