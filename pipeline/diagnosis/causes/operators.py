@@ -5,9 +5,9 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.lapack import dtbtrs
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_program import LARGEST_NOISE
 
 
@@ -23,17 +23,37 @@ def stops(
     Systems with Hysteresis (1989), section 2.2.
     """
     out = np.empty((len(history), len(thresholds_Nm)))
-    high, low = thresholds_Nm, -thresholds_Nm
+    high = thresholds_Nm
     for rows in history.unit_slices:
-        state = np.clip(start * high + torque_Nm[rows[0]], low, high)
-        steps = np.diff(torque_Nm[rows], prepend=torque_Nm[rows[0]])
-        block = np.empty((len(rows), len(high)))
-        for first, last in _one_way(steps):  # along it nothing is lost but at one limit
-            moved = state + np.cumsum(steps[first:last])[:, None]
-            one = np.minimum(moved, high) if steps[first:last].sum() > 0 else np.maximum(moved, low)
-            block[first:last], state = one, one[-1]
-        out[rows] = block
+        torque = torque_Nm[rows]
+        first = np.clip(start * high + torque[0], -high, high)
+        edges = np.array([a for a, _ in _one_way(np.diff(torque, prepend=torque[0]))])
+        turns = np.r_[0, edges[1:] - 1, len(rows) - 1]
+        states = _clipped_sums(first, np.diff(torque[turns]), high)
+        # between two turns nothing is lost but at one limit
+        way = np.repeat(np.arange(len(edges)), np.diff(np.r_[edges, len(rows)]))
+        moved = states[way] + (torque - torque[turns[way]])[:, None]
+        out[rows] = np.clip(moved, -high, high)
     return out
+
+
+def _clipped_sums(first: np.ndarray, steps: np.ndarray, limit: np.ndarray) -> np.ndarray:
+    """(k + 1, m) x_j = clip(x_{j−1} + d_j, −r, r) from x_0 = `first` (m,), of steps d (k,).
+
+    A sum clipped is min(max(x + a, low), high), and two of these one after the other are one such: of one,
+    two, four … steps together they give every x_j in log₂ k rounds.
+    """
+    shift = steps[:, None].astype(float)
+    low, high = np.tile(-limit, (len(steps), 1)), np.tile(limit, (len(steps), 1))
+    span = 1
+    while span < len(steps):
+        after = shift[span:]
+        lower = np.clip(low[:-span] + after, low[span:], high[span:])
+        upper = np.clip(high[:-span] + after, low[span:], high[span:])
+        low, high = np.vstack([low[:span], lower]), np.vstack([high[:span], upper])
+        shift = np.vstack([shift[:span], shift[:-span] + after])
+        span *= 2
+    return np.vstack([first, np.minimum(np.maximum(first + shift, low), high)])
 
 
 def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:
@@ -106,17 +126,17 @@ def dahl(
     safe = np.where(straight, 1.0, bend)
     for rows in history.unit_slices:
         steps = np.diff(moved[rows], prepend=0.0)
-        way = np.abs(steps)[:, None] / stiffness_Nm
-        keep = np.exp(-way)
-        side = np.sign(steps)
         state, block = np.zeros(len(stiffness_Nm)), np.empty((len(rows), len(stiffness_Nm)))
-        for i in range(len(rows)):
-            if side[i] != 0:
-                rest = np.maximum(1 - state * side[i], 1e-12)
-                # y = 1 − z·sign dT falls as dy/dx = −y^i: y^(1−i) grows by (i − 1)·x
-                power = np.maximum(rest**-safe + safe * way[i], 1e-12) ** (-1 / safe)
-                state = side[i] * (1 - np.where(straight, rest * keep[i], power))
-            block[i] = state
+        for first, last in _one_way(steps):
+            side = np.sign(steps[first:last].sum())
+            way = np.cumsum(np.abs(steps[first:last]))[:, None] / stiffness_Nm
+            rest = np.maximum(1 - state * side, 1e-12)
+            # y = 1 − z·sign dT falls as dy/dx = −y^i: y^(1−i) grows by (i − 1)·x
+            power = np.maximum(rest**-safe + safe * way, 1e-12) ** (-1 / safe)
+            block[first:last] = side * (1 - np.where(straight, rest * np.exp(-way), power))
+            if side == 0:
+                block[first:last] = state
+            state = block[last - 1]
         out[rows] = block
     return out
 
@@ -140,10 +160,6 @@ def lags(values: np.ndarray, history: History, constants_s: np.ndarray) -> np.nd
         # v linear over the step: x₁ = x₀k + v₀(g − k) + v₁(1 − g), g = (1 − k)/step
         share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, 1e-300), 1 - step / 2)
         drive = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
-        # x_i − k_i x_{i−1} = drive_i: a lower bidiagonal system for each constant
-        band = np.ones((2, len(rows)), order="F")
         for m in range(len(constants_s)):
-            band[1, :-1] = -keep[:, m]
-            right = np.r_[v[0], drive[:, m]]
-            out[rows, m] = dtbtrs(band, right[:, None], uplo="L", diag="U", overwrite_b=1)[0][:, 0]
+            out[rows, m] = first_order(keep[:, m], np.r_[v[0], drive[:, m]])
     return out

@@ -57,4 +57,8 @@ class History:
     @property
     def unit_slices(self) -> list[np.ndarray]:
         """Row indices of each unit, in order."""
-        return [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]
+        key = ("unit_slices", 0.0)
+        if key not in self.memo:
+            self.memo[key] = [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]
+        found: list[np.ndarray] = self.memo[key]
+        return found

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.lapack import dtbtrs
+from scipy.fft import next_fast_len
 from scipy.optimize import nnls
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -18,7 +19,11 @@ LONGEST_OF_CYCLE = 0.1
 FINEST_ARCSEC = 0.005
 """No instrument reads finer; a record without any noise would make every equation singular."""
 LAGS = 24
-"""Rows over which the residual's autocovariance is matched."""
+"""Rows over which the residual's autocovariances are matched one by one; beyond, in groups."""
+LAGS_PER_MEMORY = 3.0
+"""Times the longest memory allowed, as far as autocovariances are matched: of an exponential 5 % are left."""
+GROUPS_PER_LOG = 5.0
+"""Groups of lags for each factor e: within one of them an exponential of its length falls by a fifth."""
 LAG_0_WEIGHT = 3.0
 """Of the variance against the autocovariances, in matching: it has the largest value and the least error."""
 MEMORIES = 16
@@ -50,7 +55,17 @@ class Noise:
     @property
     def std_arcsec(self) -> float:
         """Of one row."""
-        return float(np.sqrt(self.white + self.coloured))
+        return float(np.sqrt(self.variance))
+
+    @property
+    def variance(self) -> float:
+        """Of one row [arcsec²]."""
+        return self.white + self.coloured
+
+    @property
+    def slow_power(self) -> float:
+        """Variance [arcsec²] of a mean over many rows times their number: Σ of all autocovariances."""
+        return self.white + self.coloured * (1 + self.memory) / (1 - self.memory)
 
     def whitened(self, values: np.ndarray, stretches: list[slice]) -> np.ndarray:
         """(n, …) values that would be independent with variance 1 were they this noise.
@@ -58,8 +73,7 @@ class Noise:
         The sum of the two parts is an ARMA(1,1) process: its innovations, with the memory ρ and a
         moving-average root θ, are e_t = x_t − ρ x_{t−1} + θ e_{t−1}. Each stretch starts anew.
         """
-        rho, total = self.memory, self.white + self.coloured
-        out = np.empty_like(values)
+        rho, total = self.memory, self.variance
         if self.coloured <= 1e-9 * total:
             return values / np.sqrt(total)
         # (1 + θ²)s² and −θs² are the moving average's covariances at lags 0 and 1
@@ -68,24 +82,16 @@ class Noise:
         ratio = -zero / (2 * one) if one < -1e-12 * zero else np.inf
         theta = ratio - np.sqrt(ratio**2 - 1) if np.isfinite(ratio) else 0.0
         s2 = -one / theta if theta > 0 else zero
+        starts = np.array([s.start for s in stretches])
+        since = np.arange(len(values)) - np.repeat(starts, [_length(s) for s in stretches])
+        goes_on = (since[1:] > 0).astype(float)
+        changed = values.astype(float, order="F")
         shape = (-1,) + (1,) * (values.ndim - 1)
-        for s in stretches:
-            e = _innovations(values[s], rho, theta)
-            # a start from rest: the first innovations have a larger variance, which decays as θ^2k
-            extra = (total - s2) * np.float64(theta**2) ** np.arange(len(e))
-            out[s] = e / np.sqrt(s2 + extra).reshape(shape)
-        return out
-
-
-def _innovations(values: np.ndarray, rho: float, theta: float) -> np.ndarray:
-    """e_t = x_t − ρ x_{t−1} + θ e_{t−1} from rest: a lower bidiagonal system of equations."""
-    right = np.array(values, dtype=float, order="F")
-    right[1:] -= rho * values[:-1]
-    band = np.ones((2, len(right)), order="F")
-    band[1] = -theta
-    return np.asarray(dtbtrs(band, right, uplo="L", diag="U", overwrite_b=1)[0]).reshape(
-        values.shape
-    )
+        changed[1:] -= rho * goes_on.reshape(shape) * values[:-1]
+        innovations = first_order(theta * goes_on, changed)
+        # a start from rest: the first innovations have a larger variance, which decays as θ^2k
+        extra = (total - s2) * np.float64(theta**2) ** since
+        return innovations / np.sqrt(s2 + extra).reshape(shape)
 
 
 def stretches_of(history: History, kept: np.ndarray) -> list[slice]:
@@ -106,27 +112,26 @@ def estimated(
 ) -> Noise:
     """Noise that has the residual's autocovariances; `used` parameters were fitted.
 
-    Lags 0 to 24 are matched by a non-negative white part and a non-negative coloured one, over a grid
-    of memories up to the longest allowed.
+    They are matched by a non-negative white part and a non-negative coloured one, over a grid of memories up
+    to the longest allowed, over lags of several times that: a slow noise is seen over no shorter ones.
     """
     n = len(residual)
-    lags = int(min(LAGS, max(1, n // 8)))
-    grow = n / max(n - used, n // 3, 1)
-    cov = np.empty(lags + 1)
-    for k in range(lags + 1):
-        pairs = [
-            residual[s][k:] * residual[s][: len(residual[s]) - k]
-            for s in stretches
-            if _length(s) > k
-        ]
-        cov[k] = np.concatenate(pairs).mean() if pairs else 0.0
-    cov *= grow
     longest = max(1.0, LONGEST_OF_CYCLE * rows_per_cycle)
+    shortest = min(LAGS, max(1, n // 8))
+    farthest = max(shortest, min(int(LAGS_PER_MEMORY * longest), n // 8))
+    products, pairs = _autocovariance(residual, stretches, farthest)
+    grow = n / max(n - used, n // 3, 1)
+    groups = _lag_groups(shortest, farthest)
+    counts = np.maximum(np.add.reduceat(pairs, groups), 1.0)
+    cov = grow * np.add.reduceat(products, groups) / counts
+    weight = np.minimum(np.sqrt(counts / n), 1.0)
+    weight[1 : shortest + 1] = 1.0
+    weight[0] = LAG_0_WEIGHT
     best: tuple[float, Noise] | None = None
-    weight = np.r_[LAG_0_WEIGHT, np.ones(lags)]
     for time in np.geomspace(0.5, longest, MEMORIES) if longest > 0.5 else [0.5]:
         rho = float(np.exp(-1 / time))
-        basis = np.column_stack([np.eye(lags + 1)[0], rho ** np.arange(lags + 1)])
+        fall = np.add.reduceat(pairs * rho ** np.arange(farthest + 1), groups) / counts
+        basis = np.column_stack([np.eye(len(groups))[0], fall])
         amount, misfit = nnls(basis * weight[:, None], cov * weight)
         if best is None or misfit < best[0]:
             best = misfit, Noise(float(amount[0]), float(amount[1]), rho)
@@ -134,6 +139,29 @@ def estimated(
     found = best[1]
     floor = max(1e-6 * float(np.var(residual)), FINEST_ARCSEC**2)
     return Noise(found.white + floor, found.coloured, found.memory)
+
+
+def _autocovariance(
+    residual: np.ndarray, stretches: list[slice], farthest: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """(farthest + 1,) sums of products of rows 0, 1, … apart in one stretch, and how many there are."""
+    products, pairs = np.zeros(farthest + 1), np.zeros(farthest + 1)
+    for s in stretches:
+        count = _length(s)
+        reach = min(count, farthest + 1)
+        power = np.abs(np.fft.rfft(residual[s], next_fast_len(count + reach))) ** 2
+        products[:reach] += np.fft.irfft(power, next_fast_len(count + reach))[:reach]
+        pairs[:reach] += count - np.arange(reach)
+    return products, pairs
+
+
+def _lag_groups(shortest: int, farthest: int) -> np.ndarray:
+    """First lag of each group: one by one up to `shortest`, then ever longer ones up to `farthest`."""
+    if farthest <= shortest:
+        return np.arange(shortest + 1)
+    count = int(np.ceil(GROUPS_PER_LOG * np.log((farthest + 1) / (shortest + 1))))
+    edges = np.geomspace(shortest + 1, farthest + 1, count + 1)[:-1].round().astype(int)
+    return np.unique(np.r_[np.arange(shortest + 1), edges])
 
 
 def crossing_band_Nm(history: History) -> float:

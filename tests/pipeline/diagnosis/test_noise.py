@@ -84,3 +84,30 @@ def test_a_single_dropped_row_does_not_cut_a_stretch() -> None:
     assert len(stretches_of(history, kept)) == 1
     kept[30:40] = False
     assert len(stretches_of(history, kept)) == 2
+
+
+def test_a_slow_noise_is_seen_over_its_own_length() -> None:
+    """A share of it that is lost among the white noise from row to row, over a memory of 40 rows.
+
+    What counts for a drift is the power of slow noise, 2·τ·variance.
+    """
+    rng, memory = np.random.default_rng(9), np.exp(-1 / 40)
+    found = []
+    for _ in range(8):
+        kick, out = rng.normal(size=3000) * np.sqrt(1 - memory**2), np.zeros(3000)
+        for k in range(1, len(out)):
+            out[k] = memory * out[k - 1] + kick[k]
+        sample = 0.3 * out + 0.7 * rng.normal(size=3000)
+        noise = estimated(sample, [slice(i, i + 300) for i in range(0, 3000, 300)], 600.0, 0)
+        found.append(noise.coloured * -2 / np.log(noise.memory))
+    # 3000 rows hold 38 independent pieces of 2τ rows, among white noise of as much power over 5 rows:
+    # each is good to about a third, the mean of eight to an eighth
+    assert np.mean(found) == pytest.approx(2 * 40 * 0.09, rel=0.25)
+
+
+def test_each_stretch_is_whitened_as_if_it_were_alone() -> None:
+    noise, values = Noise(0.5, 2.0, 0.9), np.random.default_rng(2).normal(size=(40, 3))
+    together = noise.whitened(values, [slice(0, 1), slice(1, 25), slice(25, 40)])
+    alone = [noise.whitened(values[s], [slice(0, len(values[s]))])
+             for s in (slice(0, 1), slice(1, 25), slice(25, 40))]  # fmt: skip
+    np.testing.assert_allclose(together, np.concatenate(alone), atol=1e-12)
