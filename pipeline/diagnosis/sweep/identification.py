@@ -25,8 +25,6 @@ the nuisance term, which costs 4.5 more, is not the one."""
 MINOR_SHARE = 0.045
 """An effect below this share of the main one's rms may be only that one's shape misfit, unless that one
 has but one shape."""
-MOST_WEAK = 4
-"""Causes that are taken out again, one at a time, where they are not worth their place."""
 MORE_WITHOUT, MORE_OF_RIVAL = 2, 3
 """Terms that a set without a cause, or with a rival in its place, may have more than the best set: another
 law takes two or three elements for one."""
@@ -60,26 +58,16 @@ class Identification:
         return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
 
 
-def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification:
-    """Run the race and decide it; `beside`: another cause is already known."""
+def identify(search: Search, beside: bool = False) -> Identification:
+    """Decide a search that has run; `beside`: another cause is already known."""
+    evidence = search.evidence
     beside |= evidence.columns.ahead is not None
-    search = Search(evidence)
-    best = _plausible(evidence, search, search.run())
-    nats: dict[str, float] = {}
-    for _ in range(MOST_WEAK):
-        without = {c: _without(evidence, best, c) for c in best.named(evidence)}
-        nats = {c: best.score - w.score for c, w in without.items()}
-        only = len(nats) == 1 and not beside
-        weak = [
-            c for c, e in nats.items()
-            if e < (
-                STAND_IN_NATS if _stands_in(evidence, best, without[c])
-                else NAMING_NATS if only else SECOND_NATS
-            )
-        ]  # fmt: skip
+    best = _plausible(evidence, search, search.top)
+    while True:
+        nats, weak = _worth(evidence, best, beside)
         if not weak:
             break
-        best = without[min(weak, key=lambda c: nats[c])]
+        best = weak[min(weak, key=lambda c: nats[c])]
     fit = fit_regressors(evidence, best.terms)
     ahead = {FRICTION} if evidence.columns.ahead else set()
     rms = owner_rms(fit, sorted(best.owners(evidence) | ahead))
@@ -98,6 +86,39 @@ def identify(evidence: GaussianEvidence, beside: bool = False) -> Identification
         if found is not None:
             rival_sets[cause] = found
     return Identification(search, best, fit, tuple(named), rms, rivals, rival_sets, nats)
+
+
+def _worth(
+    evidence: GaussianEvidence, best: Candidate, beside: bool
+) -> tuple[dict[str, float], dict[str, Candidate]]:
+    """Nats of each cause over the best set without it, and of each that is not worth its place that set.
+
+    Where another cause would stand in for it nearly as well, something is there, and the two are rivals: it
+    is weak if it is little better than a set without either.
+    """
+    nats: dict[str, float] = {}
+    weak: dict[str, Candidate] = {}
+    present = best.named(evidence)
+    only = len(present) == 1 and not beside
+
+    def too_little(without: Candidate) -> bool:
+        if _stands_in(evidence, best, without):
+            needed = STAND_IN_NATS
+        else:
+            needed = NAMING_NATS if only else SECOND_NATS
+        return best.score - without.score < needed
+
+    for cause in present:
+        without = _without(evidence, best, _other_than(cause))
+        nats[cause] = best.score - without.score
+        if not too_little(without):
+            continue
+        if without.named(evidence) - present:
+            rest = present - {cause}
+            without = _without(evidence, best, _unnamed_or(rest))
+        if too_little(without):
+            weak[cause] = without
+    return nats, weak
 
 
 def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
@@ -141,10 +162,12 @@ def _cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> boo
     return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
 
 
-def _without(evidence: GaussianEvidence, best: Candidate, cause: str) -> Candidate:
-    """The best set that does without a cause: nuisance terms and other causes may stand in."""
-    start = [i for i in best.terms if evidence.terms[i].owner != cause]
-    search = Search(evidence, lambda t: t.owner != cause)
+def _without(
+    evidence: GaussianEvidence, best: Candidate, allowed: Callable[[Regressor], bool]
+) -> Candidate:
+    """The best set of the terms allowed, beginning with those of the best set of all."""
+    start = [i for i in best.terms if allowed(evidence.terms[i])]
+    search = Search(evidence, allowed)
     return _plausible(
         evidence, search, search.run([start, ()], most=len(best.terms) + MORE_WITHOUT)
     )
@@ -159,6 +182,14 @@ def _stands_in(evidence: GaussianEvidence, best: Candidate, without: Candidate) 
     return count(without) > count(best)
 
 
+def _other_than(cause: str) -> Callable[[Regressor], bool]:
+    return lambda term: term.owner != cause
+
+
+def _unnamed_or(causes: Collection[str]) -> Callable[[Regressor], bool]:
+    return lambda term: term.cause is None or term.owner in causes
+
+
 def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
     """Lets in the terms of these owners."""
     return lambda term: term.owner in owners
@@ -167,8 +198,14 @@ def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
 def _rivals(
     evidence: GaussianEvidence, best: Candidate, cause: str
 ) -> tuple[tuple[str, ...], Candidate | None]:
-    """Ids of other causes that, in the place of this one, explain the record as well."""
-    start = tuple(i for i in best.terms if evidence.terms[i].owner != cause)
+    """Ids of other causes that, in the place of this one, explain the record as well.
+
+    Or in the place of several: of all that another cause may be made of.
+    """
+
+    def without(owners: Collection[str]) -> tuple[int, ...]:
+        return tuple(i for i in best.terms if evidence.terms[i].owner not in owners)
+
     present = {evidence.terms[i].owner for i in best.terms}
     others = {t.cause.id for t in evidence.terms if t.cause} - present
     if evidence.columns.ahead:
@@ -177,8 +214,12 @@ def _rivals(
     found: list[tuple[float, str, Candidate]] = []
     for other in sorted(others):
         allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
+        parts = known_causes()[other].made_of
+        starts = [without({cause})]
+        if cause in parts <= present:
+            starts.append(without(parts))
         search = Search(evidence, owned_by(allowed))
-        rival = search.run([start], most=len(best.terms) + MORE_OF_RIVAL)
+        rival = search.run(starts, most=len(best.terms) + MORE_OF_RIVAL)
         if other not in rival.named(evidence) or _cancels_itself(evidence, rival, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)

@@ -1,7 +1,7 @@
 """The race on a prepared sweep: which set of regressors explains it best, and what that set identifies.
 
-Two rounds: the first with the noise of a local polynomial, the second with the noise of what the best set
-leaves.
+The first round takes the noise of a local polynomial, each further one that of what the best set leaves,
+until the two agree: a polynomial passes effects for noise and slow noise for an effect.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import log
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.noise import (
+    Noise,
     estimated,
     isolated_outliers,
     stretches_of,
@@ -39,6 +41,13 @@ TUNINGS, KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
+NOISE_ROUNDS = 4
+"""At most; records in which noise is found anew more than once are few."""
+NOISE_ALIKE = 0.2
+"""Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
+NOISE_FALLEN = 1.1
+"""Of the log of its variance, by which it must fall to be found anew once a best set has left it: a factor
+of three. What falls by less is misfit of the shapes, up to 1.4 times the noise, which more terms would fit."""
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
@@ -90,13 +99,16 @@ class ExplainedSweep:
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
-    first = with_tuned_shapes(_evidence(prepared), is_named)
-    best = Search(first).run()
-    left = fit_regressors(first, best.terms).residual()
-    prepared = replace(_with_noise(prepared, left, len(best.terms)), columns=first.columns)
-    final = with_tuned_shapes(_evidence(prepared), is_named)
-    prepared = replace(prepared, columns=final.columns)
-    identified = identify(final, beside=prepared.offset_Nm != 0.0)
+    for number in range(NOISE_ROUNDS):
+        search = Search(with_tuned_shapes(_evidence(prepared), is_named))
+        best = search.run()
+        prepared = replace(prepared, columns=search.evidence.columns)
+        left = fit_regressors(search.evidence, best.terms).residual()
+        again = _with_noise(prepared, left, len(best.terms))
+        if number + 1 == NOISE_ROUNDS or _stands(prepared.noise, again.noise, number):
+            break
+        prepared = again
+    identified = identify(search, beside=prepared.offset_Nm != 0.0)
     seen = _crossing(prepared, identified.fit)
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
 
@@ -170,6 +182,15 @@ def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> Prepare
         left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + OF_BASE
     )
     return replace(prepared, noise=noise, kept=kept, outlier=outlier)
+
+
+def _stands(noise: Noise, again: Noise, number: int) -> bool:
+    """Whether the noise of a round, from 0, stands against that of what its best set leaves."""
+    grown = log(again.variance / noise.variance)
+    slower = log(again.slow_power / noise.slow_power)
+    if number == 0:
+        return max(abs(grown), abs(slower)) < NOISE_ALIKE
+    return max(grown, slower) < NOISE_ALIKE and -grown < NOISE_FALLEN
 
 
 def _crossing(prepared: PreparedSweep, fit: SweepFit) -> Crossing | None:

@@ -82,6 +82,11 @@ class Search:
             if not beam or beam[0].score < top + WORTH:
                 break
             top = beam[0].score
+        return self.top
+
+    @property
+    def top(self) -> Candidate:
+        """The best set found so far."""
         return max(self.best.values(), key=lambda c: c.score)
 
     @property
