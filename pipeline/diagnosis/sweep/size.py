@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.noise import BAND_SHARE
+from flexspline.pipeline.diagnosis.measurement.noise import BAND_SHARE, isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -15,8 +15,6 @@ MOST_ROWS = 20_000
 """A size needs no more; every n-th row of longer records is taken."""
 FEWEST = 8
 """Rows beyond the crossing: half of them for zero, drift, slope and gap."""
-FAR = 6.0
-"""Robust deviations beyond which a row is no part of the line: spikes."""
 SURE = 4.0
 """Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
 LARGEST_CORRELATION = 0.99
@@ -66,7 +64,9 @@ def sweep_size(
     """The size of a sweep; None where torque moves too little to fit a line.
 
     θ = zero + drift·row + c·T + ½ g·sign T, zero and drift of each unit its own, by least squares, once
-    more without what lies far off. A drift in step with the torque leaves c a large deviation, and no size.
+    more without single spikes. Whole ramps off the line stay: where most rows lie in holds, ramps alone tell
+    slope from gap, and within a hold torque varies by its reading's noise, over which angle has no slope. A
+    drift in step with the torque leaves c a large deviation, and no size.
     """
     step = -(-len(history) // MOST_ROWS)
     h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
@@ -85,10 +85,8 @@ def sweep_size(
         if found is None:
             return None
         (c, g), cov, residual = found
-        off = np.zeros(len(good))
-        off[good] = residual
         scale = SIGMA_PER_MAD * float(np.median(np.abs(residual)))
-        good &= np.abs(off) <= FAR * scale + 1e-9
+        good[good] = ~isolated_outliers(residual, h.rows(good), scale + 1e-9)
     extent = float(np.ptp(h.torque_Nm))
     both = float(h.torque_Nm.min()) < 0 < float(h.torque_Nm.max())
     along = np.array([extent, 1.0 if both else 0.0])
