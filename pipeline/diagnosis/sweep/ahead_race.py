@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.ahead_tuning import TunedAhead, ahead_element, tuned_ahead
@@ -27,8 +29,16 @@ from flexspline.pipeline.diagnosis.sweep.prepare import (
     true_history,
 )
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead, run_race
-from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
+from flexspline.pipeline.diagnosis.sweep.torque_offset import UNSEEN, Crossing, crossing
 
+BESIDE: Mapping[str, Mapping[str, float]] = {
+    "rate_dependence": {"exponent": 1.0},
+    "stiffness_hardening": {"law": LAWS["tanh"], "held": 0},
+}
+"""Terms that stand beside the friction before any race, by cause, of the shapes that have these parameters:
+linear lags, and a soft wind-up at several scales."""
+NEVER = {"": 0.0}
+"""Parameters that no shape has."""
 ROUNDS = 3
 """Races at most, each with the friction that the last one's terms make the best."""
 ROUNDS_OF_BOTH = 6
@@ -70,12 +80,21 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     except TooFewRowsError:
         return None
     nats = guess.nats
+    if not _seen(found):
+        return None
     if nats < SURE_NATS or found.identified.unnamed_rms > 0:
         plain = with_torque_offset(run_race(prepared))
         nats = gained(found, plain)
         if nats < AHEAD_NATS:
             return plain
     return replace(found, ahead=FoundAhead(std, nats))
+
+
+def _seen(found: ExplainedSweep) -> bool:
+    """Whether the friction stands out of the torque's noise, in which rows lie on either side anyhow."""
+    ahead = found.prepared.ahead
+    assert ahead is not None
+    return ahead.amplitudes[0] > UNSEEN * torque_noise_Nm(found.prepared.rig.history)
 
 
 def _raced_with(
@@ -121,9 +140,17 @@ def _held_at(found: TunedAhead, seen: Crossing) -> TunedAhead:
 
 
 def _alone(prepared: PreparedSweep) -> TunedAhead:
-    """The friction that explains the record best by itself, stiffness and gap free."""
+    """The friction that explains the record best beside what a gear without it does with its torque.
+
+    Stiffness, gap, lags and a soft wind-up: a lag opens the loop as friction does, and a wind-up bends it
+    near the gap, but neither moves the gap's step. Without them the friction would be as large as all.
+    """
     columns = prepared.columns
-    free = [t for t in columns.terms if t.owner in LINEAR]
+    free = [
+        t
+        for t in columns.terms
+        if t.owner in LINEAR or BESIDE.get(t.owner, NEVER).items() <= dict(t.shape).items()
+    ]
     few = replace(
         columns,
         all=np.hstack([columns.all[:, t.at] for t in free]),

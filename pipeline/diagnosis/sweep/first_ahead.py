@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
+from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
     nats_over,
@@ -51,9 +52,10 @@ def first_ahead(
 ) -> AheadGuess | None:
     """The guess; None where there is none to see.
 
-    The angle is fitted by smooth functions of torque, friction elements and one step of free height, crossed
-    where the torque beyond a play operator changes sign; the play's width is the guess, if it is clearly
-    better than none, and than a shifted torque reading; or both, if they are clearly better than either.
+    The angle is fitted by smooth functions of torque, friction elements, lags, which open the loop most where
+    the gap is crossed, and one step of free height, crossed where the torque beyond a play operator changes
+    sign; the play's width is the guess, if it is clearly better than none, and than a shifted torque reading;
+    or both, if they are clearly better than either.
     """
     largest = float(np.abs(history.torque_Nm).max())
     if not both_ways(history.torque_Nm):
@@ -65,8 +67,9 @@ def first_ahead(
     states = stops(history, torque, tried, np.zeros(len(tried)))
     beside, carried = states[:, : len(BESIDE)] / tried[: len(BESIDE)], states[:, len(BESIDE) :]
     direction = direction_of_loading(history)
+    zeros, lagging = zeros_of_cycles(history), lagging_torque(history) / largest
     smooth = np.column_stack(
-        [*zeros_of_cycles(history), x, np.abs(x), x * np.abs(x), x**3, direction, beside]
+        [*zeros, x, np.abs(x), x * np.abs(x), x**3, direction, beside, lagging]
     )
 
     def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:

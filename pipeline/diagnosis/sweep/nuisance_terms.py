@@ -13,8 +13,6 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.causes.operators import lags
-from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     changing_stiffness,
     over_cycle,
@@ -24,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     over_unit,
     waves_and_steps,
 )
+from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.rig_nuisance import giving_way, ringing
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     Made,
@@ -36,9 +35,6 @@ from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
 
 NEW_SHARE = 0.25
 """Of a column's own size: one of which less is new beside torque and gap is no nuisance term."""
-LAGGING = (0.1, 0.4)
-"""Time constants, as shares of a ramp, of what a lag can be: a short one, and the longest of
-`rate_dependence`."""
 
 
 @dataclass(frozen=True)
@@ -112,12 +108,4 @@ def _linear(rig: Rig) -> np.ndarray:
     a wave in quadrature with it, beside a lag, is that too.
     """
     h = rig.history
-    return np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign, _lagging(rig)])
-
-
-def _lagging(rig: Rig) -> np.ndarray:
-    """(n, 2) torque through a short and a long lag; no columns without time or movement."""
-    ramp = ramp_s(rig.history)
-    if ramp <= 0:
-        return np.empty((len(rig.history), 0))
-    return lags(rig.history.torque_Nm, rig.history, np.array(LAGGING) * ramp)
+    return np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign, lagging_torque(h)])
