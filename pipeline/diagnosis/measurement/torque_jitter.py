@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.measurement.corners import corners_of
+from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
 
@@ -33,20 +33,36 @@ def jitter(history: History, width: int) -> np.ndarray:
     key = ("jitter", float(width))
     if key not in history.memo:
         out, corners = np.zeros(len(history)), corners_of(history)
-        way = np.zeros(len(history), int)
         for unit, rows in enumerate(history.unit_slices):
-            time = history.time_s
-            t = np.arange(len(rows), dtype=float) if time is None else time[rows]
-            turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
-            edges = np.unique([0, *turned, len(rows)])
+            t, edges = _ways(history, corners, unit, rows)
             out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
-            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
-        for hold in holds(history):
-            if np.median(way[hold]) <= len(hold) + BESIDE:  # a sine's turn ends at no corner
-                out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
+        for hold in still(history):
+            out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
         # beyond its noise it is a corner that was not seen
         history.memo[key] = np.where(np.abs(out) < FAR * torque_noise_Nm(history), out, 0.0)
     return history.memo[key]
+
+
+def still(history: History) -> list[np.ndarray]:
+    """Rows of each hold between two corners of the programme: a sine's turn ends at no corner."""
+    key = ("still", 0.0)
+    if key not in history.memo:
+        corners, way = corners_of(history), np.zeros(len(history), int)
+        for unit, rows in enumerate(history.unit_slices):
+            _, edges = _ways(history, corners, unit, rows)
+            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
+        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + BESIDE]
+    found: list[np.ndarray] = history.memo[key]
+    return found
+
+
+def _ways(
+    history: History, corners: list[Corner], unit: int, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Time (m,) of a unit's rows, and the first row of each way between two corners, the last one's end."""
+    t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+    turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
+    return t, np.unique([0, *turned, len(rows)])
 
 
 def widest(history: History) -> int:

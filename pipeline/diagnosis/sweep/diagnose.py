@@ -14,7 +14,7 @@
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
-| test it for what sticks | `jumps.py`, `stuck.py` |
+| test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
@@ -46,6 +46,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
+from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
 from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
@@ -89,7 +90,10 @@ def diagnose_sweep(
     causes = named_causes(explained)
     tests = channel_tests(explained.prepared, identified.fit)
     jumps = largest(
-        jumps_of(explained.prepared, identified.fit), stuck_of(explained.prepared, identified.fit)
+        *(
+            test(explained.prepared, identified.fit)
+            for test in (jumps_of, stuck_of, scatter_along_travel)
+        )
     )
     decision = decided(
         causes,
