@@ -142,7 +142,10 @@ def _pair(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case |
         return None
     units = bench.measured(hidden)
     found = standing(units, bench.rig, (one, two))
-    hidden = (widened(hidden[0], hidden[1], bench), hidden[1])
+    hidden = (
+        diluted(widened(hidden[0], hidden[1], bench), hidden[1], bench),
+        diluted(hidden[1], hidden[0], bench),
+    )
     left = (found.in_company(0, one, two, 1), found.in_company(1, two, one, 0))
     if min(left) < DECIDABLE:
         return None
@@ -157,6 +160,19 @@ def widened(friction: Hidden, other: Hidden, bench: Bench) -> Hidden:
     carried = np.abs(program.torque - friction.teeth(program, gear)).max()
     twist = other.angle(replace(program, torque=carried * np.array([-1.0, 1.0])), gear)
     return replace(friction, magnitude=friction.magnitude + float(twist[1] - twist[0]))
+
+
+OF_TWIST = ("position_stiffness", "direction_asymmetry", "creep")
+"""Causes whose magnitude is a share of the elastic twist, or of the mean compliance (docs/contract.md)."""
+
+
+def diluted(share: Hidden, other: Hidden, bench: Bench) -> Hidden:
+    """A share of the elastic twist beside a spring in series, which twists as well."""
+    if share.cause not in OF_TWIST or other.cause != "series_compliance":
+        return share
+    gear = bench.gears[0]
+    extra = float(other.angle(replace(bench.program, torque=np.ones(1)), gear)[0])
+    return replace(share, magnitude=share.magnitude * gear.compliance / (gear.compliance + extra))
 
 
 def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:
