@@ -47,7 +47,7 @@ NOISE_ALIKE = 0.2
 """Of the logs of the noise's variance and of its slow part's power: evidence is then good to a fifth."""
 NOISE_FALLEN = 1.1
 """Of the log of its variance, by which it must fall, once a best set has left it, to be found anew: a factor
-of three. What falls by less is misfit of the shapes, up to 1.4 times the noise, and more terms would fit it."""
+of three. What falls by less is the shapes' misfit, up to 1.4 times the noise; more terms would fit it."""
 OF_BASE = 3
 """Parameters that the calibration takes of a single unit's rows: zero, compliance, gap."""
 GOOD_PART = 0.5
