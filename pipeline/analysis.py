@@ -17,11 +17,12 @@ from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
+from flexspline.pipeline.beside import beside
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE, ellipse_field, half_seat_peak
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.load_cases import rim_answers
+from flexspline.pipeline.load_cases import RimAnswers, rim_answers
 from flexspline.pipeline.part_meshes import MeshedPart
 from flexspline.pipeline.part_stiffness import TwistedPart, part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -65,11 +66,16 @@ class RunResult:
 
 
 def stiffnesses(
-    context: AnalysisContext, flexspline: bool = True, shaft: bool = True, rim: bool = True
+    context: AnalysisContext,
+    flexspline: bool = True,
+    shaft: bool = True,
+    rim: bool = True,
+    solved: Callable[[PartModel], None] = lambda part: None,
 ) -> Stiffnesses:
     """All that `flexspline stiffness` answers, for the parts that are asked for.
 
-    What fails is absent, with its reason in `missing`; the rest is there.
+    What fails is absent, with its reason in `missing`; the rest is there. `solved` is told each part
+    after its K.
 
     Without `rim` the lobes and the wave generator are left out: the backlash sum needs them only
     where `solver.load_case` says so.
@@ -83,21 +89,32 @@ def stiffnesses(
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         if wanted:
             part.refuse_settings()
-    tried = Attempts()
-    K_b = tried.get("K_b", lambda: part_stiffness(rim_part)) if flexspline else None
-    K_e = tried.get("K_e", lambda: part_stiffness(shaft_part)) if shaft else None
-    every = {"K_b": K_b, "K_e": K_e}
-    if not flexspline:
-        return Stiffnesses(in_order(every), missing=tried.missing)
-    if not rim:
-        return Stiffnesses(in_order(every), ring=context.ring, missing=tried.missing)
-    answers = rim_answers(rim_part, tried)
+    tried, tried_rim = Attempts(), Attempts()
+
+    def K_of(name: str, part: PartModel) -> Stiffness | None:
+        found = tried.get(name, lambda: part_stiffness(part))
+        solved(part)
+        return found
+
+    K_b = K_of("K_b", rim_part) if flexspline else None
+    if not (flexspline and rim):
+        every = {"K_b": K_b, "K_e": K_of("K_e", shaft_part) if shaft else None}
+        ring = context.ring if flexspline else None
+        return Stiffnesses(in_order(every), ring=ring, missing=tried.missing)
+
+    def of_rim() -> tuple[RimAnswers, StressPeak | None]:
+        answers = rim_answers(rim_part, tried_rim)
+        return answers, tried_rim.get("half_seat_peak", lambda: half_seat_peak(rim_part))
+
+    with beside(context.progress, of_rim) as rim_work:
+        K_e = K_of("K_e", shaft_part) if shaft else None
+        answers, half_seat = rim_work.result()
     return Stiffnesses(
-        in_order({**every, **answers.stiffnesses}),
+        in_order({"K_b": K_b, "K_e": K_e, **answers.stiffnesses}),
         answers.wave_generator_peak,
-        tried.get("half_seat_peak", lambda: half_seat_peak(rim_part)),
+        half_seat,
         context.ring,
-        tried.missing,
+        {**tried.missing, **tried_rim.missing},
     )
 
 
@@ -115,9 +132,6 @@ def run(
     NotFoundError : what the backlash sum needs failed; it carries what was found.
     """
     design = context.design
-    flexspline, shaft = context.part("flexspline"), context.part("shaft")
-    for part in (flexspline, shaft):
-        part.refuse_settings()
     tried, fields = Attempts(), dict[str, SolidField]()
 
     def solve(name: str, make: Callable[[], SolidField]) -> None:
@@ -126,13 +140,13 @@ def run(
             fields[name] = field
             told(name, field)
 
-    # a part's stiffness comes from the same solution, which the cache keeps
-    solve("flexspline_torque", lambda: torque_field(flexspline))
-    solve("shaft_torque", lambda: torque_field(shaft))
-    found = stiffnesses(context)
+    def under_torque(part: PartModel) -> None:
+        solve(f"{part.name}_torque", lambda: torque_field(part))
+
+    found = stiffnesses(context, solved=under_torque)
     found.require(design)
     total = backlash_of(design, found)
-    solve("wave_generator", lambda: ellipse_field(flexspline))
+    solve("wave_generator", lambda: ellipse_field(context.part("flexspline")))
     gear = tried.get("gear", lambda: _gear(context))
     found = replace(found, missing={**found.missing, **tried.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}

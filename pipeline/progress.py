@@ -5,32 +5,57 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import local
+
+
+class StoppedError(Exception):
+    """Nobody waits for this work any more."""
+
+
+class _OpenStages(local):
+    """The seconds of inner stages, of each stage that is open in this thread."""
+
+    def __init__(self) -> None:
+        self.inner: list[float] = []
 
 
 class Progress:
-    """Times nested stages; `seconds` holds each stage's own time, inner stages not counted twice."""
+    """Times nested stages; `seconds` holds each stage's own time, inner stages not counted twice.
+
+    Threads may share it; each has stages of its own names.
+    """
 
     def __init__(self, say: Callable[[str], None] = lambda line: None) -> None:
         self._say = say
         self._start = time.monotonic()
-        self._inner: list[float] = []
+        self._open = _OpenStages()
+        self.stopped = False
+        """Whether all work is to end at its next stage or line."""
         self.seconds: dict[str, float] = {}
 
     def note(self, text: str) -> None:
-        """One line with the time since the start."""
+        """One line with the time since the start.
+
+        Raises
+        ------
+        StoppedError : it is `stopped`.
+        """
+        if self.stopped:
+            raise StoppedError
         self._say(f"[{time.monotonic() - self._start:6.1f} s] {text}")
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Announce a stage and add up its time."""
+        """Announce a stage and add up its time; errors as `note`."""
         self.note(name)
         began = time.monotonic()
-        self._inner.append(0.0)
+        inner = self._open.inner
+        inner.append(0.0)
         try:
             yield
         finally:
             whole = time.monotonic() - began
-            own = whole - self._inner.pop()
+            own = whole - inner.pop()
             self.seconds[name] = self.seconds.get(name, 0.0) + own
-            if self._inner:
-                self._inner[-1] += whole
+            if inner:
+                inner[-1] += whole
