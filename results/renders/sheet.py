@@ -93,10 +93,7 @@ def _pt(pixels: float) -> float:
 
 
 def _image(figure: Figure, shot: Shot, at: tuple[int, int]) -> None:
-    height, width = shot.image.shape[:2]
-    axes = figure.add_axes(_box(*at, width, height))
-    axes.imshow(shot.image, interpolation="none", aspect="auto")
-    axes.set_axis_off()
+    figure.figimage(shot.image, *at, origin="upper", zorder=-1)  # below the mark's axes
 
 
 def _say(
