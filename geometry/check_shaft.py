@@ -1,10 +1,9 @@
-"""Which shafts can be built: segments that meet, fillets, grip and keyway with room."""
+"""Which shafts can be built: segments that meet, fillets and grip with room."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import accumulate, pairwise
-from math import sqrt
 
 from flexspline.geometry.bounds import (
     TINY,
@@ -20,10 +19,11 @@ from flexspline.geometry.bounds import (
     upto,
 )
 from flexspline.geometry.check_bolts import bolt_faults
+from flexspline.geometry.check_keyway import keyway_faults
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
-from flexspline.geometry.shapes import Keyway, Shaft, ShaftSegment
+from flexspline.geometry.shapes import Shaft, ShaftSegment
 
 STEP_mm = 2 * SMALLEST_MM
 """Of a diameter: the CAD kernel sees half of it."""
@@ -44,7 +44,7 @@ def shaft_faults(s: Shaft) -> Iterator[DesignError]:
         ("segment[0].outer_diameter_mm", first.outer_diameter_mm),
     )
     if s.keyway and s.slot and not segments:
-        yield from _keyway_faults(s, s.keyway, s.slot.floor)
+        yield from keyway_faults(s, s.keyway, s.slot.floor)
 
 
 def _segment_faults(s: Shaft) -> Iterator[DesignError]:
@@ -187,44 +187,3 @@ def _too_short(s: Shaft) -> DesignError:
         s.segment[last].length_mm,
         f"must be {least} mm: for a grip and the rest of the shaft",
     )
-
-
-def _keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:
-    last = s.segment[-1]
-    radius = last.outer_diameter_mm / 2
-    if key.length_mm >= s.length - TINY:
-        yield DesignError(
-            "shaft.keyway.length_mm",
-            key.length_mm,
-            f"must be {lengths(0, below(s.length))} mm: below the shaft's length, {s.length:g} mm (sum "
-            "of segment length_mm)",
-        )
-        return
-    bored = [
-        (segment.inner_diameter_mm / 2, i)
-        for i, segment in enumerate(s.segment)
-        if sum(t.length_mm for t in s.segment[: i + 1]) > s.length - key.length_mm + TINY
-        and segment.outer_diameter_mm / 2 > floor
-    ]
-    bore, i = max(bored, default=(last.inner_diameter_mm / 2, len(s.segment) - 1))
-    if floor <= bore + TINY:
-        room = lengths(0, below(radius - bore))
-        lands = (
-            f"from the last outer_diameter_mm = {2 * radius:g} to segment[{i}].inner_diameter_mm = "
-            f"{2 * bore:g}"
-        )
-        if room is None:
-            yield DesignError(
-                "shaft.keyway", key.model_dump(), f"must be left out: no depth fits {lands}"
-            )
-        else:
-            yield DesignError("shaft.keyway.depth_mm", key.depth_mm, f"must be {room} mm: {lands}")
-        return
-    chord = 2 * sqrt(radius**2 - floor**2)
-    if key.width_mm >= chord - TINY:
-        yield DesignError(
-            "shaft.keyway.width_mm",
-            key.width_mm,
-            f"must be {lengths(0, below(chord))} mm: below the chord {chord:.4g} mm at depth_mm = "
-            f"{key.depth_mm:g} in outer_diameter_mm = {2 * radius:g}",
-        )

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from flexspline.geometry.bounds import span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
+from flexspline.geometry.check_tooth import ring_ends, tooth_faults
 from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
-from flexspline.geometry.tooth import ring_ends, tooth_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -17,12 +16,15 @@ from scipy.spatial import cKDTree
 
 from flexspline.geometry.cad import build_solid, partition_faces
 from flexspline.geometry.errors import GeometryError
+from flexspline.geometry.face_triangles import (
+    inside_point,
+    mesh_faces,
+    triangles_of,
+    triangles_of_all,
+)
 from flexspline.geometry.part import Part
 from flexspline.geometry.sharp_edges import sharp_edges
 from flexspline.geometry.surfaces import Surface, part_surfaces
-
-if TYPE_CHECKING:
-    import cadquery as cq
 
 ON_SURFACE = 1e-6
 """A CAD face lies on a surface if all its vertices do, to this distance [mm]."""
@@ -77,7 +79,7 @@ def tagged_surface(
     """
     solid = build_solid(part, sector_deg)
     surfaces = part_surfaces(part, sector_deg)
-    _mesh_faces(solid, chord_error)
+    mesh_faces(solid, chord_error)
     points: list[np.ndarray] = []
     triangles: list[np.ndarray] = []
     owner: list[np.ndarray] = []
@@ -85,8 +87,8 @@ def tagged_surface(
     face_surface: dict[int, int] = {}
     count = 0
     for face in solid.Faces():
-        v, t = _triangles(face)
-        index = _surface_of(v, _inside_point(face), surfaces)
+        v, t = triangles_of(face)
+        index = _surface_of(v, inside_point(face), surfaces)
         face_surface[face.hashCode()] = index
         if surfaces[index].patch:
             areas[surfaces[index].patch] += face.Area()
@@ -101,7 +103,9 @@ def tagged_surface(
     )
     faces, surface_of = faces[solid_faces], surface_of[solid_faces]
     _check_watertight(vertices, faces, part.name)
-    cut_v, cut_t = _cuts(partition_faces(solid, part.meridian, sector_deg, cut_reach), chord_error)
+    cut_v, cut_t = triangles_of_all(
+        partition_faces(solid, part.meridian, sector_deg, cut_reach), chord_error
+    )
     sharp, critical = sharp_edges(solid, face_surface, surfaces, edge_spacing)
     return TaggedSurface(
         vertices=vertices,
@@ -116,46 +120,6 @@ def tagged_surface(
         critical_edges=critical,
         sector_deg=sector_deg,
     )
-
-
-def _mesh_faces(shape: cq.Shape, chord_error: float) -> None:
-    """Triangulate all faces at once, so that neighbours share their edges' points."""
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-
-    turn = 0.2  # rad: some 31 chords around, however small a fillet or a hole
-    BRepMesh_IncrementalMesh(shape.wrapped, chord_error, False, turn, False)
-
-
-def _triangles(face: cq.Face) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and triangles (m, 3) of a face that `_mesh_faces` has triangulated."""
-    from OCP.BRep import BRep_Tool
-    from OCP.TopAbs import TopAbs_REVERSED
-    from OCP.TopLoc import TopLoc_Location
-
-    where = TopLoc_Location()
-    found = BRep_Tool.Triangulation_s(face.wrapped, where)
-    if found is None:
-        raise GeometryError("the CAD kernel could not triangulate a face")
-    move = where.Transformation()
-    nodes = (found.Node(i + 1).Transformed(move) for i in range(found.NbNodes()))
-    vertices = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
-    triangles = np.array([found.Triangle(i + 1).Get() for i in range(found.NbTriangles())]) - 1
-    if face.wrapped.Orientation() == TopAbs_REVERSED:
-        triangles = triangles[:, ::-1]
-    return vertices, triangles
-
-
-def _inside_point(face: cq.Face) -> np.ndarray:
-    """A point (1, 3) off the face's edges, on its surface though not always in its bounds."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.TopLoc import TopLoc_Location
-
-    found = BRep_Tool.Triangulation_s(face.wrapped, TopLoc_Location())
-    corners = [found.UVNode(i) for i in found.Triangle(1).Get()]
-    u, v = (sum(c.Coord()[k] for c in corners) / 3 for k in (0, 1))
-    p = BRepAdaptor_Surface(face.wrapped).Value(u, v)
-    return np.array([[p.X(), p.Y(), p.Z()]])
 
 
 def _surface_of(vertices: np.ndarray, inside: np.ndarray, surfaces: list[Surface]) -> int:
@@ -189,14 +153,3 @@ def _check_watertight(vertices: np.ndarray, triangles: np.ndarray, part_name: st
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         raise GeometryError(f"the tessellated surface of the {part_name} is not watertight")
-
-
-def _cuts(faces: list[cq.Face], chord_error: float) -> tuple[np.ndarray, np.ndarray]:
-    vertices, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
-    for face in faces:
-        _mesh_faces(face, chord_error)
-        v, t = _triangles(face)
-        vertices.append(v)
-        triangles.append(t + count)
-        count += len(v)
-    return np.concatenate(vertices), np.concatenate(triangles)

@@ -12,7 +12,8 @@ import numpy as np
 from flexspline.fea.solid.defaults import surface_to_mesh
 from flexspline.fea.solid.errors import SolidError, TooManyElementsError
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
-from flexspline.fea.solid.swept import swept_edges, swept_mesh
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.tagged import TaggedSurface

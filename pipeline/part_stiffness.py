@@ -14,7 +14,7 @@ from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
-from flexspline.fea.solid.swept import goes_about_axis
+from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.symmetry import sector_of

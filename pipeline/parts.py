@@ -10,7 +10,7 @@ from typing import Any
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
-from flexspline.fea.solid.swept import can_be_swept, goes_about_axis
+from flexspline.fea.solid.sweeps import can_be_swept, goes_about_axis
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Design

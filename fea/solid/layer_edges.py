@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from flexspline.fea.solid.imprint import SMOOTH
 from flexspline.geometry.outline import SAME, Segment, distance
@@ -13,6 +14,8 @@ from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Su
 
 INSIDE_CORNER = 0.1
 """Sine of the angle by which a facet must rise over its neighbour's plane: an inside corner, not rounding."""
+ALONG = 5
+"""Points along an edge where stress is singular, from which distances are measured."""
 
 
 @dataclass(frozen=True)
@@ -83,3 +86,12 @@ def _lies_in(segment: Segment, plane: Plane) -> bool:
     return across and any(
         abs(at[1] - plane.point[2]) < SAME and abs(tangent[0]) > 1 - SMOOTH for at, tangent in ends
     )
+
+
+def distance_from(edges: np.ndarray, points: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Of places `at` (k, 3) from the nearest of edges (e, 2) between points (n, 3) [mm]; without any, inf."""
+    if not len(edges):
+        return np.full(len(at), np.inf)
+    along = np.linspace(0, 1, ALONG)[None, :, None]
+    a, b = points[edges[:, 0]][:, None], points[edges[:, 1]][:, None]
+    return np.asarray(cKDTree((a + along * (b - a)).reshape(-1, 3)).query(at)[0])

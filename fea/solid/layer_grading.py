@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from flexspline.fea.solid.bisect import Simplices, halved
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
-from flexspline.fea.solid.layer_edges import Seams, seams_of
+from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
 from flexspline.fea.solid.layers import RING_STEP
 from flexspline.fea.solid.polar import cartesian, middles, polar
 from flexspline.fea.solid.sizing import Grading
@@ -20,8 +19,6 @@ ROUNDS = 60
 """Of halving, the longest edges first: 150 random shafts took 5 at most."""
 AT_ONCE = 2.0
 """A round halves what is longer than is asked and than the longest edge over this, both relative."""
-ALONG = 5
-"""Points along an edge where stress is singular, from which distances are measured."""
 WHOLE_STEP = 1.01
 """Of the plan's step about the axis: rounding must not halve it."""
 
@@ -73,16 +70,11 @@ def _relative_lengths(
     off_axis = (ends[:, :, 0] > 0).all(axis=1)
     turn = np.where(off_axis, ends[:, 1, 1] - ends[:, 0, 1], 0.0)
     there = cartesian(middle)
-
-    def away(which: np.ndarray) -> np.ndarray:
-        chosen = seams.nodes[which]
-        if not len(chosen):
-            return np.full(len(edges), np.inf)
-        along = np.linspace(0, 1, ALONG)[None, :, None]
-        a, b = points[chosen[:, 0]][:, None], points[chosen[:, 1]][:, None]
-        return np.asarray(cKDTree((a + along * (b - a)).reshape(-1, 3)).query(there)[0])
-
-    across = np.minimum(grading.far, grading.near + grading.growth * away(seams.singular))
-    plain = grading.near + grading.growth * away(seams.singular & ~seams.revolved)
+    across = np.minimum(
+        grading.far,
+        grading.near + grading.growth * distance_from(seams.nodes[seams.singular], points, there),
+    )
+    others = seams.nodes[seams.singular & ~seams.revolved]
+    plain = grading.near + grading.growth * distance_from(others, points, there)
     around = np.maximum(across, np.minimum(plain, WHOLE_STEP * RING_STEP * middle[:, 0]))
     return np.sqrt((dr**2 + dz**2) / across**2 + (middle[:, 0] * turn / around) ** 2)

@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
-from flexspline.fea.solid.layer_edges import Seams, seams_of
-from flexspline.fea.solid.layer_grading import ALONG, WHOLE_STEP, with_middles_of
+from flexspline.fea.solid.layer_edges import Seams, distance_from, seams_of
+from flexspline.fea.solid.layer_grading import WHOLE_STEP, with_middles_of
 from flexspline.fea.solid.layers import RING_STEP
 from flexspline.fea.solid.polar import polar
 from flexspline.geometry.surfaces import Surface
@@ -102,16 +101,8 @@ def _lengths(
     meridian = np.hypot(dr, dz)
     across = np.full(len(edges), np.inf)
     np.minimum.at(across, of_element, meridian[of_element].max(axis=1, keepdims=True))
-    away = _away(points, seams.nodes[seams.singular & ~seams.revolved])[edges].mean(axis=1)
+    away = distance_from(seams.nodes[seams.singular & ~seams.revolved], points, points)
+    away = away[edges].mean(axis=1)
     around = np.minimum(across + GROWTH * away, WHOLE_STEP * RING_STEP * r)
     share = np.divide(across, around, out=np.ones_like(r), where=around > across)
     return edges, np.hypot(meridian, r * turn * share), of_element
-
-
-def _away(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Distance (n,) [mm] of each point from the nearest of these edges (k, 2)."""
-    if not len(edges):
-        return np.full(len(points), np.inf)
-    along = np.linspace(0, 1, ALONG)[None, :, None]
-    a, b = points[edges[:, 0]][:, None], points[edges[:, 1]][:, None]
-    return np.asarray(cKDTree((a + along * (b - a)).reshape(-1, 3)).query(points)[0])

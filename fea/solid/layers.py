@@ -14,15 +14,13 @@ import numpy as np
 
 from flexspline.fea.solid.fillets import Fillet, fillets_of
 from flexspline.fea.solid.plan import Plan, triangulated
-from flexspline.fea.solid.plan_curves import Arc, Curve, Line
+from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import BoltCircle, Shaft
+from flexspline.geometry.shapes import Shaft
 
 RING_STEP = np.radians(20)
 """Largest edge about the axis: parabolas of 20° lose 2e-5 of a circle's area."""
-HOLE_STEP = np.radians(22.5)
-"""The same about a hole's axis, before the elements there are made as short as is asked."""
 CORE = 0.4
 """Of the least radius at which something happens: within it, a plan that reaches the axis is a fan."""
 LAYERS_PER_FAR = 1.15
@@ -97,7 +95,7 @@ class Layers:
         ]
         found += [Arc((0.0, 0.0), r, 0.0, sector, RING_STEP / sector) for r in radii]
         if self.part.bolts is not None:
-            found += _holes(self.part.bolts, sector)
+            found += hole_arcs(self.part.bolts, sector)
         slot = self.part.keyway
         if slot is not None:
             outer = max(o for _, top, _, o in self.tubes if top > slot.start + SAME)
@@ -174,24 +172,6 @@ class Layers:
                     count += len(on)
             found.append(np.hstack([low[kept], high[kept]]))
         return np.vstack(nodes), np.vstack(found)
-
-
-def _holes(bolts: BoltCircle, sector: float) -> list[Curve]:
-    """Of the sector: half a hole at angle 0 and at its end, whole ones between."""
-    found: list[Curve] = []
-    for x, y in bolts.centres:
-        angle = float(np.arctan2(y, x)) % (2 * np.pi)
-        if angle > sector + SAME:
-            continue
-        start, sweep = angle, 2 * np.pi
-        if angle < SAME:
-            start, sweep = 0.0, np.pi
-        elif angle > sector - SAME:
-            start, sweep = angle - np.pi, np.pi
-        half = sweep / 2  # two arcs: a circle's parameter has one beginning
-        for k in (0, 1):
-            found.append(Arc((x, y), bolts.hole_radius, start + k * half, half, HOLE_STEP / half))
-    return found
 
 
 def _distinct(values: set[float]) -> list[float]:

@@ -9,9 +9,12 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from flexspline.geometry.outline import SAME
+from flexspline.geometry.shapes import BoltCircle
 
 SMALLEST_PIECE = 1e-6
 """Of a line's range: crossings nearer than this to each other are one."""
+HOLE_STEP = np.radians(22.5)
+"""Largest edge about a hole's axis, before the elements there are made as short as is asked."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,24 @@ class Arc:
 
 
 Curve = Line | Arc
+
+
+def hole_arcs(bolts: BoltCircle, sector: float) -> list[Curve]:
+    """Bolt holes in a sector [rad]: half a hole at angle 0 and at its end, whole ones between."""
+    found: list[Curve] = []
+    for x, y in bolts.centres:
+        angle = float(np.arctan2(y, x)) % (2 * np.pi)
+        if angle > sector + SAME:
+            continue
+        start, sweep = angle, 2 * np.pi
+        if angle < SAME:
+            start, sweep = 0.0, np.pi
+        elif angle > sector - SAME:
+            start, sweep = angle - np.pi, np.pi
+        half = sweep / 2  # two arcs: a circle's parameter has one beginning
+        for k in (0, 1):
+            found.append(Arc((x, y), bolts.hole_radius, start + k * half, half, HOLE_STEP / half))
+    return found
 
 
 def crossings(a: Curve, b: Curve) -> Iterator[np.ndarray]:

@@ -17,16 +17,8 @@ import numpy as np
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.geometry.outline import SAME, Meridian, Segment
-from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft, Slot
+from flexspline.geometry.shapes import Slot
 
-LEAST_RIM = 0.1
-"""Of the slot's depth: less material between the floor's corner and the outer wall is left to the mesher,
-since the block's elements there are as thin."""
-FADING = 1.0
-"""Length over which the bending dies out, of the largest change of a radius: a slope of 45° in the mesh."""
-LEAST_FADING = 0.5
-"""Of that length: where a step of the shaft leaves less, elements would be bent too far."""
 LEAST_STEPS = 2
 """About the axis, from the slot's middle to its side."""
 STEP_OF_EDGE = 0.5
@@ -199,38 +191,6 @@ class Block:
         arc = self.outer * np.column_stack([np.cos(turn), np.sin(turn)])
         found.append(np.column_stack([arc, np.full(len(arc), start)]))
         return np.vstack(found)
-
-
-def block_of(part: Part, low: float) -> Block | None:
-    """The keyway of a shaft, if the mesh can be bent onto it; what lies below `low` [mm] is not bent.
-
-    None without a keyway, where the slot leaves the last segment, reaches too near its outer wall, or
-    begins too near a step.
-    """
-    cut, shape = part.keyway, part.shape
-    if cut is None or not isinstance(shape, Shaft):
-        return None
-    last = shape.segment[-1]
-    outer, inner = last.outer_diameter_mm / 2, last.inner_diameter_mm / 2
-    base = shape.length - last.length_mm
-    narrowing = len(shape.segment) > 1 and (
-        shape.segment[-2].outer_diameter_mm < last.outer_diameter_mm
-        or shape.segment[-2].inner_diameter_mm != last.inner_diameter_mm
-    )
-    wide = base
-    if len(shape.segment) > 1 and not narrowing:  # the bending may go on into the segment before
-        wide -= shape.segment[-2].length_mm
-    room = cut.start - max(low, wide)
-    corner = hypot(cut.floor, cut.half_width)
-    wanted = FADING * (corner - cut.floor + cut.half_width)
-    fading = min(wanted, room)
-    if (
-        cut.start < base + SAME
-        or outer - corner < LEAST_RIM * (outer - cut.floor)
-        or fading < LEAST_FADING * wanted
-    ):
-        return None
-    return Block(cut, inner, outer, fading)
 
 
 def _within(s: Segment, p: tuple[float, float]) -> bool:

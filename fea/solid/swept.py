@@ -20,14 +20,15 @@ from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_o
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.facet_surfaces import surfaces_of
-from flexspline.fea.solid.layered import layered_edges, layered_mesh
+from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.polar import cartesian, middles
 from flexspline.fea.solid.prisms import along, cut, extruded, mirrored, revolved, unrolled_copies
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading
-from flexspline.fea.solid.slot import Block, block_of
+from flexspline.fea.solid.slot import Block
 from flexspline.fea.solid.snap import snap_to_surfaces
+from flexspline.fea.solid.sweeps import bent_block, can_be_swept, goes_about_axis, half_holes
 from flexspline.fea.solid.swept_sizing import (
     Finer,
     critical_points,
@@ -38,7 +39,6 @@ from flexspline.fea.solid.swept_sizing import (
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.surfaces import part_surfaces
 
 LARGEST_STEP = radians(10)
@@ -58,7 +58,7 @@ def swept_mesh(
 ) -> TetMesh | None:
     """Mesh of the part's sector, graded as `spec` says; None for a part that is not swept.
 
-    A shaft with holes that are not in a plain column, or a keyway that `block_of` cannot place, is swept
+    A shaft with holes that are not in a plain column, or a keyway that cannot be bent into place, is swept
     along the axis (`fea.solid.layered`); a flexspline with such holes needs a mesher. So does a part whose
     sweep fails a check: elements bent too far, a facet off every surface of the part, a volume or a patch
     area that is not its own, a meridian that cannot be triangulated.
@@ -71,7 +71,7 @@ def swept_mesh(
     if not can_be_swept(part):
         return None
     column = column_of(part)
-    block = _block_of(part, column)
+    block = bent_block(part, column)
     try:
         if not goes_about_axis(part):
             return layered_mesh(part, sector_deg, spec, most_elements)
@@ -85,28 +85,6 @@ def swept_mesh(
         return _curved(part, column, block, sector_deg, polar, tets, bend)
     except (MeshQualityError, MeshingError):
         return None
-
-
-def can_be_swept(part: Part) -> bool:
-    """Whether a sweep is tried: about the axis, or, of shafts, along it."""
-    return goes_about_axis(part) or isinstance(part.shape, Shaft)
-
-
-def goes_about_axis(part: Part) -> bool:
-    """Whether the part is a body of revolution, or one with holes in a plain column and a plain keyway."""
-    column = column_of(part)
-    if part.bolts is not None and column is None:
-        return False
-    return part.keyway is None or _block_of(part, column) is not None
-
-
-def half_holes(part: Part, sector_deg: float) -> int:
-    """How many halves of bolt holes a sector from the middle of the first has; 0 without holes."""
-    return 0 if part.bolts is None else round(2 * part.bolts.count * sector_deg / 360)
-
-
-def _block_of(part: Part, column: Column | None) -> Block | None:
-    return block_of(part, 0.0 if column is None else column.high)
 
 
 def _prisms(
@@ -220,35 +198,3 @@ def _check(mesh: TetMesh, part: Part, column: Column | None, block: Block | None
     for what, (found, wanted) in pairs.items():
         if not abs(found / wanted - 1) < TOLERANCE:
             raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {wanted:.6g} in the part")
-
-
-def swept_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:
-    """Points (k, 3) every `spacing` mm along the sharp edges and patch edges of a swept part.
-
-    The circles of the meridian's corners and the rims of the holes, as `TaggedSurface.sharp_edges`.
-    """
-    if not goes_about_axis(part):
-        return layered_edges(part, sector_deg, spacing)
-    outline, column = part.meridian, column_of(part)
-    block = _block_of(part, column)
-    sector = radians(sector_deg)
-    found = []
-    for r, z in {*outline.sharp_corners, *outline.patch_edges}:
-        phi = np.linspace(0, sector, max(2, ceil(r * sector / spacing) + 1))
-        found.append(cartesian(np.column_stack([np.full_like(phi, r), phi, np.full_like(phi, z)])))
-    if column is not None:
-        rim = max(2, ceil(np.pi * column.hole_radius / spacing) + 1)
-        turn = np.linspace(0, np.pi, rim)
-        x = column.bolt_circle + column.hole_radius * np.cos(turn)
-        y = column.hole_radius * np.sin(turn)
-        away, turned = np.hypot(x, y), np.arctan2(y, x)
-        copies = half_holes(part, sector_deg)
-        wedge = sector / copies
-        for k in range(copies):
-            around = mirrored(turned, wedge, k)
-            for z in (column.low, column.depth):
-                found.append(cartesian(np.column_stack([away, around, np.full_like(away, z)])))
-    points = np.vstack(found)
-    if block is None:
-        return points
-    return np.vstack([points[~block.cuts(points)], block.rims(spacing)])

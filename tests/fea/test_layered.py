@@ -29,7 +29,9 @@ from flexspline.fea.solid.quadratic import boundary_faces
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.solid.swept import goes_about_axis, swept_edges, swept_mesh
+from flexspline.fea.solid.sweeps import goes_about_axis
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import design_from

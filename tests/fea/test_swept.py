@@ -25,7 +25,8 @@ from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.solid.swept import swept_edges, swept_mesh
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design

@@ -17,7 +17,7 @@ from in_process import flexspline
 from random_designs import design_of, toml
 from reliability_page import counted
 
-from flexspline.fea.solid.swept import goes_about_axis
+from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from

@@ -1,0 +1,50 @@
+"""Whether a swept shaft's mesh can be bent onto its keyway, and over which length."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from flexspline.fea.solid.slot import Block
+from flexspline.geometry.outline import SAME
+from flexspline.geometry.part import Part
+from flexspline.geometry.shapes import Shaft
+
+LEAST_RIM = 0.1
+"""Of the slot's depth: less material between the floor's corner and the outer wall is left to the mesher,
+since the block's elements there are as thin."""
+FADING = 1.0
+"""Length over which the bending dies out, of the largest change of a radius: a slope of 45° in the mesh."""
+LEAST_FADING = 0.5
+"""Of that length: where a step of the shaft leaves less, elements would be bent too far."""
+
+
+def block_of(part: Part, low: float) -> Block | None:
+    """The keyway of a shaft, if the mesh can be bent onto it; what lies below `low` [mm] is not bent.
+
+    None without a keyway, where the slot leaves the last segment, reaches too near its outer wall, or
+    begins too near a step.
+    """
+    cut, shape = part.keyway, part.shape
+    if cut is None or not isinstance(shape, Shaft):
+        return None
+    last = shape.segment[-1]
+    outer, inner = last.outer_diameter_mm / 2, last.inner_diameter_mm / 2
+    base = shape.length - last.length_mm
+    narrowing = len(shape.segment) > 1 and (
+        shape.segment[-2].outer_diameter_mm < last.outer_diameter_mm
+        or shape.segment[-2].inner_diameter_mm != last.inner_diameter_mm
+    )
+    wide = base
+    if len(shape.segment) > 1 and not narrowing:  # the bending may go on into the segment before
+        wide -= shape.segment[-2].length_mm
+    room = cut.start - max(low, wide)
+    corner = hypot(cut.floor, cut.half_width)
+    wanted = FADING * (corner - cut.floor + cut.half_width)
+    fading = min(wanted, room)
+    if (
+        cut.start < base + SAME
+        or outer - corner < LEAST_RIM * (outer - cut.floor)
+        or fading < LEAST_FADING * wanted
+    ):
+        return None
+    return Block(cut, inner, outer, fading)
