@@ -121,13 +121,13 @@ class _SolidTorsion:
     def finer(self, mesh: TetMesh) -> TetMesh | None:
         if len(self.meshes) == MAX_LEVELS:
             return None
+        made = self._by_error(mesh, self._errors)
+        if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
+            return made
         now_s = self._deadline.elapsed()
         if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began_s = now_s
-        made = self._by_error(mesh, self._errors)
-        if made is not None:
-            return made
         self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
         left_s = self._deadline.limit_s - now_s
         return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))

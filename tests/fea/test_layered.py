@@ -13,6 +13,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
 from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
@@ -353,3 +354,29 @@ def test_a_narrow_neck_is_found_by_its_error() -> None:
     K = [level.K_Nm_per_rad for level in found.levels]
     # each mesh holds the last one's displacements but for curved edges' middles
     assert sorted(K, reverse=True) == K
+
+
+def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
+    """Each mesh takes 25 s on the clock, where 74 s are allowed, but the processor works 5 s of them."""
+    part = shaft_of("step over the holes")
+    clock, worked = [0.0], [0.0]
+
+    def mesher(spec: MeshSpec) -> TetMesh:
+        return later(layered_mesh(part, sector_of(part, "torsion").degrees, spec))
+
+    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh:
+        assert isinstance(mesh, LayeredMesh)
+        return later(finer_layers(part, mesh, error, 2 * mesh.elements))
+
+    def later(mesh: TetMesh) -> TetMesh:
+        clock[0] += 25.0
+        worked[0] += 5.0
+        return mesh
+
+    deadline = Deadline(74.0, lambda: clock[0], lambda: worked[0])
+    found = solid_stiffness(
+        mesher, first_spec(part).scaled(4.0), Elastic.of(part.material), "grip", 1e-9, "", print,
+        deadline, by_error,
+    ).stiffness  # fmt: skip
+    assert len(found.levels) == 2  # the third would begin at 75 s
+    assert "74 s" in found.shortfall
