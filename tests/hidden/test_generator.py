@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from hidden.ahead import Bearing, Bristles, MaxwellSlip, loop_width, output
-from hidden.cases import CAUSES, draw_case
+from hidden.bench import Bench
+from hidden.cases import CAUSES, diluted, draw_case
 from hidden.clearance import lagged, per_cycle
+from hidden.effect import Hidden, nothing
 from hidden.elastic import chord_asymmetry, hardening_ratio
 from hidden.foreign import KINDS
 from hidden.friction import FAMILIES, closed_loop_width, slipping
@@ -239,3 +241,15 @@ def test_a_joint_starts_at_its_first_stiffness_and_loses_energy_as_a_power(
 
     # at 5 and 10 % of the torque; the slip itself softens the joint, which adds up to 0.25 to the exponent
     assert np.log2(loss(0.1) / loss(0.05)) == pytest.approx(chi + 3 + 0.1, abs=0.15)
+
+
+def test_a_share_of_the_twist_counts_the_spring_beside_it() -> None:
+    """What swings by 12 % of the gear's compliance swings by 8 % of that and a spring's of half of it."""
+    bench = Bench(Plan(), np.random.default_rng(1))
+    own = bench.gears[0].compliance
+    spring = Hidden("series_compliance", 50.0, "", lambda p, g: 0.5 * own * p.torque)
+    swing = Hidden("position_stiffness", 12.0, "", nothing)
+    highest, lowest = 1.5 * own + 0.12 * own, 1.5 * own - 0.12 * own
+    seen = 100 * (highest - lowest) / (highest + lowest)
+    assert diluted(swing, spring, bench).magnitude == pytest.approx(seen)
+    assert diluted(spring, swing, bench) is spring

@@ -93,8 +93,9 @@ def _worth(
 ) -> tuple[dict[str, float], dict[str, Candidate]]:
     """Nats of each cause over the best set without it, and of each that is not worth its place that set.
 
-    Where another cause would stand in for it nearly as well, something is there, and the two are rivals: it
-    is weak if it is little better than a set without either.
+    Where another cause alone would stand in for it nearly as well, something is there, and the two are
+    rivals: it is weak if it is little better than a set without either. Where a nuisance term must help, what
+    is there has no name.
     """
     nats: dict[str, float] = {}
     weak: dict[str, Candidate] = {}
@@ -113,7 +114,7 @@ def _worth(
         nats[cause] = best.score - without.score
         if not too_little(without):
             continue
-        if without.named(evidence) - present:
+        if without.named(evidence) - present and not _stands_in(evidence, best, without):
             rest = present - {cause}
             without = _without(evidence, best, _unnamed_or(rest))
         if too_little(without):

@@ -1,7 +1,8 @@
 """The race on a prepared sweep: which set of regressors explains it best, and what that set identifies.
 
 The first round takes the noise of a local polynomial, each further one that of what the best set leaves,
-until the two agree: a polynomial passes effects for noise and slow noise for an effect.
+until the two agree: a polynomial passes effects for noise and slow noise for an effect. A noise that grew and
+under which the best set leaves less again was the misfit of that set: the round before it holds.
 """
 
 from __future__ import annotations
@@ -99,15 +100,23 @@ class ExplainedSweep:
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
+    before: tuple[PreparedSweep, Search] | None = None
     for number in range(NOISE_ROUNDS):
         search = Search(with_tuned_shapes(_evidence(prepared), is_named))
         best = search.run()
         prepared = replace(prepared, columns=search.evidence.columns)
         left = fit_regressors(search.evidence, best.terms).residual()
         again = _with_noise(prepared, left, len(best.terms))
-        if number + 1 == NOISE_ROUNDS or _stands(prepared.noise, again.noise, number):
+        changes = _changes(prepared.noise, again.noise)
+        if before is not None and min(changes) < -NOISE_ALIKE:
+            prepared, search = before
             break
-        prepared = again
+        fallen = -changes[0] > NOISE_FALLEN
+        if number > 0 and not fallen and max(changes) < NOISE_ALIKE:
+            break
+        if number + 1 < NOISE_ROUNDS:
+            before = (prepared, search) if number > 0 and not fallen else None
+            prepared = again
     identified = identify(search, beside=prepared.offset_Nm != 0.0)
     seen = _crossing(prepared, identified.fit)
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
@@ -184,13 +193,9 @@ def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> Prepare
     return replace(prepared, noise=noise, kept=kept, outlier=outlier)
 
 
-def _stands(noise: Noise, again: Noise, number: int) -> bool:
-    """Whether the noise of a round, from 0, stands against that of what its best set leaves."""
-    grown = log(again.variance / noise.variance)
-    slower = log(again.slow_power / noise.slow_power)
-    if number == 0:
-        return max(abs(grown), abs(slower)) < NOISE_ALIKE
-    return max(grown, slower) < NOISE_ALIKE and -grown < NOISE_FALLEN
+def _changes(noise: Noise, again: Noise) -> tuple[float, float]:
+    """Logs of how much larger another noise's variance and slow power are."""
+    return log(again.variance / noise.variance), log(again.slow_power / noise.slow_power)
 
 
 def _crossing(prepared: PreparedSweep, fit: SweepFit) -> Crossing | None:
