@@ -97,7 +97,9 @@ def test_a_name_from_right_to_left(tab: Page) -> None:
     assert heading.evaluate("e => getComputedStyle(e).direction") == "ltr"
 
 
-FOCUSED = """() => {
+FOCUSED = """async () => {
+  // Chromium scrolls to it with the next picture
+  await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
   const e = document.activeElement, box = e.getBoundingClientRect();
   const labels = [...(e.labels ?? [])].map((label) => label.textContent).join();
   return {
