@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from threading import local
 
 
-class StoppedError(Exception):
-    """Nobody waits for this work any more."""
+class Stopped(BaseException):
+    """Nobody waits for this work any more. As an interruption it is no error: who catches those lets it pass."""
 
 
 class _OpenStages(local):
@@ -38,10 +38,10 @@ class Progress:
 
         Raises
         ------
-        StoppedError : it is `stopped`.
+        Stopped : it is `stopped`.
         """
         if self.stopped:
-            raise StoppedError
+            raise Stopped
         self._say(f"[{time.monotonic() - self._start:6.1f} s] {text}")
 
     @contextmanager

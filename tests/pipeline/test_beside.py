@@ -8,7 +8,7 @@ import time
 import pytest
 
 from flexspline.pipeline.beside import beside
-from flexspline.pipeline.progress import Progress, StoppedError
+from flexspline.pipeline.progress import Progress, Stopped
 
 
 def test_stages_of_two_threads_are_not_inside_each_other() -> None:
@@ -49,7 +49,7 @@ def test_an_interruption_ends_the_work_at_its_next_stage() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         interrupted()
-    assert isinstance(asked[0].exception(), StoppedError)
+    assert isinstance(asked[0].exception(), Stopped)
     progress.note("the next command's")  # nothing is stopped any more
 
 
