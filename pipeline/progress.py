@@ -9,7 +9,7 @@ from threading import local
 
 
 class Stopped(BaseException):
-    """Nobody waits for this work any more. As an interruption it is no error: who catches those lets it pass."""
+    """Nobody waits for this work any more: an interruption and no error, as KeyboardInterrupt."""
 
 
 class _OpenStages(local):
