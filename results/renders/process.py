@@ -80,7 +80,10 @@ class DrawingProcess:
 
     def _drawn(self, name: str, arguments: tuple[Any, ...]) -> bytes:
         if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="flexspline-picture-")
+            # who ends the drawing does not wait for a thread that is about to write into it
+            self._folder = tempfile.TemporaryDirectory(
+                prefix="flexspline-picture-", ignore_cleanup_errors=True
+            )
         asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
         made.unlink(missing_ok=True)
         asked.write_bytes(packed(arguments))

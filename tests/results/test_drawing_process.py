@@ -57,6 +57,19 @@ def test_a_full_disk_is_a_line(monkeypatch) -> None:
             process.draw(failing_drawings.good, "a hat")
 
 
+def test_a_file_that_comes_while_the_folder_goes_is_no_error(monkeypatch) -> None:
+    """A thread that was about to draw when a command failed: the command's own reason is told, not this."""
+
+    def filled(path: object, **_: object) -> None:
+        raise OSError(39, "Directory not empty", str(path))
+
+    process = DrawingProcess()
+    process.draw(failing_drawings.good, "a hat")
+    with monkeypatch.context() as late:
+        late.setattr(os, "rmdir", filled)
+        process.__exit__()
+
+
 def test_a_picture_that_takes_too_long_is_given_up() -> None:
     began = time.monotonic()
     with DrawingProcess(slowest_s=1.0) as process, pytest.raises(NotDrawnError, match="within 1 s"):
