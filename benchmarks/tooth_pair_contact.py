@@ -27,7 +27,7 @@ from flexspline.geometry.design import Design
 from flexspline.pipeline.gear_model import pair_compliance
 
 RESULTS = Path(__file__).with_suffix(".json")
-BEHIND = {"ring of the flexspline": None, "1.5 mm": 1.5, "3 mm": 3.0}
+BEHIND_mm = (None, 1.5, 3.0)
 """Thickness of the strip behind the teeth; None: the design's ring."""
 CROWNS_mm = (None, 20.0, 2.0)
 """Radius of one flank; None: both straight, so that they touch from tip to tip."""
@@ -177,14 +177,14 @@ def main() -> None:
     material = Elastic.of(design.material.flexspline)
     rows = []
     with ngs.TaskManager(pajetrace=0):
-        for name, given in BEHIND.items():
+        for given in BEHIND_mm:
             behind = given or f.ring_thickness_mm
             section = Section(teeth, behind, material)
             for crown in CROWNS_mm:
                 for load in LOADS_N_mm:
                     compliance, force = section.pair_compliance(crown, load)
                     row = {
-                        "behind": name, "behind_mm": behind, "crown_mm": crown,
+                        "behind_mm": behind, "crown_mm": crown,
                         "unknowns": section.space.ndof,
                         "force_N_mm": force, "compliance_mm2_N": compliance,
                     }  # fmt: skip

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 import typer
 from typer.core import TyperGroup
 
 from flexspline.results.job import tell
 
+T = TypeVar("T")
 UsageError: Any = typer.BadParameter.__mro__[1]
 """Typer carries a click of its own from some release on, and names this class nowhere."""
 
@@ -40,27 +41,18 @@ def answered_in_one_line() -> Iterator[None]:
         raise typer.Exit(2) from None
 
 
-def number(text: str) -> float:
-    """Of an option; every float, as Python reads it.
+def _reader(kind: Callable[[str], T], what: str) -> Callable[[str], T]:
+    """Of an option's word; raises typer.BadParameter with the word in it."""
 
-    Raises
-    ------
-    typer.BadParameter
-    """
-    try:
-        return float(text)
-    except ValueError:
-        raise typer.BadParameter(f'"{text}" must be a number, such as 31300 or 3.13e4') from None
+    def read(text: str) -> T:
+        try:
+            return kind(text)
+        except ValueError:
+            raise typer.BadParameter(f'"{text}" must be {what}') from None
+
+    return read
 
 
-def whole_number(text: str) -> int:
-    """Of an option.
-
-    Raises
-    ------
-    typer.BadParameter
-    """
-    try:
-        return int(text)
-    except ValueError:
-        raise typer.BadParameter(f'"{text}" must be a whole number') from None
+number = _reader(float, "a number, such as 31300 or 3.13e4")
+"""Every float, as Python reads it."""
+whole_number = _reader(int, "a whole number")
