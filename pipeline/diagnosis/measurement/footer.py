@@ -4,33 +4,72 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from enum import Enum, auto
 
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
-from flexspline.pipeline.diagnosis.measurement.number_text import number_of
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
 
 _WORD = re.compile(r"[^\W\d_]{2}")
-_NO_VALUE = {"nan", "inf", "infinity", "null", "none"}
-"""Of a reading that failed, not of a remark."""
+_LETTER = re.compile(r"[^\W\d_]")
+_BEGINS_WITH_NUMBER = re.compile(r"[\W_]*\d")
+"""Also "12.3 Nm", "> 5" and "(2024)": the first letter or digit is a digit."""
+_PHRASE = re.compile(r"[^\W\d_]\W*\s+\W*[^\W\d_]")
+"""Two words: no program writes them for one reading that failed."""
+_FAILED = {
+    "nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "err", "error", "invalid", "fail", "failed",
+    "fault", "ol", "ovl", "ovf", "ovld", "ovrflw", "overload", "overflow", "overrange", "over range",
+    "underflow", "underrange", "over", "under", "open", "fehler", "überlauf", "überlast", "ungültig",
+}  # fmt: skip
+"""What instruments write for a reading that failed; it is no remark."""
+
+
+class _Cell(Enum):
+    """What one text of a row may be."""
+
+    WORDS = auto()
+    NUMBER = auto()
+    NEITHER = auto()
 
 
 def rows_above_footer(head: Sequence[str], rows: Sequence[Sequence[str]]) -> int:
-    """How many rows are left where lines of words at the end are none.
-
-    Such a line holds one text, in front, and no number: whatever else stands in a row is a reading, and is
-    checked as one. So is a text below a column of labels.
-    """
+    """How many rows are left where lines of words at the end are none."""
     count = len(rows)
-    while count > 1 and _is_remark(head, rows[count - 1]):
+    while count > 1 and _is_remark(head, rows[count - 1], rows[:count]):
         count -= 1
     return count
 
 
-def _is_remark(head: Sequence[str], row: Sequence[str]) -> bool:
-    first, *others = (cell.strip() for cell in row)
-    if any(others) or len(head) < 2 or (head[0] in LABELS and len(row) > 1):
+def _is_remark(head: Sequence[str], row: Sequence[str], rows: Sequence[Sequence[str]]) -> bool:
+    """Whether a row is words; what may be a reading is none, and is checked as one.
+
+    The separator may stand in the words, and parts them into cells. A number among them is the words' own
+    ("measured by Smith, 2024") where it is parted from them as prose is, by a blank that the rows do not
+    have, or follows a phrase in a row that is not full.
+    """
+    at = [i for i, cell in enumerate(row) if cell.strip()]
+    found = [_kind(row[i].strip()) for i in at]
+    first = row[at[0]].strip()
+    if len(head) < 2 or found[0] is not _Cell.WORDS or _WORD.search(first) is None:
         return False
-    if first.lstrip("+-").lower() in _NO_VALUE or is_stamp(first):
+    if _Cell.NEITHER in found:
         return False
-    no_number = number_of(first, ".") is None and number_of(first, ",") is None
-    return no_number and _WORD.search(first) is not None
+    if head[0] in LABELS and len(row) > 1:
+        known = {r[0].strip() for r in rows[:-1]}
+        return len(at) > 1 and _Cell.NUMBER not in found and first not in known
+    numbers = found.count(_Cell.NUMBER)
+    if not numbers:
+        return True
+    spaced = all(row[i][0].isspace() for i in at[1:]) and not any(
+        cell[:1].isspace() for cell in rows[0][1:]
+    )
+    columns = sum(bool(name.strip()) for name in head)
+    cut_off = _PHRASE.search(first) is not None and len(at) < columns
+    return 2 * numbers <= len(found) and (spaced or cut_off)
+
+
+def _kind(text: str) -> _Cell:
+    if is_stamp(text) or _BEGINS_WITH_NUMBER.match(text):
+        return _Cell.NUMBER
+    if text.lstrip("+-").lower() in _FAILED or not _LETTER.search(text):
+        return _Cell.NEITHER
+    return _Cell.WORDS
