@@ -17,8 +17,9 @@ _PHRASE = re.compile(r"[^\W\d_]\W*\s+\W*[^\W\d_]")
 """Two words: no program writes them for one reading that failed."""
 _FAILED = {
     "nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "err", "error", "invalid", "fail",
-    "failed", "fault", "ol", "ovl", "ovf", "ovld", "ovrflw", "overload", "overflow", "overrange", "over range",
-    "underflow", "underrange", "over", "under", "open", "fehler", "überlauf", "überlast", "ungültig",
+    "failed", "fault", "ol", "ovl", "ovf", "ovld", "ovrflw", "overload", "overflow", "overrange",
+    "over range", "underflow", "underrange", "over", "under", "open", "fehler", "überlauf", "überlast",
+    "ungültig",
 }  # fmt: skip
 """What instruments write for a reading that failed; it is no remark."""
 
