@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from flexspline.geometry.assumed import Assumed, taken_from
-from flexspline.geometry.bounds import span
+from flexspline.geometry.bounds import lengths, span
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.fields import SMALLEST_MM, Length, Table
+from flexspline.geometry.fields import Length, Table
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -28,8 +28,11 @@ RACE_SHARE = 0.04
 drawings in papers. Not standardised; makers keep it to themselves."""
 DEFLECTION_SHARES = (0.5, 1.5)
 """Of m(z2 − z1)/2: with less the teeth hardly meet, with more they stand on the ground of their spaces."""
-THICKEST_RACE = 0.25
-"""Of the inner radius: beyond, the race is no flexible ring."""
+RACE_SHARES = (0.01, 0.25)
+"""Of the inner radius: balls dent a thinner race, and K moves by more than 2 % with twice as many harmonics;
+a thicker one is no flexible ring."""
+SMALLEST_BALL = 0.01
+"""Of the inner radius: so small, even the most balls that are allowed fill a third of their circle."""
 
 
 class WaveGenerator(Table):
@@ -106,21 +109,24 @@ def wave_generator_faults(design: Design) -> Iterator[DesignError]:
             f"m(z2 - z1)/2 = {stroke:.4g} mm",
         )
     race = given.race_thickness_mm
-    if race is not None and race > THICKEST_RACE * radius:
+    thinnest, thickest = (share * radius for share in RACE_SHARES)
+    if race is not None and not thinnest <= race <= thickest:
         yield DesignError(
             "wave_generator.race_thickness_mm",
             race,
-            f"must be {span(SMALLEST_MM, THICKEST_RACE * radius, 4)} mm: up to {THICKEST_RACE:g} of the "
-            "tube's inner radius",
+            f"must be {lengths(thinnest, thickest, 4)} mm, {RACE_SHARES[0]:g} to "
+            f"{RACE_SHARES[1]:g} of the tube's inner radius",
         )
         return
     room = radius - (race if race is not None else RACE_SHARE * radius)
     ball = given.ball_diameter_mm
     count = given.ball_count if given.ball_count is not None else FEWEST_BALLS
-    if ball is not None and ball > (largest := largest_ball(room, count)) * (1 + 1e-12):
+    smallest, largest = SMALLEST_BALL * radius, largest_ball(room, count)
+    if ball is not None and not smallest <= ball <= largest * (1 + 1e-12):
         yield DesignError(
             "wave_generator.ball_diameter_mm",
             ball,
-            f"must be {span(SMALLEST_MM, largest, 4)} mm: {count} balls inside a race of radius "
-            f"{room:.4g} mm touch each other beyond",
+            f"must be {lengths(smallest, largest, 4)} mm: {count} balls inside a race of radius "
+            f"{room:.4g} mm touch each other beyond, and {SMALLEST_BALL:g} of the tube's inner radius is "
+            "the least",
         )

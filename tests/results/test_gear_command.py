@@ -155,7 +155,9 @@ def test_a_wrong_file_is_refused_with_status_2(tmp_path: Path) -> None:
     ("changes", "says"),
     [
         ({"wave_generator.deflection_mm": 0.02}, "must be from 0.1 to 0.3 mm"),
-        ({"wave_generator.race_thickness_mm": 9.0}, "must be from 0.001 to 4.8 mm"),
+        ({"wave_generator.race_thickness_mm": 9.0}, "must be from 0.192 to 4.8 mm"),
+        ({"wave_generator.race_thickness_mm": 0.001}, "0.01 to 0.25 of the tube's inner radius"),
+        ({"wave_generator.ball_diameter_mm": 0.001}, "must be from 0.192 to 12.28 mm"),
         ({"wave_generator.ball_count": 40, "wave_generator.ball_diameter_mm": 3.8}, "40 balls"),
         ({"wave_generator.ball_count": 3}, "from 6 to 200"),
         ({"gear.rated_torque_Nm": 0.0}, "rated_torque_Nm"),
@@ -174,6 +176,21 @@ def test_the_range_that_is_told_works() -> None:
         DESIGN.changed({**crowd, "wave_generator.ball_diameter_mm": 3.8})
     largest = float(str(fault.value).split(" mm: 40 balls")[0].split()[-1])
     assert DESIGN.changed({**crowd, "wave_generator.ball_diameter_mm": largest})
+
+
+THINNEST = {"wave_generator.race_thickness_mm": 0.192}
+SMALLEST = {"wave_generator.ball_diameter_mm": 0.192}
+
+
+@pytest.mark.parametrize("balls", [6, 200])
+def test_the_thinnest_race_and_the_smallest_balls_still_have_a_curve(balls: int) -> None:
+    """Softer than the gear with a usual race, as a part in its chain of springs is."""
+    found = flexspline.gear(
+        DESIGN.changed({**THINNEST, **SMALLEST, "wave_generator.ball_count": balls})
+    )
+    usual = flexspline.gear(DESIGN.changed({"wave_generator.ball_count": balls}))
+    assert np.diff(found.angle_arcsec[:10]).min() > 0
+    assert found.K3_Nm_per_rad < usual.K3_Nm_per_rad
 
 
 def test_play_beyond_the_stroke_is_refused() -> None:
