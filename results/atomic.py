@@ -25,5 +25,7 @@ def write_bytes(path: Path, data: bytes) -> None:
     try:
         os.chmod(made, 0o666 & ~UMASK)  # mkstemp's 0600 would hide it from the user's colleagues
         os.replace(made, path)
+    except OSError as fault:
+        raise OSError(fault.errno, fault.strerror, str(path)) from None
     finally:
         made.unlink(missing_ok=True)

@@ -83,6 +83,7 @@ def begin(path: Path, out: Path | None) -> Job:
     """Load the design, say its warnings, open the cache."""
     from flexspline.geometry.load import design_from, read_raw, tables_from
     from flexspline.geometry.sanity import warnings
+    from flexspline.results.output_folder import folder_of
 
     began = time.monotonic()
     raw = read_raw(path)
@@ -95,34 +96,6 @@ def begin(path: Path, out: Path | None) -> Job:
 
     context = analysis_context(design, tell)
     return Job(design, context, folder, Attachment(path.name, raw, "Design file"), began)
-
-
-def folder_of(path: Path, out: Path | None) -> Path:
-    """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes."""
-    from flexspline.geometry.errors import DesignError
-    from flexspline.pipeline.temporary_files import discard
-
-    folder = out if out is not None else path.parent / f"{path.stem}.out"
-    if folder.exists() and not folder.is_dir():
-        raise DesignError("--out", str(folder), "is a file; name a folder")
-    _try_to_write(next(p for p in (folder, *folder.absolute().parents) if p.is_dir()))
-    discard(folder, tell)
-    return folder
-
-
-def _try_to_write(folder: Path) -> None:
-    """Find out before the long work that a folder cannot be written to.
-
-    Raises
-    ------
-    OSError
-    """
-    import tempfile
-
-    try:
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError as fault:
-        raise OSError(fault.errno, fault.strerror, str(folder)) from None
 
 
 def deliver(folder: Path, record: dict[str, Any], as_json: bool, name: str | None = None) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from flexspline.results.job import answered, begin, folder_of, tell
+from flexspline.results.job import answered, begin, tell
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
 from flexspline.results.usage import number
@@ -92,6 +92,7 @@ def predict(
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.results.diagnosis.prediction import predict_and_write
+        from flexspline.results.output_folder import folder_of
 
         gear, folder = load_design(design), folder_of(design, out)
         said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)

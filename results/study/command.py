@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flexspline.results.job import answered, folder_of, tell
+from flexspline.results.job import answered, tell
 from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
 
@@ -30,6 +30,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.pipeline.study.cluster import check_scheduler
         from flexspline.pipeline.study.load import study_from
         from flexspline.pipeline.study.run import source_of, trial_store_of, whole_study
+        from flexspline.results.output_folder import folder_of
         from flexspline.results.records import as_json
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_stress import draw_best_stress
@@ -90,6 +91,7 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities
+        from flexspline.results.output_folder import folder_of
         from flexspline.results.records import as_json
         from flexspline.results.study.sensitivity import lines, record, write_sensitivity
 

@@ -1,4 +1,7 @@
-"""A full disk, a disk mounted read-only, a file in the way: one line, status 1, nothing half-written."""
+"""A full disk, a disk mounted read-only, a file in the way: one line, nothing half-written.
+
+A full disk is status 1; a folder that cannot be made or written to is refused before the work, with status 2.
+"""
 
 from __future__ import annotations
 
@@ -60,54 +63,105 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return bases.plain(tmp_path_factory.mktemp("plain"))
 
 
-def failed(ended: Ended, needle: str) -> None:
-    assert ended.status == 1, ended
+def failed(ended: Ended, disk: str) -> None:
+    status, needle = WHERE_IT_GOES[disk]
+    assert ended.status == status, ended
     assert needle in ended.said[0]
 
 
-WHERE_IT_GOES = {"full": "No space left on device", "read_only": "Read-only file system"}
+WHERE_IT_GOES = {
+    "full": (1, "No space left on device"),
+    "read_only": (2, "Read-only file system"),
+    "full for a database": (1, "disk is full"),
+}
 
 
-@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+@pytest.mark.parametrize("disk", ["full", "read_only"])
 def test_a_diagnosis(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     there: Path = request.getfixturevalue(disk)
     measured = tmp_path / "points.csv"
     measured.write_bytes(head("size-40-end-points"))
     ended = flexspline("diagnose", CUP, measured, *GIVEN, "--out", there / "out", folder=there)
-    failed(ended, WHERE_IT_GOES[disk])
+    failed(ended, disk)
 
 
-@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+@pytest.mark.parametrize("disk", ["full", "read_only"])
 def test_a_backlash_sum(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     there: Path = request.getfixturevalue(disk)
     if disk == "full":
         filler = there / "others"
         filler.write_bytes(filler.read_bytes() + b"x" * FREE_BYTES)
-    failed(
-        flexspline("backlash", CUP, *GIVEN, "--out", there / "out", folder=there),
-        WHERE_IT_GOES[disk],
-    )
+    failed(flexspline("backlash", CUP, *GIVEN, "--out", there / "out", folder=there), disk)
 
 
-def test_a_folder_that_cannot_be_written_to_is_said_before_the_work(
-    read_only: Path, tmp_path: Path
+def every_command(folder: Path) -> dict[str, list]:
+    """The words of each command that takes --out, without it."""
+    study, history = folder / "study.toml", folder / "history.csv"
+    study.write_text(bases.study(folder), encoding="utf-8")
+    history.write_bytes(head("size-40-end-points"))
+    return {
+        **{name: [name, CUP] for name in (
+            "run", "stiffness", "backlash", "gear", "export", "sensitivity")},
+        "study": ["study", study],
+        "diagnose": ["diagnose", CUP, history],
+        "predict": ["predict", CUP, history, "--model", folder / "model.toml"],
+    }  # fmt: skip
+
+
+COMMANDS = (
+    "run", "stiffness", "backlash", "gear", "export", "sensitivity", "study", "diagnose", "predict",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_folder_that_cannot_be_made_is_refused_before_the_work(
+    command: str, tmp_path: Path
 ) -> None:
-    ended = flexspline("gear", CUP, "--out", read_only / "out", folder=tmp_path)
-    failed(ended, "Read-only file system")
-    assert "condensed" not in ended.stderr  # the first stage
+    """Below a file; with a name longer than file systems take (255 bytes)."""
+    words = every_command(tmp_path)[command]
+    (tmp_path / "file").write_bytes(b"of somebody")
+    for out, reason in (
+        (tmp_path / "file" / "in", "Not a directory"),
+        (tmp_path / ("n" * 300), "too long"),
+    ):
+        ended = flexspline(*words, "--out", out, folder=tmp_path)  # one line
+        assert ended.status == 2, ended
+        assert "--out" in ended.said[0]
+        assert reason in ended.said[0]
+    assert (tmp_path / "file").read_bytes() == b"of somebody"
 
 
-@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+def test_a_folder_that_can_be_made_is_not_left_by_a_command_that_refuses(tmp_path: Path) -> None:
+    measured = tmp_path / "none.csv"
+    out = tmp_path / "made" / "for" / "a moment"
+    ended = flexspline("diagnose", CUP, measured, "--out", out, folder=tmp_path)
+    assert ended.status == 2
+    assert "none.csv" in ended.said[0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_read_only_disk_is_said_before_the_work(read_only: Path, tmp_path: Path) -> None:
+    failed(flexspline("gear", CUP, "--out", read_only / "out", folder=tmp_path), "read_only")
+
+
+def test_a_folder_in_the_way_of_a_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "result.json").mkdir()
+    ended = flexspline("backlash", CUP, *GIVEN, "--out", tmp_path, folder=tmp_path)
+    assert ended.status == 1
+    assert f"{tmp_path / 'result.json'}: Is a directory" in ended.said[0]
+
+
+@pytest.mark.parametrize("disk", ["full", "read_only"])
 def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """Its database meets the full disk, in SQLite's words."""
     there: Path = request.getfixturevalue(disk)
     file = tmp_path / "study.toml"
     file.write_text(bases.study(tmp_path), encoding="utf-8")
     ended = flexspline("study", file, "--out", there / "out", folder=there)
-    failed(ended, "disk is full" if disk == "full" else WHERE_IT_GOES[disk])
+    failed(ended, "full for a database" if disk == "full" else disk)
 
 
-@pytest.mark.parametrize("disk", WHERE_IT_GOES)
+@pytest.mark.parametrize("disk", ["full", "read_only"])
 def test_a_cache_without_room_is_no_reason_to_stop(
     disk: str, plain: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
@@ -121,12 +175,10 @@ def test_a_cache_without_room_is_no_reason_to_stop(
     assert json.loads(done.stdout)["K_b_Nm_per_rad"] > 0
 
 
-def test_a_file_in_the_way_of_the_folder(tmp_path: Path) -> None:
+def test_a_file_in_the_place_of_the_folder(tmp_path: Path) -> None:
     (tmp_path / "out").write_bytes(b"")
     ended = flexspline("backlash", CUP, *GIVEN, "--out", tmp_path / "out", folder=tmp_path)
     assert ended.status == 2
-    ended = flexspline("backlash", CUP, *GIVEN, "--out", tmp_path / "out" / "in", folder=tmp_path)
-    failed(ended, "Not a directory")
     assert (tmp_path / "out").read_bytes() == b""
 
 

@@ -16,7 +16,7 @@ from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.process_id import ProcessId, parsed, started, this_process
 from flexspline.pipeline.temporary_files import FORGOTTEN_S, MARK, clear, mark, unfinished
 from flexspline.results.atomic import write_bytes
-from flexspline.results.job import folder_of
+from flexspline.results.output_folder import folder_of
 from flexspline.results.scratch import own_scratch
 
 GONE = "from flexspline.pipeline.temporary_files import mark; print(mark())"
