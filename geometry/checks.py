@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
+from math import cos, pi, radians
 
-from flexspline.geometry.bounds import span
+from flexspline.geometry.bounds import below, span
 from flexspline.geometry.check_flexspline import flexspline_faults
 from flexspline.geometry.check_shaft import shaft_faults
 from flexspline.geometry.check_tooth import ring_ends, tooth_faults
@@ -40,6 +41,7 @@ def _faults(design: Design) -> Iterator[DesignError]:
     yield from shaft_faults(design.shaft)
     yield from _gear_faults(design)
     yield from tooth_faults(design)
+    yield from _clearance_faults(design)
     yield from _play_faults(design)
     yield from wave_generator_faults(design)
     yield from rated_faults(design)
@@ -71,6 +73,20 @@ def _gear_faults(design: Design) -> Iterator[DesignError]:
             z2,
             f"must be {', '.join(str(n) for n in (z1 + 2, z1 + 4) if n <= TEETH.high)}, …: "
             f"teeth_flexspline = {z1} plus an even number for the two lobes",
+        )
+
+
+def _clearance_faults(design: Design) -> Iterator[DesignError]:
+    """A tooth is half the pitch thick; what a space is wider takes the circular spline's teeth away."""
+    gear = design.gear
+    thick = 1e3 * pi * gear.module_mm / 2
+    limit = thick * cos(radians(gear.pressure_angle_deg))
+    if gear.flank_clearance_um >= limit:
+        yield DesignError(
+            "gear.flank_clearance_um",
+            gear.flank_clearance_um,
+            f"must be {span(0.0, below(limit), 4)} µm: a tooth is {thick:.4g} µm thick, and beyond nothing "
+            "of the circular spline's teeth is left to carry a torque",
         )
 
 

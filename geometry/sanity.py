@@ -25,6 +25,8 @@ BALL_RATIO = (0.1, 0.35)
 """Usual ball / inner radius of the tube: flexible bearings in papers have 0.15 to 0.25."""
 LENGTH_RATIO = (0.2, 1.4)
 """Usual length / inner diameter."""
+LEAST_RATIO = 25
+"""z1/(z2 − z1): catalogues begin at 30."""
 
 
 def warnings(design: Design) -> tuple[str, ...]:
@@ -40,6 +42,7 @@ def warnings(design: Design) -> tuple[str, ...]:
         _micrometres,
         _clearance,
         _balls,
+        _ratio,
     )
     return tuple(line for rule in rules for line in rule(design))
 
@@ -172,4 +175,14 @@ def _balls(design: Design) -> Iterator[str]:
         yield (
             f"wave_generator.ball_diameter_mm = {ball:g} is {ball / radius:.3g} of the tube's inner radius, "
             f"usually {low:g} to {high:g}"
+        )
+
+
+def _ratio(design: Design) -> Iterator[str]:
+    gear = design.gear
+    if gear.ratio < LEAST_RATIO:
+        yield (
+            f"z1/(z2 - z1) = {gear.teeth_flexspline}/{gear.teeth_circular_spline - gear.teeth_flexspline} = "
+            f"{gear.ratio:.3g}, usually 30 or more: is gear.teeth_circular_spline = "
+            f"{gear.teeth_circular_spline} right?"
         )

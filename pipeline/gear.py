@@ -21,6 +21,7 @@ from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.rated import rated_in_proportion, rated_torque
+from flexspline.geometry.whole_gear import require_whole_gear
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
@@ -100,7 +101,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
     ComputationError
     """
     design, load = context.design, context.design.load
-
+    require_whole_gear(design)
     K_e = part_stiffness(context.part("shaft")).K_Nm_per_rad
 
     def solve() -> GearCurve:

@@ -22,12 +22,12 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import DesignError
 from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.part import Part
 from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.tooth import flank
 from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
+from flexspline.geometry.whole_gear import require_whole_gear
 
 LAST_HARMONIC = 48
 """96 move K1 to K3 of xb1-40 by 0.2 %, 144 by 0.3 %."""
@@ -63,17 +63,12 @@ def gear_model(
 
     Raises
     ------
-    DesignError : the bearing's play takes the whole stroke.
+    DesignError : the design has no whole gear.
     ComputationError : no mesh or no solution.
     """
+    require_whole_gear(design)
     bearing, spline, gear = flexible_bearing(design), circular_spline(design), design.gear
     play = design.bearing.radial_clearance_um / 1e3
-    if play / 2 >= bearing.deflection:
-        raise DesignError(
-            "bearing.radial_clearance_um",
-            design.bearing.radial_clearance_um,
-            f"must be below {2e3 * bearing.deflection:.4g} µm: twice the wave generator's stroke",
-        )
     shape = flexspline.shape
     assert not isinstance(shape, Shaft)
     pitch = gear.module_mm * gear.teeth_flexspline / 2

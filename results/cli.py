@@ -23,7 +23,7 @@ from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_
 from flexspline.results.streams import show
 from flexspline.results.studio.command import register as register_studio
 from flexspline.results.study.command import register as register_study
-from flexspline.results.usage import Commands, number, whole_number
+from flexspline.results.usage import Commands, named_file, number, whole_number
 
 app = typer.Typer(
     name="flexspline",
@@ -58,7 +58,12 @@ def run(
     design: DesignFile,
     model: Annotated[
         Path | None,
-        typer.Option("--model", metavar="MODEL.toml", help="Add what this extended model found."),
+        typer.Option(
+            "--model",
+            metavar="MODEL.toml",
+            parser=named_file,
+            help="Add what this extended model found.",
+        ),
     ] = None,
     out: Out = None,
     json: Json = False,

@@ -8,9 +8,11 @@ from typing import Annotated
 import typer
 
 from flexspline.results.job import tell
-from flexspline.results.usage import number
+from flexspline.results.usage import named_file, number
 
-DesignFile = Annotated[Path, typer.Argument(metavar="DESIGN.toml", help="The design file.")]
+DesignFile = Annotated[
+    Path, typer.Argument(metavar="DESIGN.toml", parser=named_file, help="The design file.")
+]
 
 
 def _folder(word: str) -> Path:

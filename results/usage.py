@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 import typer
@@ -56,3 +57,24 @@ def _reader(kind: Callable[[str], T], what: str) -> Callable[[str], T]:
 number = _reader(float, "a number, such as 31300 or 3.13e4")
 """Every float, as Python reads it."""
 whole_number = _reader(int, "a whole number")
+
+
+def _named(text: str) -> Path:
+    if not text:
+        raise ValueError
+    return Path(text)
+
+
+named_file = _reader(_named, "the name of a file")
+"""As pathlib reads it, which would take an empty word for the current folder."""
+
+
+def one_of(*words: str) -> Callable[[str], str]:
+    """Of a few words."""
+
+    def chosen(text: str) -> str:
+        if text not in words:
+            raise ValueError
+        return text
+
+    return _reader(chosen, " or ".join(words))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -11,16 +10,25 @@ import typer
 from flexspline.results.job import answered, begin, tell
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
-from flexspline.results.usage import number
+from flexspline.results.usage import named_file, number, one_of
 
 MeasuredFile = Annotated[
-    Path, typer.Argument(metavar="MEASURED.csv", help="Torque sweep, end points or specimens.")
+    Path,
+    typer.Argument(
+        metavar="MEASURED.csv", parser=named_file, help="Torque sweep, end points or specimens."
+    ),
 ]
 TorqueFile = Annotated[
-    Path, typer.Argument(metavar="TORQUE.csv", help="A history with torque_Nm, as measured data.")
+    Path,
+    typer.Argument(
+        metavar="TORQUE.csv", parser=named_file, help="A history with torque_Nm, as measured data."
+    ),
 ]
 ModelPath = Annotated[
-    Path, typer.Option("--model", metavar="MODEL.toml", help="An extended model of `diagnose`.")
+    Path,
+    typer.Option(
+        "--model", metavar="MODEL.toml", parser=named_file, help="An extended model of `diagnose`."
+    ),
 ]
 CountsPerTurn = Annotated[
     float | None,
@@ -33,11 +41,8 @@ CountsPerTurn = Annotated[
 ]
 
 
-class Against(StrEnum):
-    """What `diagnose` compares a sweep with."""
-
-    SUM = "sum"
-    GEAR = "gear"
+SUM, GEAR = "sum", "gear"
+"""What `diagnose` compares a sweep with."""
 
 
 def register(app: typer.Typer) -> None:
@@ -53,13 +58,15 @@ def diagnose(
     ke: Ke = None,
     counts_per_turn: CountsPerTurn = None,
     against: Annotated[
-        Against,
+        str,
         typer.Option(
             "--against",
+            metavar=f"[{SUM}|{GEAR}]",
+            parser=one_of(SUM, GEAR),
             help="Compare a sweep with the backlash sum's straight line, or with the"
             " torque-angle curve of the whole gear.",
         ),
-    ] = Against.SUM,
+    ] = SUM,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -69,13 +76,13 @@ def diagnose(
 
         job = begin(design, out)
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        if against is Against.GEAR:
+        if against == GEAR:
             from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 
             refuse_given(kb, ke)
         said = diagnose_and_write(
             job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
-            against is Against.GEAR,
+            against == GEAR,
         )  # fmt: skip
         show(said, json)
 

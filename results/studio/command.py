@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexspline.results.job import answered
-from flexspline.results.usage import whole_number
+from flexspline.results.usage import named_file, whole_number
 
 
 def register(app: typer.Typer) -> None:
@@ -20,7 +20,9 @@ def studio(
     design: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[DESIGN.toml]", help="The design file; without: a cup to start from."
+            metavar="[DESIGN.toml]",
+            parser=named_file,
+            help="The design file; without: a cup to start from.",
         ),
     ] = None,
     host: Annotated[

@@ -10,8 +10,11 @@ import typer
 from flexspline.results.job import answered, tell
 from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
+from flexspline.results.usage import named_file
 
-StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.")]
+StudyPath = Annotated[
+    Path, typer.Argument(metavar="STUDY.toml", parser=named_file, help="The study file.")
+]
 
 NO_PARQUET = 'no study.parquet beside study.csv: pip install "flexspline[parquet]" for that'
 

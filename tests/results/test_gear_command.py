@@ -193,6 +193,42 @@ def test_the_thinnest_race_and_the_smallest_balls_still_have_a_curve(balls: int)
     assert found.K3_Nm_per_rad < usual.K3_Nm_per_rad
 
 
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        # w0 of 0.1 · 19.2 mm, in steps of m = 0.2: 9 more pairs of teeth
+        ({"gear.teeth_circular_spline": 220}, "must be at most 218"),
+        ({"gear.teeth_circular_spline": 400}, "must be at most 218"),
+        # ring of 19.75 mm: m(100 + 1) beyond it, m(100 - 1.25 - 2.25) within
+        ({"gear.module_mm": 0.4}, "must be from 0.1956 to 0.2046 mm"),
+        (
+            {"gear.module_mm": 0.1, "bearing.radial_clearance_um": 10.0},
+            "must be from 0.1956 to 0.2046 mm",
+        ),
+        (
+            {"gear.teeth_flexspline": 160, "gear.teeth_circular_spline": 162},
+            "160 teeth of that module do not stand on the ring",
+        ),
+    ],
+)
+def test_what_is_no_whole_gear_is_refused_with_the_range(changes: dict, says: str) -> None:
+    with pytest.raises(flexspline.FlexsplineError, match=says):
+        flexspline.gear(DESIGN.changed(changes))
+
+
+def test_the_most_teeth_and_the_ends_of_the_module_are_gears() -> None:
+    most = {"gear.teeth_circular_spline": 218}
+    for changes in (most, {"gear.module_mm": 0.1956}, {"gear.module_mm": 0.2046}):
+        assert flexspline.gear(DESIGN.changed(changes)).K3_Nm_per_rad > 0
+
+
+def test_a_clearance_that_leaves_no_tooth_is_refused() -> None:
+    """π m/2 cos α = 295.2 µm of m = 0.2 mm at 20°."""
+    with pytest.raises(flexspline.FlexsplineError, match=r"from 0 to 295\.2 µm"):
+        DESIGN.changed({"gear.flank_clearance_um": 295.3})
+    assert DESIGN.changed({"gear.flank_clearance_um": 295.2})
+
+
 def test_play_beyond_the_stroke_is_refused() -> None:
     loose = DESIGN.changed(
         {"bearing.bearing_play_model": "small_displacement", "bearing.radial_clearance_um": 400.0}

@@ -20,7 +20,7 @@ WRONG = {
     "export cup.toml --format": "--format",
     "backlash cup.toml more.toml": "more.toml",
     "backlash cup.toml --Kb 30.000,5": '"30.000,5"',
-    "diagnose cup.toml sweep.csv --against curve": "'curve'",
+    "diagnose cup.toml sweep.csv --against curve": '--against\': "curve" must be sum or gear;',
 }
 
 
@@ -30,6 +30,20 @@ def test_one_line_names_what_is_wrong(line: str, tmp_path: Path) -> None:
     assert ended.status == 2
     assert WRONG[line] in ended.said[0]  # the only one: in_process sees to that
     assert "--help" in ended.said[0]
+
+
+NAMES = (
+    ["gear", ""], ["run", ""], ["study", ""], ["studio", "--no-browser", ""],
+    ["diagnose", "cup.toml", ""], ["predict", "cup.toml", "t.csv", "--model", ""],
+    ["run", "cup.toml", "--model", ""],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("words", NAMES)
+def test_an_empty_word_is_no_file(words: list[str], tmp_path: Path) -> None:
+    ended = in_process.flexspline(*words, folder=tmp_path)
+    assert ended.status == 2
+    assert '"" must be the name of a file' in ended.said[0]
 
 
 def test_no_words_at_all_are_answered_with_the_help(capfd: pytest.CaptureFixture[str]) -> None:

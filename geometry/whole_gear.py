@@ -1,0 +1,55 @@
+"""Which designs have no whole gear, though their parts can be computed.
+
+Teeth that do not stand on the ring, a stroke beyond small displacements, a play that takes the stroke.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
+from flexspline.geometry.bounds import span
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+
+LARGEST_STROKE = 0.1
+"""Of the tube's inner radius: ratios in catalogues begin at 30, a stroke of 0.033. The model's displacements
+are small: the square of 0.1 is 1 %."""
+
+
+def require_whole_gear(design: Design) -> None:
+    """Raises DesignError with the first reason why the design has no whole gear."""
+    for fault in _faults(design):
+        raise fault
+
+
+def _faults(design: Design) -> Iterator[DesignError]:
+    gear, f = design.gear, design.flexspline
+    z1, stroke, ring = gear.teeth_flexspline, gear.centre_distance_mm, f.ring_radius
+    if stroke > LARGEST_STROKE * f.inner_radius:
+        most = int(LARGEST_STROKE * f.inner_radius / gear.module_mm)  # z2 - z1 = 2 stroke/m is even
+        room = "" if most < 1 else f"must be at most {z1 + 2 * most}: "
+        yield DesignError(
+            "gear.teeth_circular_spline",
+            gear.teeth_circular_spline,
+            f"{room}the stroke m(z2 - z1)/2 = {stroke:.4g} mm is more than {LARGEST_STROKE:g} of the tube's "
+            f"inner radius, {f.inner_radius:.4g} mm, and displacements are no longer small",
+        )
+    height = ADDENDUM + DEDENDUM
+    low, high = ring / (z1 / 2 + ADDENDUM), ring / (z1 / 2 - DEDENDUM - height)
+    if not low < gear.module_mm <= high:
+        yield DesignError(
+            "gear.module_mm",
+            gear.module_mm,
+            f"must be {span(low, high, 4)} mm: {z1} teeth of that module do not stand on the ring, whose "
+            f"outer radius is {ring:.4g} mm",
+        )
+    stated = design.wave_generator.deflection_mm
+    deflection = stroke if stated is None else stated
+    play = design.bearing.radial_clearance_um
+    if play / 1e3 >= 2 * deflection:
+        yield DesignError(
+            "bearing.radial_clearance_um",
+            play,
+            f"must be below {2e3 * deflection:.4g} µm: twice the wave generator's stroke",
+        )
