@@ -47,12 +47,12 @@ class TooManyElementsError(SolidError):
 
 
 class IterationError(SolveError):
-    """The iteration stopped short: `steps` taken, relative `residual` reached, the one `wanted`."""
+    """The iteration stopped short: `steps` taken, the error's energy `left`, the one `wanted` [N·mm]."""
 
-    def __init__(self, steps: int, residual: float, wanted: float) -> None:
-        self.steps, self.residual, self.wanted = steps, residual, wanted
+    def __init__(self, steps: int, left: float, wanted: float) -> None:
+        self.steps, self.left, self.wanted = steps, left, wanted
         super().__init__(
-            f"{steps} steps of the iteration left a relative residual of {residual:.1e}, wanted"
+            f"{steps} steps of the iteration left an error with an energy of {left:.1e} N·mm, wanted"
             f" {wanted:.0e}: the elements may be too flat, or part of the model unsupported"
         )
 

@@ -14,18 +14,24 @@ Operator = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Iterated:
-    """x (N,), steps taken, ‖r‖/‖f‖ by recurrence, and the range of M K's eigenvalues as seen."""
+    """x (N,), steps taken, and the range of M K's eigenvalues as seen."""
 
     x: np.ndarray
     steps: int
-    residual: float
     spectrum: tuple[float, float]
 
 
 def conjugate_gradients(
-    apply: Operator, precondition: Operator, right: np.ndarray, wanted: float, most: int
+    apply: Operator,
+    precondition: Operator,
+    right: np.ndarray,
+    most: int,
+    allowed: Callable[[np.ndarray], float] = lambda x: 0.0,
 ) -> Iterated:
-    """At most `most` steps for K x = f from x = 0, until ‖r‖ ≤ `wanted`·‖f‖. The caller checks which.
+    """At most `most` steps for K x = f from x = 0, until the error's energy is below `allowed` at that x.
+
+    That energy, (x − x*)·K(x − x*), is at most r·M r over the smallest eigenvalue of M K, which the steps see
+    from above: the caller checks the answer, and how many steps it took.
 
     The steps' lengths are the coefficients of Lanczos' tridiagonal matrix of M K, whose eigenvalues lie
     within M K's and reach its ends first (Saad, Iterative Methods for Sparse Linear Systems, 2003, 6.7.3).
@@ -34,15 +40,12 @@ def conjugate_gradients(
     ------
     SolveError : K or M is not positive definite.
     """
-    from scipy.linalg import eigh_tridiagonal
-
     x, r = np.zeros_like(right), right.copy()
     z = precondition(r)
     p, rz = z.copy(), float(r @ z)
-    whole, size = float(np.linalg.norm(right)), 1.0
     lengths: list[float] = []
     turns: list[float] = []
-    while size > wanted and len(lengths) < most:
+    while len(lengths) < most and not _within(allowed(x), rz, lengths, turns):
         q = apply(p)
         stiffness = float(p @ q)
         if not (stiffness > 0 and rz > 0):
@@ -53,14 +56,24 @@ def conjugate_gradients(
         lengths.append(rz / stiffness)
         x += lengths[-1] * p
         r -= lengths[-1] * q
-        size = float(np.linalg.norm(r)) / whole
         z = precondition(r)
         before, rz = rz, float(r @ z)
         turns.append(rz / before)
         p *= turns[-1]
         p += z
+    return Iterated(x, len(lengths), _spectrum(lengths, turns))
+
+
+def _within(allowed: float, rz: float, lengths: list[float], turns: list[float]) -> bool:
+    """Whether the error's energy is; eigenvalues, which M keeps below 1, are looked at when it may be."""
+    return bool(lengths) and rz <= allowed and rz <= allowed * _spectrum(lengths, turns)[0]
+
+
+def _spectrum(lengths: list[float], turns: list[float]) -> tuple[float, float]:
+    from scipy.linalg import eigh_tridiagonal
+
     a, b = np.array(lengths), np.array(turns)
     diagonal = 1 / a
     diagonal[1:] += b[:-1] / a[:-1]
     seen = eigh_tridiagonal(diagonal, np.sqrt(np.abs(b[:-1])) / a[:-1], eigvals_only=True)
-    return Iterated(x, len(a), size, (float(seen[0]), float(seen[-1])))
+    return float(seen[0]), float(seen[-1])

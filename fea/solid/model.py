@@ -9,7 +9,7 @@ from scipy.sparse import csr_matrix
 
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.memory import SolverKind, check_before_assembly
-from flexspline.fea.solid.solver import Solution, solve
+from flexspline.fea.solid.solver import ITERATION_ENERGY, Solution, solve
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.types import Elastic, TetMesh
@@ -85,7 +85,7 @@ class Supports:
         for component in (RADIAL, TANGENTIAL, AXIAL):
             self.set(nodes, component)
 
-    def solve(self, load: np.ndarray) -> Solution:
+    def solve(self, load: np.ndarray, iteration_energy: float = ITERATION_ENERGY) -> Solution:
         fixed = np.flatnonzero(self._mask.ravel())
         model = self._model
         return solve(
@@ -95,4 +95,5 @@ class Supports:
             self._value.ravel()[fixed],
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
+            iteration_energy,
         )
