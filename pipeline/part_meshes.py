@@ -1,4 +1,5 @@
-"""Meshes of a part's sector: swept from its meridian where that works, else made from its CAD surface."""
+"""Meshes of a part's sector: swept from its meridian where that works, a shaft's then in layers along the
+axis, else made from its CAD surface."""
 
 from __future__ import annotations
 
@@ -6,18 +7,29 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import inf
+from typing import Literal, get_args
 
 import numpy as np
 
+from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.solid.defaults import surface_to_mesh
-from flexspline.fea.solid.errors import SolidError, TooManyElementsError
+from flexspline.fea.solid.errors import MeshQualityError, SolidError, TooManyElementsError
+from flexspline.fea.solid.layer_curving import LayeredMesh
+from flexspline.fea.solid.layered import layered_mesh
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
+from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
+from flexspline.geometry.shapes import Shaft
 from flexspline.geometry.tagged import TaggedSurface
-from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.parts import LAYERED_COARSER, PartModel
+
+Kind = Literal["swept", "layered", "tetwild"]
+"""Swept about the axis, a shaft's layers along it, or fTetWild's."""
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""In the order in which they are tried."""
 
 COARSER, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
@@ -36,14 +48,25 @@ class MeshedPart:
     sharp_edges: np.ndarray
     swept: bool
 
+    @property
+    def kind(self) -> Kind:
+        if not self.swept:
+            return "tetwild"
+        return "layered" if isinstance(self.mesh, LayeredMesh) else "swept"
+
 
 @dataclass(frozen=True)
 class PartMeshes:
     """The meshes that can be had of a part; its CAD surface is made once, where one needs it."""
 
     model: PartModel
-    sweeps: bool = True
-    """Whether parts that can be swept are; else fTetWild makes every mesh."""
+    kinds: tuple[Kind, ...] = KINDS
+    """Those that are tried, of what the part allows."""
+
+    @cached_property
+    def _failed(self) -> set[tuple[Kind, MeshSpec]]:
+        """Sweeps that failed a check: they would again."""
+        return set()
 
     @property
     def _edge_spacing(self) -> float:
@@ -60,17 +83,40 @@ class PartMeshes:
     def swept(
         self, spec: MeshSpec, finer: Finer | None = None, most_elements: float = inf
     ) -> MeshedPart | None:
-        """Swept from the meridian; None for a part that only a mesher can mesh.
+        """Swept from the meridian, or by `fea.solid.layered`; None for a part that only a mesher can mesh.
 
         Raises
         ------
         TooManyElementsError : as `swept_mesh`.
         """
         part, degrees = self.model.part, self.model.sector.degrees
+        if finer is None and ("swept", spec) in self._failed:
+            return None
         mesh = swept_mesh(part, degrees, spec, finer, most_elements)
         if mesh is None:
+            self._failed.add(("swept", spec))
             return None
-        return MeshedPart(mesh, swept_edges(part, degrees, self._edge_spacing), swept=True)
+        return self._of_sweep(mesh)
+
+    def layered(self, spec: MeshSpec) -> MeshedPart | None:
+        """In layers, a shaft whose sweep about the axis fails; None where that fails too."""
+        model = self.model
+        if not isinstance(model.part.shape, Shaft) or not goes_about_axis(model.part):
+            return None  # `swept` has tried what there is
+        if ("layered", spec) in self._failed:
+            return None
+        stated = model.context.design.solver.edge_length_mm is not None
+        coarser = spec if stated else spec.scaled(LAYERED_COARSER)
+        try:
+            return self._of_sweep(layered_mesh(model.part, model.sector.degrees, coarser))
+        except (MeshQualityError, MeshingError, TooManyElementsError):
+            self._failed.add(("layered", spec))
+            return None
+
+    def _of_sweep(self, mesh: TetMesh) -> MeshedPart:
+        model = self.model
+        edges = swept_edges(model.part, model.sector.degrees, self._edge_spacing)
+        return MeshedPart(mesh, edges, swept=True)
 
     def coarsened(self, most_elements: float) -> MeshSpec:
         """The part's first specification, or a coarser one where its swept mesh has more elements than that.
@@ -118,23 +164,29 @@ class PartMeshes:
         inputs = {
             **model.geometry_key,
             "spec": wanted,
-            "mesher": model.mesher if self.sweeps else "tetwild",
+            "mesher": model.mesher if self.kinds == KINDS else self.kinds[0],
         }
         return model.context.cache.get("mesh", inputs, make)[0]
 
     def _made(self, spec: MeshSpec) -> MeshedPart:
         model, progress = self.model, self.model.context.progress
-        if model.is_swept and self.sweeps:
+        if model.is_swept and self.kinds[0] != "tetwild":
             with progress.stage(f"mesh of the {model.name}"):
-                swept = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
-            if swept is not None:
-                return swept
+                made = self._swept_or_layered(spec)
+            if made is not None:
+                return made
             if model.mesher == "swept":
                 raise SolidError(
                     f"the swept mesh of the {model.name} fails a check; solver.mesher"
                     ' "tetwild" or "auto" works'
                 )
             progress.note("  the swept mesh fails a check: fTetWild instead")
-        surface = self._surface
+        surface = self._surface  # by CAD, a stage of its own
         with progress.stage(f"mesh of the {model.name}"):
             return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges, swept=False)
+
+    def _swept_or_layered(self, spec: MeshSpec) -> MeshedPart | None:
+        made = None
+        if "swept" in self.kinds:
+            made = self.swept(spec) or self.swept(spec.scaled(ANOTHER))
+        return made or self.layered(spec)

@@ -14,14 +14,13 @@ from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
-from flexspline.fea.solid.sweeps import goes_about_axis
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
 from flexspline.pipeline.enclosure import answered_within, check_against, overlap
-from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
+from flexspline.pipeline.part_meshes import KINDS, Kind, MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
 
 SOLID_SECONDS = 60.0
@@ -38,14 +37,21 @@ none follows. A first mesh is followed by a second whatever its size: one alone 
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
-ENCLOSED_SECONDS, ENCLOSED_COARSER = 20.0, 4.0
+ENCLOSED_SECONDS, ENCLOSED_COARSER = 10.0, 4.0
 """Of fTetWild, where bodies of revolution give K within the tolerance and the mesh gives the fields only;
 and how many times as long the edges are after that. A tall cup with one large hole took 284 s and 106 000
-elements."""
+elements, another 100 s and 35 000 with the longer edges: where K alone is asked for, there are none."""
 
 
 class OtherKindError(FlexsplineError):
-    """Swept and fTetWild's meshes are no sequence: between them K moves by more than its bounds."""
+    """Meshes of two kinds are no sequence: between them K moves by more than its bounds.
+
+    `kind` is the last one's.
+    """
+
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        super().__init__(f"the next mesh is another kind: {kind}")
 
 
 @dataclass(frozen=True)
@@ -97,12 +103,29 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = enclosure_if_any(model, _revolved_stiffness)
     if enclosure is not None and may_answer(model):
         return answered_within(
-            enclosure, lambda: twisted_part(model).stiffness, tolerance_of(model)
+            enclosure, lambda: _within_enclosure(model, enclosure), tolerance_of(model)
         )
     solid = twisted_part(model).stiffness
     if enclosure is not None:
         check_against(solid, enclosure)
     return solid
+
+
+def _within_enclosure(model: PartModel, enclosure: Stiffness) -> Stiffness:
+    """The solid model's K; nobody waits for fTetWild where the enclosure meets the tolerance.
+
+    Raises
+    ------
+    SolidError : it takes longer than ENCLOSED_SECONDS. As `twisted_part`.
+    """
+    if enclosure.half_width <= tolerance_of(model) and _by_fTetWild(model):
+        PartMeshes(model).meshed(replace(model.first_spec, time_limit_s=ENCLOSED_SECONDS))
+    return twisted_part(model).stiffness
+
+
+def _by_fTetWild(model: PartModel) -> bool:
+    """Whether it makes the first mesh, and nobody has stated its edges."""
+    return not model.is_swept and model.context.design.solver.edge_length_mm is None
 
 
 def twisted_part(model: PartModel) -> TwistedPart:
@@ -147,7 +170,7 @@ def copies_in_rim(model: PartModel) -> int:
 
 def _enclosed_spec(meshes: PartMeshes, first: MeshSpec) -> MeshSpec:
     """The mesh of a part that its enclosure answers for; a coarser one where fTetWild takes too long."""
-    if meshes.model.is_swept or meshes.model.context.design.solver.edge_length_mm is not None:
+    if not _by_fTetWild(meshes.model):
         return first
     try:
         meshes.meshed(replace(first, time_limit_s=ENCLOSED_SECONDS))
@@ -157,16 +180,18 @@ def _enclosed_spec(meshes: PartMeshes, first: MeshSpec) -> MeshSpec:
 
 
 def _twisted(model: PartModel, tolerance: float) -> TwistedPart:
-    """Where a coarse sweep passes its checks and a finer one fails, fTetWild makes all meshes instead."""
+    """Where a kind's coarse mesh passes its checks and a finer one fails, the next kind makes all instead."""
     meshes = PartMeshes(model)
     first = meshes.coarsened(FIRST_ELEMENTS)
     if tolerance == inf:
         first = _enclosed_spec(meshes, first)
-    try:
-        return _refined(meshes, first, tolerance)
-    except OtherKindError:
-        model.context.progress.note(f"  {model.name}: fTetWild makes all meshes")
-        return _refined(PartMeshes(model, sweeps=False), model.first_spec, tolerance)
+    while True:
+        try:
+            return _refined(meshes, first, tolerance)
+        except OtherKindError as other:
+            model.context.progress.note(f"  {model.name}: all meshes are made anew, {other.kind}")
+            first = model.first_spec
+            meshes = PartMeshes(model, KINDS[KINDS.index(other.kind) :])
 
 
 def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPart:
@@ -175,8 +200,8 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
 
     def mesher(spec: MeshSpec) -> TetMesh:
         made.append(meshes.meshed(spec))
-        if made[-1].swept != made[0].swept:
-            raise OtherKindError
+        if made[-1].kind != made[0].kind:
+            raise OtherKindError(made[-1].kind)
         return made[-1].mesh
 
     def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh | None:
@@ -191,9 +216,9 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
             except MeshQualityError:  # other edges are halved for fewer elements
                 return finer_layers(model.part, mesh, error, LAYERED_LEAST * mesh.elements)
 
-    most = inf
-    if model.is_swept and meshes.sweeps and not goes_about_axis(model.part):
-        most = max(LAYERED_LAST, meshes.meshed(first).mesh.elements)
+    def most(mesh: TetMesh) -> float:
+        return max(LAYERED_LAST, mesh.elements) if isinstance(mesh, LayeredMesh) else inf
+
     found = solid_stiffness(
         mesher,
         first,

@@ -68,12 +68,12 @@ def solid_stiffness(
     progress: Callable[[str], None],
     deadline: Deadline = NO_DEADLINE,
     by_error: FinerByError = lambda mesh, error: None,
-    most_elements: float = inf,
+    most_elements: Callable[[TetMesh], float] = lambda first: inf,
 ) -> SolidStiffness:
     """K of a part's sector, refined until half the bounds' distance is below `tolerance`·K.
 
     Its `shortfall` says why where that was not reached: a finer mesh failed or would end after the deadline,
-    the last has more than `most_elements`, or MAX_LEVELS are solved.
+    the last has more than `most_elements` of the first, or MAX_LEVELS are solved.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def solid_stiffness(
     mesh = mesher(first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
-    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements)
+    shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements(mesh))
     if shortfall and len(found.meshes) < MAX_LEVELS:
         progress(f"K ± {found.half:.2%} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)

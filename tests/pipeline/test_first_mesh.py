@@ -43,10 +43,11 @@ def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.Monk
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
 
 
+@pytest.mark.parametrize("kind", ["layered", "tetwild"])
 def test_a_sweep_that_fails_when_refined_is_left_altogether(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """fTetWild then makes every mesh: between two kinds K moves by more than its bounds."""
+    """Another kind then makes every mesh: between two kinds K moves by more than its bounds."""
     sweep = PartMeshes.swept
     first: list[MeshSpec] = []
 
@@ -55,12 +56,14 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
         return sweep(self, spec, *more) if spec == first[0] else None
 
     monkeypatch.setattr(PartMeshes, "swept", lambda self, spec, **more: once(self, spec))
+    if kind == "tetwild":
+        monkeypatch.setattr(PartMeshes, "layered", lambda self, spec: None)
     monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
     design = DESIGN.changed({"solver.tolerance_pct": 0.4})
     model = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("shaft")
     found = part_stiffness.twisted_part(model)
     assert len(set(first)) > 1  # a finer sweep was asked for
-    assert not found.meshed.swept
+    assert found.meshed.kind == kind
 
 
 def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,7 +107,7 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
 def test_fTetWild_has_little_time_where_an_enclosure_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The mesh after it, with longer edges, has all the time of a first one."""
+    """The mesh after it, with longer edges, has all the time of a first one, and is for the fields only."""
     context = AnalysisContext(
         DESIGN.changed({"solver.mesher": "tetwild"}), Cache(tmp_path, CACHED_TYPES), Progress()
     )
@@ -125,10 +128,13 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     )
     found = part_stiffness.part_stiffness(cup)
     assert found.guaranteed
+    assert not found.shortfall
+    assert found.model == "axisymmetric"  # no mesh was made in that time
+    solid = part_stiffness.twisted_part(cup).stiffness
     first, second = asked
     assert second.grading == first.grading.scaled(part_stiffness.ENCLOSED_COARSER)
     assert second.time_limit_s > first.time_limit_s
-    assert part_stiffness.rim_mesh(cup).mesh.elements == found.levels[0].elements
+    assert part_stiffness.rim_mesh(cup).mesh.elements == solid.levels[0].elements
     assert len(asked) == len([first, second])
 
 
