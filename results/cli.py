@@ -15,6 +15,7 @@ from flexspline.results.job import (
     deliver,
     keep,
     kept,
+    present,
     tell,
     tell_all,
     warn,
@@ -171,7 +172,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
         job = begin(design, out)
         from flexspline.pipeline.analysis import stiffnesses
         from flexspline.pipeline.gear import gear_curve
-        from flexspline.results.gear import RECORD, gear_record, write_gear
+        from flexspline.results.gear import gear_record, write_gear
 
         curve = gear_curve(job.context)
         shaft = stiffnesses(job.context, flexspline=False)
@@ -180,8 +181,8 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
         warn(job.design, shaft)
         tell_all(curve.warnings)
         record = gear_record(job.design, curve, shaft, job.wall_s)
-        write_gear(job.folder, curve)
-        deliver(job.folder, record, json, RECORD)
+        write_gear(job.folder, curve, record)
+        present(job.folder, record, json)
 
 
 @app.command()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,9 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import write_together
 from flexspline.results.figures.gear import CURVE, LOADS, write_gear_angle, write_gear_loads
-from flexspline.results.records import gear_figures, heading
+from flexspline.results.records import as_json, gear_figures, heading
 from flexspline.results.warned import shortfalls
 
 RECORD = "gear.json"
@@ -33,8 +34,10 @@ def gear_record(
     }
 
 
-def write_gear(folder: Path, curve: GearCurve) -> None:
-    """The loop as CSV, one row for each torque in the order in which it is passed, and the charts.
+def write_gear(folder: Path, curve: GearCurve, record: dict[str, Any]) -> list[Path]:
+    """The loop as CSV, one row for each torque in the order in which it is passed, the charts and the record.
+
+    All together: a command that is stopped leaves none of them.
 
     Raises
     ------
@@ -45,6 +48,11 @@ def write_gear(folder: Path, curve: GearCurve) -> None:
     writer.writerow(("torque_Nm", "angle_arcsec"))
     for torque, angle in zip(curve.torque_Nm, curve.angle_arcsec, strict=True):
         writer.writerow((f"{torque:.9g}", f"{angle:.9g}"))
-    write_bytes(folder / CSV, text.getvalue().encode())
-    write_gear_angle(folder / f"{CURVE}.png", curve)
-    write_gear_loads(folder / f"{LOADS}.png", curve)
+    made = {CSV: text.getvalue().encode()}
+    with tempfile.TemporaryDirectory(prefix="flexspline-gear-") as scratch:
+        for name, draw in ((CURVE, write_gear_angle), (LOADS, write_gear_loads)):
+            picture = Path(scratch) / f"{name}.png"
+            draw(picture, curve)
+            made[picture.name] = picture.read_bytes()
+    made[RECORD] = (as_json(record) + "\n").encode()
+    return write_together(folder, made)

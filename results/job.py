@@ -98,14 +98,20 @@ def begin(path: Path, out: Path | None) -> Job:
     return Job(design, context, folder, Attachment(path.name, raw, "Design file"), began)
 
 
-def deliver(folder: Path, record: dict[str, Any], as_json: bool, name: str | None = None) -> None:
-    """Write result.json, or a record of another name, and print it, for machines or for people."""
+def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
+    """Write result.json and print it."""
+    from flexspline.results.records import write_record
+
+    write_record(folder, record)
+    present(folder, record, as_json)
+
+
+def present(folder: Path, record: dict[str, Any], as_json: bool) -> None:
+    """Print a record, for machines or for people."""
     from flexspline.results.console import table
-    from flexspline.results.records import RESULT, write_record
     from flexspline.results.records import as_json as text
     from flexspline.results.streams import show
 
-    write_record(folder, record, name or RESULT)
     show(text(record) if as_json else table(record, folder), as_json)
 
 

@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.model_file import Provenance
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import write_together
 from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
 from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.figures.diagnosis.draw import draw_figures
@@ -45,11 +45,10 @@ def write_diagnosis(
         made |= {f.path.name: f.path.read_bytes() for f in figures}
         document = diagnosis_document(diagnosis, figures, used, attached)
         made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=NAME)
-    for name, data in made.items():
-        write_bytes(folder / name, data)
+    written = write_together(folder, made)
     for name in {EXTENDED_MODEL, *(f"{figure}.png" for figure in CAPTIONS)} - set(made):
         (folder / name).unlink(missing_ok=True)
-    return [folder / name for name in made]
+    return written
 
 
 def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:

@@ -7,7 +7,7 @@ from itertools import chain
 from pathlib import Path
 
 from flexspline.pipeline.study.result import StudyResult
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import write_together
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
 from flexspline.results.report.document import (
@@ -78,9 +78,7 @@ def write_study_reports(
     best = best or BestStress()
     document = study_document(result, [p.name for p in pictures], attached, best.missing)
     made = reports_of(document, {p.stem: p for p in pictures}, best.views)
-    for name, data in made.items():
-        write_bytes(folder / name, data)
-    return [folder / name for name in made]
+    return write_together(folder, made)
 
 
 def study_document(

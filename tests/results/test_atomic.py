@@ -1,10 +1,11 @@
 """A file is written whole or not at all."""
 
 import os
+import signal
 
 import pytest
 
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import write_bytes, write_together
 
 
 def test_written_file_replaces_the_old_one(tmp_path):
@@ -27,3 +28,37 @@ def test_interrupt_leaves_the_old_file_and_no_other(tmp_path, monkeypatch):
         write_bytes(path, b"new")
     assert path.read_bytes() == b"old"
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_stop_before_the_last_file_is_made_leaves_none(tmp_path, monkeypatch):
+    made = []
+
+    def stopped(path, mode):
+        made.append(path)
+        if len(made) == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "chmod", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        write_together(tmp_path, {"one": b"1", "two": b"2", "three": b"3"})
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_request_to_end_waits_until_all_files_are_in_place(tmp_path, monkeypatch, number):
+    def ends(_number, _frame):
+        raise KeyboardInterrupt
+
+    move, before = os.replace, signal.signal(number, ends)
+
+    def moved(part, path):
+        move(part, path)
+        os.kill(os.getpid(), number)
+
+    monkeypatch.setattr(os, "replace", moved)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            write_together(tmp_path, {"one": b"1", "two": b"2"})
+    finally:
+        signal.signal(number, before)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["one", "two"]

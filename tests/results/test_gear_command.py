@@ -117,14 +117,14 @@ def test_the_free_angle_does_not_hang_on_the_load() -> None:
 
 
 def test_files(curve: GearCurve, tmp_path: Path) -> None:
-    write_gear(tmp_path, curve)
+    write_gear(tmp_path, curve, {})
     with (tmp_path / "torque_angle.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(curve.torque_Nm)
     assert float(rows[9]["torque_Nm"]) == pytest.approx(20.0)
     assert float(rows[9]["angle_arcsec"]) == pytest.approx(curve.angle_arcsec[9])
     assert {p.name for p in tmp_path.iterdir()} == {
-        "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png"}  # fmt: skip
+        "torque_angle.csv", "gear_torque_angle.png", "gear_loads.png", "gear.json"}  # fmt: skip
 
 
 def test_the_command_prints_the_figures_and_what_it_assumed(tmp_path: Path) -> None:
