@@ -21,7 +21,7 @@ from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished
 
 T = TypeVar("T")
-FORMAT = 17
+FORMAT = 18
 """Raise when what a stage means changes, so that old entries are not read."""
 
 

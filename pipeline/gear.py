@@ -25,8 +25,8 @@ from flexspline.geometry.whole_gear import require_whole_gear
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
-from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, warnings
-from flexspline.pipeline.gear_terms import gear_terms, play_effect, small_torque
+from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, of_torques, warnings
+from flexspline.pipeline.gear_terms import FREE, gear_terms, play_effect, small_torque
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -61,8 +61,8 @@ class GearCurve:
     preload_tooth_force_N : largest force of a pair of teeth without torque, where both flanks press; else 0.
     tooth_angle_deg, tooth_force_N : teeth within reach of one lobe at rated torque, front less back flank.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
-    terms_arcsec : between ± T_L, in place of the backlash sum's terms (`pipeline.gear_terms`); empty where
-        nobody asked.
+    terms_arcsec : between ± `terms_torque_Nm`, T_L, in place of the backlash sum's terms
+        (`pipeline.gear_terms`); empty where nobody asked.
     buckling_torque_Nm : an estimate, of the flexspline's tube (`fea.gear.tube_buckling`); None: no tube.
     ratcheting_torque_Nm : an estimate, where the load has pressed all teeth out of their spaces
         (`fea.gear.engagement`); None where nobody asked, or where they hold beyond a thousand rated torques.
@@ -88,8 +88,21 @@ class GearCurve:
     ball_angle_deg: tuple[float, ...]
     ball_force_N: tuple[float, ...]
     terms_arcsec: Mapping[str, float] = field(default_factory=dict)
+    terms_torque_Nm: float | None = None
     buckling_torque_Nm: float | None = None
     ratcheting_torque_Nm: float | None = None
+
+    @property
+    def lost_motion_torque_Nm(self) -> float:
+        """Each way."""
+        return LOST_MOTION_SHARE * self.rated_torque_Nm
+
+    @property
+    def free_angle_arcsec(self) -> float | None:
+        """Between both flanks, which K1 leaves out; None where nobody asked for the terms."""
+        if not self.terms_arcsec:
+            return None
+        return sum(self.terms_arcsec[term] for term in FREE)
 
 
 def gear_curve(context: AnalysisContext) -> GearCurve:
@@ -118,10 +131,15 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             )
         tube = tube_of(design)
         full = chain.model.wave_generator.deflection == design.gear.centre_distance_mm
-        said = [of_play(terms, play, full), largest_torques(limit, tube, rated)]
+        said = [
+            of_torques(load.torque_Nm, LOST_MOTION_SHARE * rated),
+            of_play(terms, play, full),
+            largest_torques(limit, tube, rated),
+        ]
         return replace(
             curve,
             terms_arcsec=terms,
+            terms_torque_Nm=load.torque_Nm,
             buckling_torque_Nm=None if tube is None else two_digits(tube.lower_edge_Nm),
             ratcheting_torque_Nm=limit and two_digits(limit),  # found to 5 %
             warnings=(*curve.warnings, *(line for warned, _ in said for line in warned)),

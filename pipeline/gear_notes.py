@@ -34,6 +34,8 @@ BEYOND_RATED = 5.0
 
 LEAST_ANGLE = 0.1
 """arcsec: what is less is rounding of the equilibrium."""
+SAME_TORQUE = 0.01
+"""A difference of less is rounding of a design file: `init` writes three digits."""
 ACT_TOGETHER = 0.2
 """Of the play's own effect: a smaller difference of the two orders is a matter of taste."""
 
@@ -140,6 +142,16 @@ def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
             "the major axis, carries much: the figures depend on gear.working_depth_mm"
         )
     return lines
+
+
+def of_torques(load_Nm: float, lost_motion_Nm: float) -> tuple[list[str], list[str]]:
+    """No warning, and a note where terms and lost motion are not of one torque."""
+    if abs(load_Nm / lost_motion_Nm - 1) <= SAME_TORQUE:
+        return [], []
+    return [], [
+        f"the terms are at load.torque_Nm = {load_Nm:g}, the lost motion at {lost_motion_Nm:.4g} N·m, 4 % of "
+        "rated torque: the terms' sum is not the lost motion"
+    ]
 
 
 def of_play(

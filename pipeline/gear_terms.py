@@ -16,6 +16,8 @@ DIGITS = 6
 """Of an arcsec: an equilibrium is found to some 1e-9, whichever the state that it is begun from."""
 TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
+FREE = ("flank_clearance", "bearing_play", TIGHT)
+"""Terms that make up the free angle."""
 
 
 def small_torque(load_Nm: float, rated_Nm: float) -> float:

@@ -9,6 +9,7 @@ import typer
 
 from flexspline.results.diagnosis.command import register as register_diagnosis
 from flexspline.results.job import (
+    RESUMES,
     Job,
     answered,
     begin,
@@ -70,7 +71,7 @@ def run(
     json: Json = False,
 ) -> None:
     """The whole way: CAD, mesh, K_b, K_e, backlash, pictures, report.pdf and report.html."""
-    with answered(design):
+    with answered(design, RESUMES):
         from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
         measured = read_model_file(model) if model is not None else None
@@ -113,7 +114,7 @@ def run(
 @app.command()
 def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """K_b and K_e with error bounds only."""
-    with answered(design):
+    with answered(design, RESUMES):
         job = begin(design, out)
         from flexspline.pipeline.analysis import stiffnesses
 
@@ -131,7 +132,7 @@ def backlash(
     json: Json = False,
 ) -> None:
     """The four-term backlash sum."""
-    with answered(design):
+    with answered(design, RESUMES):
         job = begin(design, out)
         with kept(job, json):
             record = _backlash_record(
@@ -168,7 +169,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
 @app.command()
 def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """The whole gear, wave generator locked: torque-angle curve, K1, K2, K3, lost motion."""
-    with answered(design):
+    with answered(design, RESUMES):
         job = begin(design, out)
         from flexspline.pipeline.analysis import stiffnesses
         from flexspline.pipeline.gear import gear_curve
@@ -204,7 +205,7 @@ def export(
     json: Json = False,
 ) -> None:
     """STEP and STL of both parts, and the solved fields as VTU."""
-    with answered(design):
+    with answered(design, RESUMES):
         from flexspline.results.mesh_files import chosen_formats
 
         chosen = chosen_formats(formats or ())

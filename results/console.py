@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from flexspline.results.doubt import NOT_STATED
+from flexspline.results.numbers import grouped
 from flexspline.results.peaks import marked
-from flexspline.results.quantities import QUANTITIES
+from flexspline.results.quantities import QUANTITIES, term_names
 
 SPREAD = "backlash_arcsec.std"
 
@@ -33,6 +34,12 @@ def table(record: dict[str, Any], folder: Path) -> str:
             mark = marked(record, entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines.append(f"  {entry.name:<64} {shown}".rstrip())
+    if terms := record.get("terms_arcsec"):
+        lines.append(
+            f"  Twist between ± {record['terms_torque_Nm']:g} N·m (load.torque_Nm), term by term:"
+        )
+        for term, name in term_names().items():
+            lines.append(f"    {name:<62} {grouped(terms[term], 1)} arcsec")
     if "assumed" in gear:
         keys = ", ".join(a["key"] for a in gear["assumed"])
         lines.append(f"  assumed for the whole gear: {keys}")

@@ -34,9 +34,16 @@ def tell(line: str) -> None:
         print(f"{one_line(line, LONGEST_LINE)}\n", end="", file=sys.stderr, flush=True)
 
 
+RESUMES = "; run the same command again to resume"
+"""Where finished stages, or designs of a study, are kept."""
+
+
 @contextmanager
-def answered(path: Path | None = None) -> Iterator[None]:
-    """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation."""
+def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
+    """Turn our own errors into one line and an exit status: 2 wrong input, 1 a failed computation.
+
+    `interrupted`: what to add where a user stops the command.
+    """
     from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError
     from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
 
@@ -50,7 +57,7 @@ def answered(path: Path | None = None) -> Iterator[None]:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(2) from None
     except KeyboardInterrupt:
-        tell("flexspline: interrupted; run the same command again to resume")
+        tell(f"flexspline: interrupted{interrupted}")
         raise typer.Exit(130) from None  # 128 and the number of SIGINT, as shells count
     except ComputationError as error:
         tell(f"flexspline: {where}{error}")

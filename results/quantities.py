@@ -201,7 +201,7 @@ QUANTITIES: tuple[Quantity, ...] = (
             _STIFFNESS,
             f"{key} of the whole gear, {name}",
             f"K_{key[1]}",
-            digits=3,
+            rounded=True,
         )
         for key, name in (
             ("K1", "from 0 to T1"),
@@ -223,6 +223,22 @@ QUANTITIES: tuple[Quantity, ...] = (
         "arcsec",
         "Lost motion, between ± 4 % of rated torque",
         "θ_lm",
+        decimals=1,
+    ),
+    Quantity(
+        "lost_motion_torque_Nm",
+        "lost_motion_torque_Nm",
+        "N·m",
+        "Torque of the lost motion, each way",
+        "T_lm",
+        digits=3,
+    ),
+    Quantity(
+        "free_angle_arcsec",
+        "free_angle_arcsec",
+        "arcsec",
+        "Free angle, clearance of both ways; K1 leaves it out",
+        "θ_0",
         decimals=1,
     ),
     Quantity(
@@ -290,3 +306,12 @@ def quantity(key: str) -> Quantity:
     KeyError : no such key in the table.
     """
     return BY_KEY[key]
+
+
+def term_names() -> dict[str, str]:
+    """Of the whole gear's terms, in the order of the sum; `tight_gear` is not in that."""
+    names = {
+        term: BY_KEY[f"backlash_arcsec.{term}"].name
+        for term in ("shaft", "flexspline", "flank_clearance", "bearing_play")
+    }
+    return {**names, "tight_gear": "Gap without any clearance", "total": "Together"}

@@ -25,6 +25,7 @@ class Quantity:
     symbol : letter and index joined by "_", e.g. ``K_b``; "" for none.
     kind : what stands under the key; "bounds" is a pair of numbers.
     digits : significant digits in print (kind "number" and "bounds").
+    rounded : whether digits before the point are rounded to `digits` too, for what has no bounds.
     decimals : fixed decimals instead of significant digits.
     short_name : where there is room for a few words, as beside the live page's part; "" for none.
     note : beside it in the report: of a stiffness, what is held and what is driven.
@@ -37,6 +38,7 @@ class Quantity:
     symbol: str = ""
     kind: Kind = "number"
     digits: int = 4
+    rounded: bool = False
     decimals: int | None = None
     note: str = ""
     short_name: str = ""
@@ -58,6 +60,8 @@ class Quantity:
             return grouped(value, 0)
         if self.decimals is not None:
             return grouped(value, self.decimals)
+        if self.rounded:
+            value = float(f"{value:.{self.digits}g}")
         return grouped(value, decimals_for(value, self.digits))
 
     def short(self, value: float, letters: int = 9) -> str:

@@ -172,8 +172,8 @@ def run_record(result: RunResult, wall_s: float) -> Record:
 
 GEAR_FIGURES = (
     "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
-    "lost_motion_arcsec", "teeth_in_contact", "preload_tooth_force_N", "buckling_torque_Nm",
-    "ratcheting_torque_Nm",
+    "lost_motion_arcsec", "lost_motion_torque_Nm", "free_angle_arcsec", "terms_torque_Nm",
+    "teeth_in_contact", "preload_tooth_force_N", "buckling_torque_Nm", "ratcheting_torque_Nm",
 )  # fmt: skip
 """Of the record, by their names in `GearCurve`."""
 

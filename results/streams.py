@@ -22,6 +22,9 @@ from flexspline.results.letters import ASCII, PLAIN, escaped
 STDOUT = "standard output"
 FAILED = 1
 """Exit status."""
+NOBODY_READS = 141
+"""Exit status where the reader of a pipe has gone (``| head -1``): 128 and the number of SIGPIPE, as shells
+count a tool that this signal ended. Nothing is said."""
 
 
 @contextmanager
@@ -44,6 +47,7 @@ def show(text: str, json: bool = False) -> None:
 
     Raises
     ------
+    SystemExit : whoever read it has gone.
     OSError : it cannot be written; its `filename` says where to.
     """
     text = readable(text)
@@ -51,6 +55,9 @@ def show(text: str, json: bool = False) -> None:
         text = escaped(text)
     try:
         print(text, flush=True)
+    except BrokenPipeError:
+        _give_up(sys.stdout)
+        raise SystemExit(NOBODY_READS) from None
     except OSError as error:
         _give_up(sys.stdout)
         raise OSError(error.errno, error.strerror, STDOUT) from None
@@ -82,6 +89,8 @@ def _flush(code: object) -> None:
     except OSError as error:
         _give_up(sys.stdout)
         if code in (0, None):
+            if isinstance(error, BrokenPipeError):
+                raise SystemExit(NOBODY_READS) from None
             _complain(f"flexspline: {STDOUT}: {error.strerror}")
             raise SystemExit(FAILED) from None
     try:

@@ -2,7 +2,9 @@
 
 A tooth's withdrawal is y = stroke − u_r of the rim + u_r of the circular spline. Beyond the working depth it
 is out, the others take its load, and they are pressed out in turn. At the torque where none is left the
-flexspline jumps to its next spaces. Teeth are loaded evenly along their faces: place by place the torque
+flexspline jumps to its next spaces. So it does where a tooth is bent by half its thickness, or pressed
+through the ground of its space: a soft circular spline gives way so, and small displacements would let teeth
+pass through each other. Teeth are loaded evenly along their faces: place by place the torque
 moves by less than WITHIN. Elastic, without friction, and nothing but rim, race, balls, teeth and
 circular spline yields: a real gear gives way before.
 """
@@ -11,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import sqrt
+from math import pi, sqrt
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -19,11 +21,16 @@ from scipy.linalg import block_diag
 from flexspline.fea.gear.equilibrium import Contacts, Equilibrium, EquilibriumError, equilibrium
 from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import NMM_PER_NM
+from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 
 WITHIN = 0.05
 """Of the torque at which no tooth is left."""
 MOST_DOUBLINGS = 14
 """Each way from the torque where the search begins: what is 16 000 times off is no gear."""
+BENT = pi / 4
+"""Modules: half a tooth's thickness at the pitch circle."""
+THROUGH = ADDENDUM + DEDENDUM
+"""Modules beyond full depth: a tooth's height."""
 OUT = 10.0
 """Strokes that a tooth which is out stands off: it meets nothing any more."""
 
@@ -77,6 +84,14 @@ class Engagement:
         """(t,) y of each tooth under load [mm]."""
         return np.asarray(self.model.mesh.stroke + self.lift @ at.forces)
 
+    def crossed(self, at: Equilibrium) -> bool:
+        """Whether a tooth is bent or pressed so far that it has left its space through another."""
+        model = self.model
+        module = 2 * model.mesh.pitch_radius / model.teeth
+        pressed = at.forces[: 2 * len(model.tooth_angles)].max() / model.teeth_per_station
+        deepest = float(self.withdrawal(at).min())
+        return bool(model.pair * pressed > BENT * module or deepest < -THROUGH * module)
+
     def held(self, torque_Nm: float, before: Held | None = None) -> Held | None:
         """With all teeth that the load leaves within the working depth; None: no tooth is left.
 
@@ -93,6 +108,8 @@ class Engagement:
             try:
                 at = equilibrium(contacts, torque_Nm * NMM_PER_NM / 2, at)
             except EquilibriumError:
+                return None
+            if self.crossed(at):
                 return None
             pressed = ~out & (self.withdrawal(at) > depth)
             if not pressed.any():

@@ -71,7 +71,7 @@ def diagnose(
     json: Json = False,
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
-    with answered(design):
+    with answered(design, "; a diagnosis begins again from its start"):
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
 
         job = begin(design, out)

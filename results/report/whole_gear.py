@@ -9,7 +9,7 @@ from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
 from flexspline.results.figures.gear import CURVE, LOADS
 from flexspline.results.numbers import grouped
-from flexspline.results.quantities import quantity
+from flexspline.results.quantities import quantity, term_names
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
     Block,
@@ -24,8 +24,8 @@ from flexspline.results.report.shown import shown
 from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 
 FIGURES = (
-    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
-    "buckling_torque_Nm", "ratcheting_torque_Nm",
+    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "lost_motion_torque_Nm",
+    "free_angle_arcsec", "teeth_in_contact", "buckling_torque_Nm", "ratcheting_torque_Nm",
 )  # fmt: skip
 """By their keys in result.json, in the order of the table."""
 
@@ -86,14 +86,9 @@ def _shares(curve: GearCurve) -> Words:
 
 def _beside(total: Backlash, curve: GearCurve) -> Table:
     """The sum's terms and what the gear has in their place."""
-    named = {
-        **{term: quantity(f"backlash_arcsec.{term}").name for term in (
-            "shaft", "flexspline", "flank_clearance", "bearing_play")},
-        TIGHT: "Gap without any clearance",
-        "total": "Together",
-    }  # fmt: skip
     rows = []
-    for term, name in named.items():
+    load = "" if curve.terms_torque_Nm is None else f" = {curve.terms_torque_Nm:g} N·m"
+    for term, name in term_names().items():
         in_sum = None if term == TIGHT else getattr(total, f"{term}_arcsec")
         own = curve.terms_arcsec[term]
         rows.append(
@@ -106,7 +101,7 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         )
     return Table(
         columns=(
-            Column(worded("Twist between −T_L and +T_L, arcsec"), grow=1), Column("Sum", "right"),
+            Column(worded(f"Twist between ± T_L{load}, arcsec"), grow=1), Column("Sum", "right"),
             Column("Whole gear", "right"), Column("Difference", "right"),
         ),
         rows=tuple(rows),

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from flexspline.results.job import answered, tell
+from flexspline.results.job import RESUMES, answered, tell
 from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
 from flexspline.results.usage import named_file
@@ -27,7 +27,7 @@ def register(app: typer.Typer) -> None:
 
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
-    with answered(file):
+    with answered(file, RESUMES):
         from flexspline.geometry.load import read_raw, tables_from
         from flexspline.pipeline.study.best import best_field
         from flexspline.pipeline.study.cluster import check_scheduler

@@ -140,6 +140,39 @@ def test_the_command_prints_the_figures_and_what_it_assumed(tmp_path: Path) -> N
     assert "assumed: wave_generator.ball_count = 23" in shown
 
 
+def test_terms_and_lost_motion_say_their_torques(curve: GearCurve, tmp_path: Path) -> None:
+    """4 % of 20 N·m is 0.8; the design's load is 0.5."""
+    record = gear_record(DESIGN, curve, Stiffnesses({}), 1.0)
+    assert record["lost_motion_torque_Nm"] == pytest.approx(0.8)
+    assert record["terms_torque_Nm"] == 0.5
+    terms = record["terms_arcsec"]
+    free = terms["flank_clearance"] + terms["bearing_play"] + terms["tight_gear"]
+    assert record["free_angle_arcsec"] == pytest.approx(free)
+    lines = table(record, tmp_path).splitlines()
+    (said,) = (i for i, line in enumerate(lines) if "Twist between ± 0.5 N·m" in line)
+    shown = [line.split()[-2:] for line in lines[said + 1 : said + 7]]
+    assert [unit for _, unit in shown] == ["arcsec"] * 6
+    # each is rounded to 0.05
+    assert sum(float(v) for v, _ in shown[:-1]) == pytest.approx(float(shown[-1][0]), abs=0.3)
+    assert any("Free angle" in line for line in lines)
+    assert any("the lost motion at 0.8 N·m" in note for note in curve.notes)
+
+
+def test_terms_at_the_torque_of_the_lost_motion_need_no_word() -> None:
+    same = flexspline.gear(DESIGN.changed({"load.torque_Nm": 0.8}))
+    assert not any("the lost motion at" in note for note in same.notes)
+    # and add up to it: both are the twist between ± 0.8 N·m; the curve's chord begins elsewhere by rounding
+    assert same.terms_arcsec["total"] == pytest.approx(same.lost_motion_arcsec, rel=1e-6)
+
+
+def test_stiffness_is_printed_to_four_digits_and_kept_whole(
+    curve: GearCurve, tmp_path: Path
+) -> None:
+    strong = {"K1_Nm_per_rad": 123456.7, "design": "a gear"}
+    assert "123\u202f500 N·m/rad" in table(strong, tmp_path)
+    assert gear_record(DESIGN, curve, Stiffnesses({}), 1.0)["K3_Nm_per_rad"] == curve.K3_Nm_per_rad
+
+
 def test_a_wrong_file_is_refused_with_status_2(tmp_path: Path) -> None:
     path = tmp_path / "cup.toml"
     text = design_text(DESIGN).replace("[load]", "[wave_generator]\nball_count = 2\n[load]")

@@ -85,3 +85,11 @@ def test_what_lets_go_is_beyond_and_what_holds_below(model: GearModel) -> None:
     assert limit is not None
     assert engagement.held(limit * (1 - 2 * WITHIN)) is not None
     assert engagement.held(limit * (1 + 2 * WITHIN)) is None
+
+
+def test_teeth_do_not_pass_through_a_soft_circular_spline() -> None:
+    """Of 1e-3 GPa: its ring would move by millimetres under a torque that a steel one carries, and a tooth is
+    0.45 mm high."""
+    rubber = {"name": "rubber", "youngs_modulus_GPa": 1e-3, "poissons_ratio": 0.3}
+    soft = DESIGN.changed({"material.circular_spline": rubber})
+    assert Engagement(gear_model(soft, soft.part("flexspline"))).held(RATED) is None
