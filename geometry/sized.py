@@ -12,11 +12,12 @@ import tomllib
 from typing import Any
 
 from flexspline.geometry.basic_rack import DEDENDUM
+from flexspline.geometry.bounds import span
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.ranges import Range
-from flexspline.geometry.rated import RATED_WHY, rated_in_proportion
+from flexspline.geometry.rated import RATED_SHARES, RATED_WHY, rated_in_proportion
 from flexspline.geometry.schema import Location
 from flexspline.geometry.template import MODELS, Table, first_values, text_of
 from flexspline.geometry.wave_generator import flexible_bearing
@@ -37,17 +38,21 @@ DIGITS = 4
 LOAD_SHARE = 0.04
 """Of rated torque: where makers measure lost motion."""
 
+RATED: Location = ("gear", "rated_torque_Nm")
+
 Why = dict[Location, str]
 
 
-def sized_template(kind: str, size: float, ratio: int) -> str:
+def sized_template(kind: str, size: float, ratio: int, rated_Nm: float | None = None) -> str:
     """Text of a design that loads as it stands; every assumed value says where it comes from.
+
+    `rated_Nm`: rated torque [N·m] of a catalogue; without it in proportion.
 
     Raises
     ------
-    DesignError : no such kind, size or ratio.
+    DesignError : no such kind, size or ratio; a rated torque that no gear of that size has.
     """
-    values, why = sized_values(kind, size, ratio)
+    values, why = sized_values(kind, size, ratio, rated_Nm)
     title = (
         f"# A strain wave gear with a {kind}, size {size:g}, ratio {ratio}. Catalogues hide inside sizes:\n"
         f'# what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
@@ -57,10 +62,13 @@ def sized_template(kind: str, size: float, ratio: int) -> str:
             f"\n# Below a ratio of {FAR_BENT} the stroke bends these thicknesses far: `flexspline run` shows "
             "the stress.\n# Thinner ones have less of it; makers' are not published."
         )
-    return text_of(title, values, kind, why)
+    stated = frozenset() if rated_Nm is None else frozenset({RATED})
+    return text_of(title, values, kind, why, stated)
 
 
-def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
+def sized_values(
+    kind: str, size: float, ratio: int, rated_Nm: float | None = None
+) -> tuple[Table, Why]:
     """The design file's tables, and where each assumed value comes from; errors as `sized_template`."""
     for option, value, allowed in (("--size", size, SIZES), ("--ratio", ratio, RATIOS)):
         if value not in allowed:
@@ -91,9 +99,18 @@ def sized_values(kind: str, size: float, ratio: int) -> tuple[Table, Why]:
             why[(place, key)] = (
                 f"{first[place][key] / first['gear']['module_mm'] / 1e3:.3g} modules"
             )
-    rated = rated_in_proportion(pitch)
-    gear["rated_torque_Nm"] = _rounded(rated, 3)
-    why[("gear", "rated_torque_Nm")] = RATED_WHY
+    usual = rated_in_proportion(pitch)
+    # as the design file's check takes it, from a rounded module
+    low, high = (share * rated_in_proportion(module * ratio) for share in RATED_SHARES)
+    if rated_Nm is None:
+        rated = usual
+        gear["rated_torque_Nm"] = _rounded(rated, 3)
+        why[RATED] = RATED_WHY
+    elif low <= rated_Nm <= high:
+        gear["rated_torque_Nm"] = rated = rated_Nm
+    else:
+        reason = f"must be {span(low, high, 4)} N·m: a gear of this size has some {usual:.3g}"
+        raise DesignError("--rated", rated_Nm, reason)
     values["load"]["torque_Nm"] = _rounded(LOAD_SHARE * rated, 3)
     why[("load", "torque_Nm")] = (
         f"{LOAD_SHARE:.0%} of rated torque, where makers measure lost motion"

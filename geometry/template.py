@@ -123,9 +123,18 @@ def template(kind: str = "cup") -> str:
     return text_of(title, first_values(kind), kind, {})
 
 
-def text_of(title: str, values: Table, kind: str, why: Mapping[Location, str]) -> str:
-    """Text of a design file with these tables, every key with its meaning and why it has its value."""
-    lines = [title, *_lines((), values, kind, OPTIONAL, optional=False, why=why)]
+def text_of(
+    title: str,
+    values: Table,
+    kind: str,
+    why: Mapping[Location, str],
+    stated: frozenset[Location] = frozenset(),
+) -> str:
+    """Text of a design file with these tables, every key with its meaning and why it has its value.
+
+    `stated`: optional keys that are no comment.
+    """
+    lines = [title, *_lines((), values, kind, OPTIONAL - stated, optional=False, why=why)]
     return "\n".join(lines) + "\n"
 
 

@@ -234,6 +234,14 @@ def init(
         int | None,
         typer.Option(metavar="I", parser=whole_number, help="Reduction, with a size; default 100."),
     ] = None,
+    rated: Annotated[
+        float | None,
+        typer.Option(
+            metavar="T",
+            parser=number,
+            help="Rated torque in N·m, with a size; default in proportion.",
+        ),
+    ] = None,
 ) -> None:
     """Print a commented design file to start from."""
     with answered():
@@ -241,12 +249,13 @@ def init(
         from flexspline.geometry.sized import sized_template
         from flexspline.geometry.template import template
 
-        if size is None and ratio is not None:
-            raise DesignError("--ratio", ratio, "needs a --size, such as 25")
+        for option, value in (("--ratio", ratio), ("--rated", rated)):
+            if size is None and value is not None:
+                raise DesignError(option, value, "needs a --size, such as 25")
         text = (
             template(kind)
             if size is None
-            else sized_template(kind, size, 100 if ratio is None else ratio)
+            else sized_template(kind, size, 100 if ratio is None else ratio, rated)
         )
         show(text.removesuffix("\n"))
 

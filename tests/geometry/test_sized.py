@@ -55,3 +55,20 @@ def test_every_assumed_value_says_so_where_it_stands() -> None:
 def test_what_no_catalogue_has_is_refused(kind: str, size: float, ratio: int, says: str) -> None:
     with pytest.raises(DesignError, match=re.escape(says)):
         sized_template(kind, size, ratio)
+
+
+def test_a_stated_rated_torque_is_the_design_s() -> None:
+    """Size 25, ratio 100 of TPI 275: 87 N·m; 4 % of it is 3.48."""
+    design = design_from(tomllib.loads(sized_template("cup", 25, 100, 87.0)))
+    assert design.gear.rated_torque_Nm == 87.0
+    assert design.load.torque_Nm == pytest.approx(3.48)
+    assert design_from(tomllib.loads(sized_template("cup", 25, 100))).gear.rated_torque_Nm is None
+
+
+def test_the_range_of_rated_torque_that_is_told_works() -> None:
+    for wrong, end in ((1e-6, 0), (1e9, 1), (float("nan"), 0)):
+        with pytest.raises(DesignError, match=r"--rated = .* must be from .* N·m") as fault:
+            sized_template("cup", 17, 30, wrong)
+        told = re.findall(r"from (\S+) to (\S+) N·m", str(fault.value))[0][end]
+        design = design_from(tomllib.loads(sized_template("cup", 17, 30, float(told))))
+        assert design.gear.rated_torque_Nm == float(told)

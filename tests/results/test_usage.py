@@ -16,6 +16,7 @@ WRONG = {
     "--foo": "--foo",
     "init cup --size abc": '"abc"',
     "init cup --size 25 --ratio 1.5": '"1.5"',
+    "init cup --size 25 --rated 10Nm": '"10Nm"',
     "studio --port eighty": '"eighty"',
     "export cup.toml --format": "--format",
     "backlash cup.toml more.toml": "more.toml",
