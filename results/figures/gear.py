@@ -7,11 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.gear import GearCurve
+from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
 
 CURVE, LOADS = "gear_torque_angle", "gear_loads"
 """Names of the pictures."""
+HEADROOM = 0.22
+"""Of the axes, for the words over the tallest bar."""
 
 
 def write_gear_angle(path: Path, curve: GearCurve) -> None:
@@ -51,15 +54,27 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
         figure = new_figure(8.0, 5.2)
         teeth, balls = np.array(curve.tooth_angle_deg), ball_angle
         forces = (
-            ("Force of a pair of teeth in N", teeth, np.array(curve.tooth_force_N), 1.2),
-            ("Force of a ball in N", balls, np.array(curve.ball_force_N), 5.0),
+            ("pair of teeth", teeth, np.array(curve.tooth_force_N), 1.2),
+            ("ball", balls, np.array(curve.ball_force_N), 5.0),
         )
-        for i, (title, angle, force, width) in enumerate(forces):
+        for i, (what, angle, force, width) in enumerate(forces):
             axes = figure.add_axes((0.11, 0.59 - 0.47 * i, 0.86, 0.32))
             edge = angle == -90  # the same ball stands at 90°
             angle, force = np.append(angle, -angle[edge]), np.append(force, force[edge])
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
-            axes.set_title(title)
+            axes.set_title(f"Force of a {what} in N")
+            most = int(np.abs(force).argmax())
+            words = f"largest of a {what}: {force[most]:.3g} N at {grouped(angle[most], 0)}°"
+            # left of a bar on the right, so that the words stay within the axes
+            side, shift = ("right", -6) if angle[most] > 0 else ("left", 6)
+            axes.annotate(
+                words,
+                (angle[most], force[most]),
+                xytext=(shift, 4),
+                textcoords="offset points",
+                ha=side,
+            )
+            axes.margins(y=HEADROOM)
             axes.set_xlim(-93, 93)
             axes.set_xticks(range(-90, 91, 30))
             axes.grid(True, axis="y")

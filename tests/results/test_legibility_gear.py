@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -26,3 +27,17 @@ def test_gear_charts(tmp_path: Path, name: str, write) -> None:
         write(tmp_path / "a.png", CURVES[name])
     (figure,) = found
     assert faults(figure) == []
+
+
+def test_the_tallest_bars_are_named_with_force_and_place(tmp_path: Path) -> None:
+    curve = replace(
+        CURVES["usual"],
+        tooth_angle_deg=(-6.0, 0.0, 6.0),
+        tooth_force_N=(1.0, 2.0, 41.0),
+        ball_angle_deg=(0.0, 90.0, 150.0),  # 150° is −30° of the other lobe
+        ball_force_N=(10.0, 5.0, 77.0),
+    )
+    with drawn_figures() as found:
+        write_gear_loads(tmp_path / "a.png", curve)
+    said = [text.get_text() for axes in found[0].axes for text in axes.texts]
+    assert said == ["largest of a pair of teeth: 41 N at 6°", "largest of a ball: 77 N at −30°"]
