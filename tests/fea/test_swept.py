@@ -372,6 +372,7 @@ def test_a_keyed_shaft_is_as_stiff_as_on_the_meshers_mesh() -> None:
     assert (b - a) / b < 0.01  # and the swept one says something
 
 
+@pytest.mark.long  # by default between two theorems: tests/verification/test_enclosed_holes.py
 def test_six_holes_are_as_stiff_as_on_the_meshers_mesh() -> None:
     design = design_of("xb1-40.toml", "flexspline", {})
     material = Elastic.of(design.material.flexspline)

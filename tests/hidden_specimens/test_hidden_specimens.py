@@ -107,7 +107,7 @@ def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:
     # 1 % noise on eight stiffnesses: a tenth is the most that sizes may be off in the median
     assert np.median(relative) < 0.1
     # 68 and 95 % in expectation; ± 12 and 7 points are two deviations of a share of 60 answers, and less
-    # than two of the 39 on fixed seeds
+    # than two of the 27 on fixed seeds
     assert 0.56 <= one <= 0.90
     assert two >= 0.88
 
@@ -116,8 +116,8 @@ def test_right_cause_first(suite_cache: Path, capsys: pytest.CaptureFixture) -> 
     """What FE says of the cups is in the suite's cache; of the hats only the wall is looked at."""
     hats = ("clean", "softer", "wall")
     sets = [
-        Asked("xb1-40", AS_IN_THE_EXAMPLE, 7),
-        Asked("hat-25", 3, 2, hats, (f"flexspline.{KEYS['wall']}",)),
+        Asked("xb1-40", AS_IN_THE_EXAMPLE, 5),
+        Asked("hat-25", 3, 1, hats, (f"flexspline.{KEYS['wall']}",)),
     ]
     judged(list(answers(suite_cache, sets, np.random.default_rng(20))), capsys)
 

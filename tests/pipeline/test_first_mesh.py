@@ -61,9 +61,19 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
     monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
     design = DESIGN.changed({"solver.tolerance_pct": 0.4})
     model = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("shaft")
+    by_mesher: list[MeshSpec] = []
+
+    def stands_in(surface: object, spec: MeshSpec) -> TetMesh:
+        by_mesher.append(spec)
+        mesh = part_meshes.swept_mesh(model.part, model.sector.degrees, spec)
+        assert mesh is not None
+        return mesh
+
+    monkeypatch.setattr(part_meshes, "mesh_surface", stands_in)
     found = part_stiffness.twisted_part(model)
     assert len(set(first)) > 1  # a finer sweep was asked for
     assert found.meshed.kind == kind
+    assert (first[0] in by_mesher) is (kind == "tetwild")  # the first mesh too
 
 
 def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
