@@ -56,7 +56,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
     A page is written by the process that ran the tests: one, whatever `-n` says. Three workers keep two
     cores busy, as tests of a server or a page wait for it. They take a thread each: those of the linear
-    algebra libraries would wait for each other in a loop that keeps a core busy. A run of the example cup on a loaded machine, processor time: 52 s with two, 43 s with one.
+    algebra libraries would wait for each other in a loop that keeps a core busy. A run of the example cup on
+    a loaded machine, processor time: 52 s with two, 43 s with one.
     """
     if not config.pluginmanager.hasplugin("xdist") or hasattr(config, "workerinput"):
         return

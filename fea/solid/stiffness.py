@@ -18,7 +18,7 @@ import numpy as np
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
-from flexspline.fea.scaled_estimate import ScaledEstimate
+from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
 from flexspline.fea.solid.cases import Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
@@ -126,7 +126,7 @@ class _SolidTorsion:
             return None
         made = self._by_error(mesh, self._errors)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            self.estimate.believed = EFFICIENCY_BY_ERROR
+            self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, FALLS
             return made
         now_s = self._deadline.elapsed()
         if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:

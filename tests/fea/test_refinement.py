@@ -9,7 +9,7 @@ import pytest
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine, refinements
-from flexspline.fea.scaled_estimate import ScaledEstimate
+from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.types import MeshLevel
 from flexspline.geometry.errors import ComputationError
@@ -122,3 +122,18 @@ def test_a_scale_beyond_belief_is_not_taken(K: float, estimate: float, expected:
     found.add(level(110.0), 4.0 / 110.0)
     found.add(level(K), estimate / K)
     assert found.scale == expected
+
+
+@pytest.mark.parametrize("q", [0.5, 0.7, 0.85])
+def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: float) -> None:
+    """K falls by q each time and the estimate hardly at all, as on a shaft whose sharp edges took every
+    element: from the third mesh on the bounds, K less twice its error to K, hold the limit."""
+    limit, first = 5140.0, 60.0
+    found = ScaledEstimate(usual=2.0, believed=(2.5, 4.2), falls=FALLS)
+    for n in range(5):
+        found.add(level(limit + first * q**n), 0.0002 * 0.95**n)
+        if n >= 2:
+            assert found.K_Nm_per_rad * (1 - 2 * found.relative) <= limit
+    alone = ScaledEstimate(2.0, (2.5, 4.2), levels=found.levels, estimates=found.estimates)
+    # what the estimate alone would claim is less than what K has still to fall where it falls slowly
+    assert (alone.K_Nm_per_rad * (1 - 2 * alone.relative) > limit) is (q > 0.5)
