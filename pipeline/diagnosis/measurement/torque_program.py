@@ -190,14 +190,29 @@ def _joined(
 def _stands(
     torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int, noise_Nm: float, fast: float
 ) -> bool:
-    """Whether a straight line through rows i to j − 1 stands still, and surely does not move.
+    """Whether a straight line through rows i to j − 1 stands still, and surely not as torque moves beside.
 
     A few rows of a slow cycle, of a record with quick ones, may stand still by noise alone.
     """
-    torque_Nm, away = torque_Nm[i:j], time_s[i:j] - time_s[i:j].mean()
+    torque, away = torque_Nm[i:j], time_s[i:j] - time_s[i:j].mean()
     square = max(float((away**2).sum()), 1e-300)
-    rate, doubt = abs(float(away @ torque_Nm)) / square, noise_Nm / square**0.5
-    return rate - doubt < STILL * fast and rate + SURE_SIGMAS * doubt < MOVING * fast
+    rate, doubt = abs(float(away @ torque)) / square, noise_Nm / square**0.5
+    beside = min(fast, _rate_beside(torque_Nm, time_s, i, j))
+    return rate - doubt < STILL * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
+
+
+def _rate_beside(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int) -> float:
+    """Torque rate before rows i to j − 1 or after them, the slower, in as much time as they last.
+
+    That of the ramp from their level on with the same rms; a side without rows counts for nothing.
+    """
+    level, lasts = float(torque_Nm[i:j].mean()), float(time_s[j - 1] - time_s[i])
+    first = int(np.searchsorted(time_s, time_s[i] - lasts))
+    end = int(np.searchsorted(time_s, time_s[j - 1] + lasts, side="right"))
+    away = [
+        float(np.mean((x - level) ** 2)) for x in (torque_Nm[first:i], torque_Nm[j:end]) if len(x)
+    ]
+    return (3 * min(away)) ** 0.5 / max(lasts, 1e-300) if away else np.inf
 
 
 def _range_sigmas(count: int) -> float:

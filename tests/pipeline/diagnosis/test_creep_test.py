@@ -51,6 +51,25 @@ def test_steps_of_a_staircase_stay_apart() -> None:
     assert len(holds(History(torque, zero, zero, np.arange(len(torque), dtype=float)))) == 26
 
 
+@pytest.mark.parametrize("slower", [3.0, 5.0, 10.0])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_slow_ramp_is_no_holds(slower: float, seed: int) -> None:
+    """A trapezoid, then a slower one, whose ramps move by one to four times the noise between two rows."""
+    step, quick = 0.1, PEAK / 2.5
+    lasts = np.array([2.5, 10.0, 5.0, 10.0, 2.5])
+    corners = np.cumsum([0.0, *lasts, *slower * lasts])
+    levels = PEAK * np.array([0, 1, 1, -1, -1, 0, 1, 1, -1, -1, 0])
+    time = np.arange(0, corners[-1], step)
+    noise = 0.09 * quick * step * np.random.default_rng(seed).normal(size=len(time))
+    zero = np.zeros(len(time), int)
+    found = holds(History(np.interp(time, corners, levels) + noise, zero, zero, time))
+    lasting = [float(np.ptp(time[rows])) for rows in found]
+    # a few rows at either end lie in a ramp's first or last, which noise does not tell from the hold
+    assert min(lasting) == pytest.approx(10.0, abs=1.0)
+    if slower < 4:  # slower ramps do not stand out beside a hold
+        assert lasting == pytest.approx([10.0, 10.0, 10.0 * slower, 10.0 * slower], abs=1.0)
+
+
 def diagnosed(seed: int, kernel: Kernel, back: float, folder: Path) -> Diagnosis:
     rng = np.random.default_rng([4711, seed])
     rig = draw_rig(rng)
