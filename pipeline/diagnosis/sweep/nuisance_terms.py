@@ -13,6 +13,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     changing_stiffness,
     over_cycle,
@@ -24,6 +25,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
 )
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.rig_nuisance import giving_way, ringing
+from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     Made,
     leading,
@@ -54,43 +56,31 @@ class NuisanceTerm:
 class _Kind:
     """How nuisance terms of one kind are made, and what the race must know of them.
 
-    `less_linear`: whether the columns come less what zero, compliance and gap can be.
+    `less`: of what the columns come less, as calibration and causes can be that; None: as they are.
     """
 
     make: Callable[[Rig], Made]
-    less_linear: bool = False
+    less: Callable[[Rig], np.ndarray] | None = None
     positive: bool = False
     against: frozenset[str] = frozenset()
 
 
-KINDS = (
-    _Kind(over_torque, less_linear=True),
-    _Kind(softening, positive=True, against=frozenset({"stiffness_hardening"})),
-    _Kind(over_angle, less_linear=True),
-    _Kind(over_direction, less_linear=True),
-    _Kind(leading, positive=True, against=frozenset({FRICTION, "rate_dependence"})),
-    _Kind(over_time, less_linear=True, against=frozenset({"sensor_drift"})),
-    _Kind(changing_stiffness),
-    _Kind(waves_and_steps, less_linear=True),
-    _Kind(over_cycle),
-    _Kind(over_temperature),
-    _Kind(over_position),
-    _Kind(over_unit),
-    _Kind(giving_way),
-    _Kind(ringing, less_linear=True),
-)
-
-
 def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
-    """All flexible terms that a rig's record has the channels for; columns have unit rms."""
-    linear = _linear(rig)
-    inverse = np.linalg.pinv(linear)
+    """All flexible terms that a rig's record has the channels for.
+
+    Columns have unit rms in the rows that count.
+    """
+    counted = ~settling(rig.history)
+    taken = {kind.less: kind.less(rig) for kind in KINDS if kind.less is not None}
+    inverse = {less: np.linalg.pinv(columns[counted]) for less, columns in taken.items()}
     found = []
     for kind in KINDS:
         for channel, what, columns in kind.make(rig):
-            rest = columns - linear @ (inverse @ columns) if kind.less_linear else columns
-            was = np.sqrt(((columns - columns.mean(axis=0)) ** 2).mean(axis=0))
-            rms = np.sqrt((rest**2).mean(axis=0))
+            rest = columns
+            if kind.less is not None:
+                rest = columns - taken[kind.less] @ (inverse[kind.less] @ columns[counted])
+            was = columns[counted].std(axis=0)
+            rms = np.sqrt((rest[counted] ** 2).mean(axis=0))
             good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
                 found.append(
@@ -101,11 +91,38 @@ def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
     return found
 
 
-def _linear(rig: Rig) -> np.ndarray:
-    """(n, k) zero, torque, side of the gap, and torque through two lags.
+def _of_torque(rig: Rig) -> np.ndarray:
+    """(n, k) zero of each unit, torque without its noise, side of the gap."""
+    h = rig.history
+    zeros = h.unit[:, None] == np.arange(len(h.unit_slices))
+    return np.column_stack([zeros, less_jitter(h).torque_Nm, h.sign])
 
-    A wave in time with the torque's own period is the torque without its noise, and would win by that;
-    a wave in quadrature with it, beside a lag, is that too.
+
+def _of_lags(rig: Rig) -> np.ndarray:
+    """(n, k) zero of each unit, torque, side of the gap, and torque through two lags.
+
+    A wave in time with the torque's own period is the torque without its noise, and would win by that; a
+    wave in quadrature with it, beside a lag, is that too. So would a step where a unit's rows begin to count
+    be: beside the unit's zero nothing is left of it but the lags that it is less.
     """
     h = rig.history
-    return np.column_stack([np.ones(len(h)), h.torque_Nm, h.sign, lagging_torque(h)])
+    zeros = h.unit[:, None] == np.arange(len(h.unit_slices))
+    return np.column_stack([zeros, h.torque_Nm, h.sign, lagging_torque(h)])
+
+
+KINDS = (
+    _Kind(over_torque, less=_of_torque),
+    _Kind(softening, positive=True, against=frozenset({"stiffness_hardening"})),
+    _Kind(over_angle, less=_of_torque),
+    _Kind(over_direction, less=_of_lags),
+    _Kind(leading, positive=True, against=frozenset({FRICTION, "rate_dependence"})),
+    _Kind(over_time, less=_of_lags, against=frozenset({"sensor_drift"})),
+    _Kind(changing_stiffness),
+    _Kind(waves_and_steps, less=_of_lags),
+    _Kind(over_cycle),
+    _Kind(over_temperature),
+    _Kind(over_position),
+    _Kind(over_unit),
+    _Kind(giving_way),
+    _Kind(ringing, less=_of_lags),
+)
