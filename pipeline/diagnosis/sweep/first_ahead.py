@@ -22,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
     nats_over,
     step_misfit,
+    stiffness_of_positions,
     zeros_of_cycles,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
@@ -30,6 +31,8 @@ LARGEST = 0.45
 """Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
 COARSE, FINE = 16, 9
 """Places tried: 2.8 % of the largest torque apart, less than the band's whole width (7 %), then between."""
+BOTH_NATS = 6.0
+"""Of the friction alone over none, from which a shifted reading beside it is tried: each hides the other."""
 OFFSETS = 33
 """Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
 OFFSET_NATS = 3.0
@@ -52,10 +55,10 @@ def first_ahead(
 ) -> AheadGuess | None:
     """The guess; None where there is none to see.
 
-    The angle is fitted by smooth functions of torque, friction elements, lags, which open the loop most where
-    the gap is crossed, and one step of free height, crossed where the torque beyond a play operator changes
-    sign; the play's width is the guess, if it is clearly better than none, and than a shifted torque reading;
-    or both, if they are clearly better than either.
+    The angle is fitted by smooth functions of torque, a stiffness of each position, friction elements, lags,
+    which open the loop most where the gap is crossed, and one step of free height, crossed where the torque
+    beyond a play operator changes sign; the play's width is the guess, if it is clearly better than none, and
+    than a shifted torque reading; or both, if they are clearly better than either.
     """
     largest = float(np.abs(history.torque_Nm).max())
     if not both_ways(history.torque_Nm):
@@ -67,9 +70,10 @@ def first_ahead(
     states = stops(history, torque, tried, np.zeros(len(tried)))
     beside, carried = states[:, : len(BESIDE)] / tried[: len(BESIDE)], states[:, len(BESIDE) :]
     direction = direction_of_loading(history)
+    positions = stiffness_of_positions(history)
     zeros, lagging = zeros_of_cycles(history), lagging_torque(history) / largest
     smooth = np.column_stack(
-        [*zeros, x, np.abs(x), x * np.abs(x), x**3, direction, beside, lagging]
+        [*zeros, positions, x, np.abs(x), x * np.abs(x), x**3, direction, beside, lagging]
     )
 
     def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
@@ -93,7 +97,7 @@ def first_ahead(
 
     friction, least = finer(best, table[best], 0.0)
     nats = nats_over(misfit(0.0, -np.inf), least, rows)
-    if nats < FIRST_NATS:
+    if nats < BOTH_NATS:
         return None
 
     def placed(carried_Nm: np.ndarray | float) -> tuple[int, float]:
@@ -120,5 +124,7 @@ def first_ahead(
         friction, joint = finer(k, joint, offset)
         nats = nats_over(min(least, of_offset), joint, rows)
         return AheadGuess(float(friction), nats, offset)
-    nats = min(nats, nats_over(of_offset, least, rows))
-    return AheadGuess(float(friction), nats) if nats >= OFFSET_NATS else None
+    over_offset = nats_over(of_offset, least, rows)
+    if nats < FIRST_NATS or over_offset < OFFSET_NATS:
+        return None
+    return AheadGuess(float(friction), min(nats, over_offset))

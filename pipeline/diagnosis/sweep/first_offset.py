@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     nats_over,
     step_misfit,
+    stiffness_of_positions,
     zeros_of_cycles,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
@@ -28,7 +29,7 @@ def first_offset(
 ) -> float:
     """The guess [N·m]; 0 where there is none to see.
 
-    The angle is fitted by smooth functions of torque and direction and one
+    The angle is fitted by smooth functions of torque and direction, a stiffness of each position's and one
     step of free height; the step's place is the guess, if it is clearly better there than at zero.
     """
     largest = float(np.abs(history.torque_Nm).max())
@@ -37,7 +38,10 @@ def first_offset(
     x = history.torque_Nm / largest
     direction = direction_of_loading(history)
     zeros = zeros_of_cycles(history)
-    smooth = np.column_stack([*zeros, x, np.abs(x), x**2, x**3, direction, direction * x**2])
+    positions = stiffness_of_positions(history)
+    smooth = np.column_stack(
+        [*zeros, positions, x, np.abs(x), x**2, x**3, direction, direction * x**2]
+    )
     places = np.linspace(-REACH, REACH, FIRST_STEPS) * largest
 
     def misfit(place: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmonic
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -30,6 +31,18 @@ def zeros_of_cycles(history: History) -> list[np.ndarray]:
     if len(np.unique(key)) > MOST_ZEROS:
         key = history.unit
     return [(key == k).astype(float) for k in np.unique(key)]
+
+
+def stiffness_of_positions(history: History) -> np.ndarray:
+    """(n, 6) torque times the harmonics 1, 2 and 4 of the wave generator's angle, where it is recorded.
+
+    A stiffness that differs from cycle to cycle would else hide the step.
+    """
+    if history.input_angle_deg is None:
+        return np.empty((len(history), 0))
+    shape = dict(zip(KEYS, map(float, HARMONICS[-1]), strict=True))
+    largest = float(np.abs(history.torque_Nm).max())
+    return harmonic(shape, history) * (history.torque_Nm / largest)[:, None]
 
 
 def step_misfit(

@@ -1,0 +1,48 @@
+"""Where the gap is crossed, before anything is fitted, whatever else a record holds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from histories import LARGEST, sweep
+
+from flexspline.pipeline.diagnosis.causes.operators import stops
+from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE, FINE, first_ahead
+from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST as MOST_FRICTION
+from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_STEPS, first_offset
+from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH
+
+WHOLE = sweep(cycles=7, rows=200, hold=0)
+HISTORY = replace(WHOLE, torque_Nm=WHOLE.torque_Nm * (1 - 0.3 * (WHOLE.cycle % 3)))
+"""Each cycle at another position, at three amplitudes."""
+GAP, BAND = 60.0, 0.05 * LARGEST
+SOFTER = 0.3
+"""Of the compliance, that swings twice in a turn: 240 arcsec at the largest torque, four times the gap."""
+
+
+def angle(torque_Nm: np.ndarray) -> np.ndarray:
+    """Of a torque at the teeth, with noise of 0.5 arcsec."""
+    assert HISTORY.input_angle_deg is not None
+    compliance = 400.0 * (1 + SOFTER * np.cos(np.radians(2 * HISTORY.input_angle_deg)))
+    noise = np.random.default_rng(3).normal(0, 0.5, len(torque_Nm))
+    return compliance * torque_Nm + GAP / 2 * np.sign(torque_Nm) + noise
+
+
+@pytest.mark.parametrize("offset", [-0.2, 0.16])
+def test_a_shifted_reading_is_seen_though_stiffness_differs_between_cycles(offset: float) -> None:
+    read = replace(HISTORY, torque_Nm=HISTORY.torque_Nm + offset * LARGEST)
+    found = first_offset(read, angle(HISTORY.torque_Nm), GAP, BAND)
+    spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
+    # places tried are so far apart, and rows as far as 2 N·m in 50
+    assert found == pytest.approx(offset * LARGEST, abs=spacing + LARGEST / 50)
+
+
+def test_friction_ahead_is_seen_though_stiffness_differs_between_cycles() -> None:
+    friction = 0.15 * LARGEST
+    carried = stops(HISTORY, HISTORY.torque_Nm, np.array([friction]), np.zeros(1))[:, 0]
+    found = first_ahead(HISTORY, angle(HISTORY.torque_Nm - carried), GAP, BAND)
+    assert found is not None
+    fine = MOST_FRICTION * LARGEST / COARSE / (FINE + 1)
+    assert found.friction_Nm == pytest.approx(friction, abs=fine + LARGEST / 50)
