@@ -9,7 +9,12 @@ from typing import Literal
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes import known_causes
+
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
+
+SIZE_KNOWN = 2.0
+"""Standard deviations from no effect: a size nearer is compatible with none."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +39,9 @@ class NamedCause:
 
     @property
     def deviations(self) -> float:
-        """How many standard deviations the size is away from no effect; a hardening of 1 is none."""
-        none = 1.0 if self.id == "stiffness_hardening" else 0.0
-        off = abs(self.magnitude - none)
+        """How many standard deviations the size is away from no effect."""
+        cause = known_causes().get(self.id)
+        off = abs(self.magnitude - (cause.none if cause else 0.0))
         return off / self.magnitude_std if self.magnitude_std > 0 else inf
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, log10
 
 from flexspline.pipeline.diagnosis.causes import known_causes
-from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
+from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
 from flexspline.results.numbers import grouped
 
 CHANNELS = {
@@ -39,8 +39,6 @@ VERDICTS = {
     "insufficient": "Too little data for a verdict",
 }
 """Headings. What lies far from the simulation in size alone is consistent too: the summary says it."""
-SIZE_KNOWN = 2.0
-"""Deviations from no effect: below, that something is there may be sure, but how much is not."""
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
@@ -59,6 +57,7 @@ def sure_words(cause: NamedCause) -> str:
     """How sure a cause is, in words, from its evidence; rivals lower it."""
     if cause.alternatives:
         return "not decided"
+    # that something is there may be sure, but how much is not
     words = next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
     return words if cause.deviations >= SIZE_KNOWN else f"{words}, its size is not"
 

@@ -84,6 +84,11 @@ class Cause(ABC):
     """What a person reads: a noun phrase."""
     unit: ClassVar[str]
     """Of the magnitude."""
+    none: ClassVar[float] = 0.0
+    """The magnitude of no effect."""
+    passes_none: ClassVar[bool] = True
+    """Whether the magnitude passes `none` where the effect turns round, so that its deviation tells it from
+    none; the amplitude of a wave is above none whatever its phase."""
     positive: ClassVar[bool] = False
     """Whether physics forbids negative amplitudes."""
     exact: ClassVar[bool] = False
@@ -127,6 +132,10 @@ class Cause(ABC):
     def stands_alone(self, shape: Shape) -> bool:
         """Whether an element of this shape is all there is of the cause: no second one stands beside it."""
         return False
+
+    def plausible(self, elements: Sequence[Element]) -> bool:
+        """Whether a real gear may have these: asked of what would stand in for another cause."""
+        return True
 
     def possible(self, shape: Shape) -> bool:
         """Whether refining may go as far as this shape."""

@@ -23,6 +23,7 @@ class PeriodicShapes:
     """A cause whose shapes are sets of harmonics."""
 
     exact: ClassVar[bool] = True
+    passes_none: ClassVar[bool] = False
     shape_doubt: ClassVar[float] = 0.005
     """Of 11 made-up records one and two deviations cover 82 and 100 %; without it, as many."""
     vary: ClassVar[str] = "input_angle_deg"

@@ -46,6 +46,7 @@ class StiffnessHardening(Cause):
     id = "stiffness_hardening"
     title = "stiffness that grows with load (soft wind-up)"
     unit = "1"
+    none = 1.0
     shape_doubt = 0.016
     """With the usual doubt one and two deviations cover 59 and 76 % of 17 made-up records, mostly pairs:
     beside other causes a law that bends below a tenth of the torque is missed by up to a fifth."""

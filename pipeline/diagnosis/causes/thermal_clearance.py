@@ -27,6 +27,10 @@ SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
 a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
 steady air: what it keeps of the last test or of the night."""
 
+MOST_PER_K = 10.0
+"""arcsec/K that a gap may change by: 2·tan α·Δα rad/K, Δα the difference of two metals' expansion, at most
+that of aluminium, 24e-6 /K, and α the flank's angle, at most 45°."""
+
 
 class ThermalClearance(Cause):
     """Gap k·(ϑ − 20 °C) with k [arcsec/K]; ϑ may lag the sensor, in one or two stages, and start off it."""
@@ -59,6 +63,11 @@ class ThermalClearance(Cause):
     def stands_alone(self, shape: Shape) -> bool:
         """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
         return MOST_OFF in shape
+
+    def plausible(self, elements: Sequence[Element]) -> bool:
+        """A gap that grows for want of a temperature that no sensor saw must be one that metals can make."""
+        unseen = [e for e in elements if MOST_OFF in e.shape]
+        return all(abs(e.amplitudes[0]) <= MOST_PER_K for e in unseen)
 
     def possible(self, shape: Shape) -> bool:
         """A lag as long as the record makes any temperature a constant, which is another cause."""

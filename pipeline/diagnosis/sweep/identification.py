@@ -15,10 +15,11 @@ from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
+from flexspline.pipeline.diagnosis.sweep.size_doubt import SizeDoubt
 
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
-"""A cause must raise the score by this over the best set without it: one of several by more, as the
-others' misfit may feed it."""
+"""A cause must raise the score by this over the best set without it: beside others by more, as their misfit
+may feed it, unless they have but one shape."""
 STAND_IN_NATS = 3.0
 """The same over a set with a nuisance term in its place: something is there, and of two that explain it alike
 the nuisance term, which costs 4.5 more, is not the one."""
@@ -38,14 +39,16 @@ class Identification:
 
     Attributes
     ----------
-    fit : the best set of terms, fitted. named : ids of its causes, largest first.
-    rms : of each owner [arcsec]. rivals : of each cause, ids that explain the record as well.
+    fit : the best set of terms, fitted. size_doubt : how well it knows the sizes.
+    named : ids of its causes, largest first. rms : of each owner [arcsec].
+    rivals : of each cause, ids that explain the record as well.
     evidence_nats : of each cause, nats over the best set without it.
     """
 
     search: Search
     best: Candidate
     fit: SweepFit
+    size_doubt: SizeDoubt
     named: tuple[str, ...]
     rms: dict[str, float]
     rivals: dict[str, tuple[str, ...]]
@@ -73,8 +76,10 @@ def identify(search: Search, beside: bool = False) -> Identification:
     rms = owner_rms(fit, sorted(best.owners(evidence) | ahead))
     held = best.named(evidence) | ahead
     largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
+    doubt = SizeDoubt.of(fit)
     named = sorted(
-        (c for c in held if c in ahead or rms[c] >= MINOR_SHARE * largest), key=lambda c: -rms[c]
+        (c for c in held if c in ahead or (rms[c] >= MINOR_SHARE * largest and doubt.is_any(c))),
+        key=lambda c: -rms[c],
     )
     rivals: dict[str, tuple[str, ...]] = {}
     rival_sets: dict[str, Candidate] = {}
@@ -85,7 +90,7 @@ def identify(search: Search, beside: bool = False) -> Identification:
         rivals[cause], found = _rivals(evidence, best, cause)
         if found is not None:
             rival_sets[cause] = found
-    return Identification(search, best, fit, tuple(named), rms, rivals, rival_sets, nats)
+    return Identification(search, best, fit, doubt, tuple(named), rms, rivals, rival_sets, nats)
 
 
 def _worth(
@@ -100,24 +105,24 @@ def _worth(
     nats: dict[str, float] = {}
     weak: dict[str, Candidate] = {}
     present = best.named(evidence)
-    only = len(present) == 1 and not beside
+    inexact = {c for c in present if not known_causes()[c].exact}
 
-    def too_little(without: Candidate) -> bool:
+    def too_little(without: Candidate, cause: str) -> bool:
         if _stands_in(evidence, best, without):
             needed = STAND_IN_NATS
         else:
-            needed = NAMING_NATS if only else SECOND_NATS
+            needed = SECOND_NATS if beside or inexact - {cause} else NAMING_NATS
         return best.score - without.score < needed
 
     for cause in present:
         without = _without(evidence, best, _other_than(cause))
         nats[cause] = best.score - without.score
-        if not too_little(without):
+        if not too_little(without, cause):
             continue
         if without.named(evidence) - present and not _stands_in(evidence, best, without):
             rest = present - {cause}
             without = _without(evidence, best, _unnamed_or(rest))
-        if too_little(without):
+        if too_little(without, cause):
             weak[cause] = without
     return nats, weak
 
@@ -223,6 +228,9 @@ def _rivals(
         rival = search.run(starts, most=len(best.terms) + MORE_OF_RIVAL)
         if other not in rival.named(evidence) or _cancels_itself(evidence, rival, other):
             continue
+        elements = fit_regressors(evidence, rival.terms).elements()[other]
+        if not known_causes()[other].plausible(elements):
+            continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
             found.append((gap, other, rival))
@@ -231,7 +239,12 @@ def _rivals(
 
 
 def penalised(evidence: GaussianEvidence, terms: tuple[int, ...]) -> float:
-    """Log likelihood less ½ log n for each amplitude."""
+    """Log likelihood less ½ log n for each amplitude.
+
+    The calibration counts by its stated uncertainty, which is known as the rows are: an explanation that
+    needs a compliance or a gap far beyond it does not explain the record as well.
+    """
     fit = fit_regressors(evidence, terms).posterior
     count = len(fit.mean) - fit.base_count
-    return -fit.chi2 / 2 - count * log(max(evidence.rows, 2)) / 2
+    off = fit.mean[: fit.base_count] / evidence.columns.base_prior
+    return -(fit.chi2 + float(off @ off)) / 2 - count * log(max(evidence.rows, 2)) / 2

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.leakage import effect_size, leaked
+from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 
 SHAPE_NATS = 3.0
@@ -20,9 +20,6 @@ SHAPE_NATS = 3.0
 the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
 """Sets that count by less than e^−6 = 0.25 % are left out."""
-CANCELLED_DOUBT = 0.003
-"""Of what cancels between a cause's elements: two lags of opposite sign may stand for a delay. Of nine
-made-up records with one, two deviations hold the truth in five without this, one deviation in all with it."""
 MOST_SHAPES = 24
 """Of these sets at most, the likeliest: each is fitted anew for its deviation."""
 
@@ -108,16 +105,13 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     weight = np.exp([(c.score - identified.best.score) / nats for c in alike])
     weight /= weight.sum()
     each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
-    best = identified.fit.magnitudes()
-    slopes = identified.fit.magnitude_slopes()
-    own, of_others = identified.fit.magnitude_stds(slopes), leaked(identified.fit, slopes)
+    doubt = identified.size_doubt
+    best = doubt.magnitude
     std = {}
     for cause in identified.named:
         values = np.array([m[cause] for m in each])
         spread = float(np.sqrt(weight @ (values - best[cause]) ** 2))
-        floor = known_causes()[cause].shape_doubt * abs(best[cause])
-        cancelled = CANCELLED_DOUBT * _cancelled(identified, cause, best[cause])
-        std[cause] = hypot(own[cause], spread, floor, cancelled, of_others[cause])
+        std[cause] = hypot(doubt.std[cause], spread)
     return best, std
 
 
@@ -131,11 +125,3 @@ def _shape_nats(identified: Identification) -> float:
         known_causes()[c].shape_doubt * effect_size(identified.fit, c) for c in identified.named
     ]
     return max(SHAPE_NATS, float(np.square(doubts).sum()) / 2)
-
-
-def _cancelled(identified: Identification, cause: str, magnitude: float) -> float:
-    """How much larger a cause's elements are one by one than together; 0 where they do not add up."""
-    rig, known = identified.fit.measured_rig(), known_causes()[cause]
-    each = [known.magnitude((e,), rig) for e in identified.fit.elements().get(cause, ())]
-    adds_up = abs(sum(each) - magnitude) <= 1e-6 * sum(map(abs, each))
-    return sum(map(abs, each)) - abs(magnitude) if len(each) > 1 and adds_up else 0.0
