@@ -136,7 +136,9 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
     return _of_case(
         flexspline,
         "lobes_contact",
-        lambda outline, deadline: contact_stiffness(outline, own, held, deadline),
+        lambda outline, deadline: contact_stiffness(
+            outline, own, held, deadline, tolerance_of(flexspline)
+        ),
     )
 
 

@@ -18,7 +18,13 @@ SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 80_000, False: 50_000}
 """Unknowns up to which factors are the faster way or as fast, with and without MKL: of a shaft with 82 000
 they took 3.1 s of the processor and 0.45 GB, iteration 2.4 s and 0.1 GB; with 190 000 16.0 s and 1.8 GB
-against 6.0 s and 0.35 GB. A thin wall or a free rim takes two to three times as many steps."""
+against 6.0 s and 0.35 GB."""
+THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
+"""The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 in cups of one
+layer, 75 to 80 in shafts), its factors are small, and its flat elements take many steps (a cup with a wall of
+1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which were not enough)."""
+PATIENCE = 150
+"""Steps of an iteration with up to THIN_BELOW unknowns: they take as long as factors of 150 000 and more."""
 ENTRY_BYTES = 38.0
 """Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
 FACTOR_BYTES = 72.0
@@ -68,13 +74,23 @@ def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
     there = available_bytes()
     factors = direct_bytes(unknowns, entries)
     steps = iterative_bytes(unknowns, entries) if corners else inf
-    if factors <= there and (unknowns <= DIRECT_BELOW[bool(pardiso())] or not corners):
+    below = DIRECT_BELOW[bool(pardiso())]
+    if pardiso() and entries < THIN_ENTRIES * unknowns:
+        below = THIN_BELOW
+    if factors <= there and (unknowns <= below or not corners):
         return "direct"
     if steps <= there:
         return "iterative"
     if factors <= there:
         return "direct"
     raise MemoryShortError(unknowns, min(factors, steps), there)
+
+
+def steps_before_factors(unknowns: int, entries: int) -> int | None:
+    """Steps after which factors are the better way, None where they are not or do not fit."""
+    if unknowns > THIN_BELOW or direct_bytes(unknowns, entries) > available_bytes():
+        return None
+    return PATIENCE
 
 
 def available_bytes() -> float:

@@ -10,8 +10,8 @@ from scipy.sparse import csr_matrix
 from skfem import condense
 
 from flexspline.fea.solid.direct import direct
-from flexspline.fea.solid.errors import SolveError
-from flexspline.fea.solid.memory import SolverKind, choose_solver
+from flexspline.fea.solid.errors import IterationError, SolveError
+from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_before_factors
 from flexspline.fea.solid.twolevel import iterate
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
@@ -64,8 +64,8 @@ def solve(
     u = np.zeros(matrix.shape[0])
     u[fixed] = values
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed, assume_unique=True)
-    how = by or choose_solver(len(free), matrix.nnz, corners is not None)
     inner, right = condense(matrix, load, x=u, I=free, expand=False)
+    how = by or choose_solver(len(free), inner.nnz, corners is not None)
     error_energy = 0.0
     if how == "iterative" and corners is not None:
         lift = u.copy()
@@ -75,7 +75,13 @@ def solve(
             # u·Ku of x and the lift, by K x = f on the free unknowns
             return iteration_energy * abs(of_lift + 2 * float(x @ load[free]) - float(x @ right))
 
-        u[free], error_energy = iterate(inner, right, free, corners(), allowed)
+        patience = None if by else steps_before_factors(len(free), inner.nnz)
+        try:
+            u[free], error_energy = iterate(inner, right, free, corners(), allowed, patience)
+        except IterationError:
+            if patience is None:
+                raise
+            how, u[free] = "direct", direct(inner, right)
     else:
         u[free] = direct(inner, right)
     off = inner @ u[free] - right

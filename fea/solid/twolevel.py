@@ -51,6 +51,7 @@ def iterate(
     free: np.ndarray,
     corners: csr_matrix,
     allowed: Callable[[np.ndarray], float],
+    most_steps: int | None = None,
 ) -> tuple[np.ndarray, float]:
     """Solve K u = f on the free unknowns.
 
@@ -67,7 +68,7 @@ def iterate(
 
     Raises
     ------
-    IterationError : it is more than `allowed` after MOST_STEPS.
+    IterationError : it is more than `allowed` after `most_steps`, MOST_STEPS when absent.
     SolveError : K is not positive definite, or there is no memory for the corners' factors.
     """
     if not right.any():
@@ -92,11 +93,12 @@ def iterate(
             x += p @ exact((up @ (r - single @ x)).astype(np.float64)).astype(np.float32)
             return (x + smooth(r - single @ x)).astype(np.float64)
 
-        found = conjugate_gradients(matrix.__matmul__, precondition, right, MOST_STEPS, allowed)
+        most_steps = most_steps or MOST_STEPS
+        found = conjugate_gradients(matrix.__matmul__, precondition, right, most_steps, allowed)
         # the recurrence drifts from the true residual by rounding: the energy is of the true one
         r = right - matrix @ found.x
         left, most = float(r @ precondition(r)) / found.spectrum[0], allowed(found.x)
-        if found.steps == MOST_STEPS and left > most:
+        if found.steps == most_steps and left > most:
             raise IterationError(found.steps, left, most)
         return found.x, left
 

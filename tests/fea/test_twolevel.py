@@ -145,7 +145,8 @@ def test_refused_beforehand_with_numbers(quarter: Model, monkeypatch: pytest.Mon
         (20_000, 16, True, "direct"),
         (1_000_000, 16, True, "iterative"),
         (1_000_000, 64, False, "direct"),  # no interpolation to iterate with
-        (250_000, 1.2, True, "iterative"),  # factors would be quicker, but do not fit
+        (100_000, 16, True, "iterative"),
+        (60_000, 0.2, True, "iterative"),  # factors would be quicker, but do not fit
     ],
 )
 def test_way_by_unknowns_and_memory(
@@ -154,6 +155,23 @@ def test_way_by_unknowns_and_memory(
     monkeypatch.setattr(memory, "available_bytes", lambda: there_GB * 2**30)
     monkeypatch.setattr(memory, "pardiso", lambda: object)
     assert memory.choose_solver(unknowns, 80 * unknowns, corners) == way
+
+
+def test_a_part_that_is_mostly_surface_is_factorised(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "available_bytes", lambda: 16 * 2**30)
+    monkeypatch.setattr(memory, "pardiso", lambda: object)
+    assert memory.choose_solver(100_000, 65 * 100_000, True) == "direct"
+
+
+def test_factors_take_over_from_an_iteration_that_is_slow(
+    quarter: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(memory, "DIRECT_BELOW", {True: 0, False: 0})
+    monkeypatch.setattr(memory, "THIN_ENTRIES", 0.0)
+    monkeypatch.setattr(memory, "PATIENCE", 3)
+    found = torsion(quarter, "mesh")
+    assert found.solver == "direct"
+    assert found.K_energy == torsion(replace(quarter, solve_by="direct"), "mesh").K_energy
 
 
 def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) -> None:

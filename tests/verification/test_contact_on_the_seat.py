@@ -18,6 +18,7 @@ from flexspline.fea.axisymmetric.contact import (
     contact_stiffness,
     held_forces,
     lift_off_forces,
+    settling,
 )
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.lift_off import pushing
@@ -176,3 +177,30 @@ def test_published_value_lies_between_free_and_resting(record) -> None:
     )  # fmt: skip
     assert free.upper_Nm_per_rad < published < resting.lower_Nm_per_rad
     assert resting.upper_Nm_per_rad - published < held.lower_Nm_per_rad - resting.lower_Nm_per_rad
+
+
+@pytest.mark.parametrize("rate", [0.3, 0.5, 0.6])
+def test_a_geometric_series_settles_at_its_limit(rate: float) -> None:
+    ratios = [0.9 + 0.01 * rate**k for k in range(3)]
+    limit, doubt = settling(ratios)
+    assert limit == pytest.approx(0.9, abs=1e-12)  # rounding of sums around 1
+    assert doubt == pytest.approx(0.01 * rate**2)
+
+
+def test_a_tolerance_is_met_by_more_meshes() -> None:
+    """The bounds hold the ratio of a mesh that is twice as fine as the finest of theirs, and its limit."""
+    held = lobe_stiffness(PUBLISHED_CUP, STEEL, True, 0.0005)
+    two = contact_stiffness(PUBLISHED_CUP, STEEL, held)
+    tolerance = 0.75 * two.half_width
+    found = contact_stiffness(PUBLISHED_CUP, STEEL, held, tolerance=tolerance)
+    assert len(found.levels) > len(two.levels) == 2
+    assert found.half_width <= tolerance
+    assert not found.shortfall
+    mesh, ratios = triangulate(PUBLISHED_CUP), []
+    for _ in range(len(found.levels) + 1):
+        own = seat_compliance(HarmonicModel(mesh, STEEL), 32, MOST_PLACES)
+        ratios.append(own.stiffness(lift_off_forces(own)) / own.stiffness(held_forces(own)))
+        mesh = refined(mesh, np.ones(mesh.elements, bool))
+    for ratio in (ratios[-1], settling(ratios)[0]):
+        # the held K is known far better than the ratio
+        assert found.lower_Nm_per_rad < held.K_Nm_per_rad * ratio < found.upper_Nm_per_rad
