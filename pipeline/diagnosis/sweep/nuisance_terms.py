@@ -72,15 +72,16 @@ def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
     """
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in KINDS if kind.less is not None}
-    inverse = {less: np.linalg.pinv(columns[counted]) for less, columns in taken.items()}
+    share = counted / counted.sum()
+    onto = {less: _projection(columns, share) for less, columns in taken.items()}
     found = []
     for kind in KINDS:
         for channel, what, columns in kind.make(rig):
             rest = columns
             if kind.less is not None:
-                rest = columns - taken[kind.less] @ (inverse[kind.less] @ columns[counted])
-            was = columns[counted].std(axis=0)
-            rms = np.sqrt((rest[counted] ** 2).mean(axis=0))
+                rest = columns - taken[kind.less] @ (onto[kind.less] @ columns)
+            was = np.sqrt(np.maximum(share @ columns**2 - (share @ columns) ** 2, 0.0))
+            rms = np.sqrt(share @ rest**2)
             good = rms > NEW_SHARE * np.maximum(was, 1e-9)
             if good.any():
                 found.append(
@@ -89,6 +90,16 @@ def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
                     )
                 )
     return found
+
+
+def _projection(columns: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """(k, n) coefficients of columns (n, k) that fit a function best, each row by its share of the weight.
+
+    By normal equations, which need no decomposition of a million rows.
+    """
+    weighted = (columns * share[:, None]).T
+    inverse: np.ndarray = np.linalg.pinv(weighted @ columns) @ weighted
+    return inverse
 
 
 def _of_torque(rig: Rig) -> np.ndarray:
