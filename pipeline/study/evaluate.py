@@ -27,7 +27,7 @@ from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
-from flexspline.pipeline.study.holes import Factor, pierced, with_holes
+from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
 
 TORSION_TOLERANCE = 2e-3
 LOBE_TOLERANCE = 1e-2
@@ -44,7 +44,7 @@ class Task:
     tables: Mapping[str, Any]
     values: Mapping[str, float]
     solves: tuple[Solve, ...]
-    holes: Factor | None = None
+    holes: HolesEffect | None = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,9 @@ def evaluate(task: Task) -> Outcome:
     return replace(found, seconds=time.perf_counter() - began)
 
 
-def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None = None) -> Outcome:
+def figures_of(
+    design: Design, solves: tuple[Solve, ...], holes: HolesEffect | None = None
+) -> Outcome:
     """All figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
 
     A solve that fails leaves the others' figures; the reason names it.
@@ -101,7 +103,7 @@ def figures_of(design: Design, solves: tuple[Solve, ...], holes: Factor | None =
             missing[name] = str(fault)
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
-            found = with_holes(found, holes)
+            found = with_holes(found, design, holes)
         if "gear" in solves and "K_e" not in missing:
             try:
                 found |= _gear(design, found["K_e_Nm_per_rad"])

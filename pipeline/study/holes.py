@@ -1,21 +1,24 @@
 """What bolt holes and keyway of the shaft do to K_e, from one solid solve of the study's nominal design.
 
-The fast model's shaft has none. Its K_e is multiplied by K_solid/K_axisymmetric of the nominal design. The
-ratio holds there within both models' bounds, whatever the modulus; where the study changes the shaft it is
-an estimate, so the bounds are widened by a share of the holes' whole effect as well. They are theorems no
-longer. (The flexspline needs no such factor: every design's K_b has bounds of its own,
-`pipeline.enclosure`.)
+The fast model's shaft has none. The solid model of the nominal design tells how much compliance they add, as
+a share of the compliance L/(G·J) of the pieces that they cut: the flange, and the keyway's length of the last
+segment. Every design's pieces take that share more. At the nominal design K_e is the solid model's, within
+both models' bounds, whatever the modulus; where the study changes the shaft it is an estimate, so the bounds
+are widened by a share of the holes' whole effect as well. They are theorems no longer. (The flexspline needs
+no such correction: every design's K_b has bounds of its own, `pipeline.enclosure`.)
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from math import pi
 
-from flexspline.fea.types import Stiffness
+from flexspline.fea.types import NMM_PER_NM, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
+from flexspline.geometry.shapes import ShaftSegment
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.part_stiffness import part_stiffness
 
@@ -24,11 +27,41 @@ DRIFT = 0.5
 
 
 @dataclass(frozen=True)
-class Factor:
-    """K_e with holes over K_e without, and how far it may be off."""
+class HolesEffect:
+    """What the nominal design's holes and keyway do to its K_e.
 
-    value: float
+    Attributes
+    ----------
+    share : compliance that they add, over that of the pieces that they cut.
+    doubt : of K_e over itself, by both models' bounds of the nominal design.
+    drift : share of the effect by which it may be another in other designs of the study.
+    """
+
+    share: float
     doubt: float
+    drift: float
+
+    def factor(self, design: Design, K_e_Nm_per_rad: float) -> tuple[float, float]:
+        """K_e with holes over `K_e_Nm_per_rad` without, and how far that may be off."""
+        value = 1 / (1 + self.share * cut_compliance(design) * K_e_Nm_per_rad)
+        return value, self.doubt + self.drift * (1 - value)
+
+
+def cut_compliance(design: Design) -> float:
+    """L/(G·J) of the pieces of the shaft that holes and keyway cut, as if they did not [rad/(N·m)].
+
+    Source: torsion of a round tube, J = π(D⁴ − d⁴)/32.
+    """
+    shaft, own = design.shaft, design.part("shaft").material
+    shear_MPa = 1e3 * own.youngs_modulus_GPa / (2 * (1 + own.poissons_ratio))
+
+    def of(segment: ShaftSegment, length_mm: float) -> float:
+        polar_mm4 = pi / 32 * (segment.outer_diameter_mm**4 - segment.inner_diameter_mm**4)
+        return length_mm / (shear_MPa * polar_mm4) * NMM_PER_NM
+
+    first, last = shaft.segment[0], shaft.segment[-1]
+    holes = of(first, first.length_mm) if shaft.bolt_count else 0.0
+    return holes + (of(last, shaft.keyway.length_mm) if shaft.keyway is not None else 0.0)
 
 
 def pierced(design: Design) -> bool:
@@ -47,16 +80,17 @@ def drifts(keys: Iterable[str]) -> bool:
     return any(k.startswith("shaft.") or k.endswith(".poissons_ratio") for k in keys)
 
 
-def with_holes(found: Mapping[str, float], factor: Factor) -> dict[str, float]:
+def with_holes(found: Mapping[str, float], design: Design, effect: HolesEffect) -> dict[str, float]:
     """Figures with K_e and its bounds corrected, and the factor beside them."""
+    value, doubt = effect.factor(design, found["K_e_Nm_per_rad"])
     return {
         **found,
-        "K_e_Nm_per_rad": found["K_e_Nm_per_rad"] * factor.value,
-        "K_e_bounds_Nm_per_rad[0]": found["K_e_bounds_Nm_per_rad[0]"] * (factor.value - factor.doubt),
-        "K_e_bounds_Nm_per_rad[1]": found["K_e_bounds_Nm_per_rad[1]"] * (factor.value + factor.doubt),
+        "K_e_Nm_per_rad": found["K_e_Nm_per_rad"] * value,
+        "K_e_bounds_Nm_per_rad[0]": found["K_e_bounds_Nm_per_rad[0]"] * (value - doubt),
+        "K_e_bounds_Nm_per_rad[1]": found["K_e_bounds_Nm_per_rad[1]"] * (value + doubt),
         "K_e_bounds_guaranteed": 0.0,
-        "K_e_holes_factor": factor.value,
-    }  # fmt: skip
+        "K_e_holes_factor": value,
+    }
 
 
 def holes_of(
@@ -64,8 +98,8 @@ def holes_of(
     K_e: Callable[[Design], Stiffness],
     say: Callable[[str], None],
     drift: float = DRIFT,
-) -> Factor | None:
-    """The factor of a nominal design; `K_e` is the fast model's, without the holes.
+) -> HolesEffect | None:
+    """That of a nominal design; `K_e` is the fast model's, without the holes.
 
     `drift`: share of the holes' effect, as `DRIFT`; 0 where the study leaves the shaft as it is. None where
     the shaft has none, or where the solid solve fails, which `say` is told.
@@ -84,4 +118,5 @@ def holes_of(
         solid.lower_Nm_per_rad / fast.upper_Nm_per_rad,
         solid.upper_Nm_per_rad / fast.lower_Nm_per_rad,
     )
-    return Factor(value, max(abs(end - value) for end in ends) + drift * abs(1 - value))
+    share = (1 / value - 1) / (fast.K_Nm_per_rad * cut_compliance(design))
+    return HolesEffect(share, max(abs(end - value) for end in ends), drift)

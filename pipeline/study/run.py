@@ -13,7 +13,7 @@ from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
-from flexspline.pipeline.study.holes import DRIFT, Factor, drifts, holes_of
+from flexspline.pipeline.study.holes import DRIFT, HolesEffect, drifts, holes_of
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
@@ -27,7 +27,7 @@ from flexspline.pipeline.study.verify import verify
 HOLES_NOTE = "holes"
 
 
-def source_of(study: Study, holes: Factor | None = None) -> Source:
+def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
     """Where a study's designs come from, and what corrects their K_e for holes."""
     if study.file.run.method == "tolerance":
         return scattered(study, holes)
@@ -38,10 +38,12 @@ def source_of(study: Study, holes: Factor | None = None) -> Source:
     return Planned(study, solves, plan, holes=holes)
 
 
-def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -> Factor | None:
+def nominal_holes(
+    study: Study, store: TrialStore, say: Callable[[str], None]
+) -> HolesEffect | None:
     """What the shaft's holes and keyway do to K_e of the design that the study begins with.
 
-    Kept with the study's trials: every row has the same factor, whoever makes it and when.
+    Kept with the study's trials: every row has the same share, whoever makes it and when.
     """
     stored = store.notes().get(HOLES_NOTE)
     if stored is None:
@@ -50,7 +52,7 @@ def nominal_holes(study: Study, store: TrialStore, say: Callable[[str], None]) -
         if stored is None:
             stored = asdict(found) if found else {}
             store.note(HOLES_NOTE, stored)
-    return Factor(**stored) if stored else None
+    return HolesEffect(**stored) if stored else None
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:
@@ -94,7 +96,7 @@ def run_study(
     watch: Callable[[Progress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
     say: Callable[[str], None] = lambda line: None,
-    holes: Factor | None = None,
+    holes: HolesEffect | None = None,
 ) -> StudyResult:
     """Evaluate what is not yet evaluated, verify the best; `pool` opens only where there is work.
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexspline.pipeline.cache import FORMAT
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import Solve, needed
-from flexspline.pipeline.study.holes import Factor
+from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.plan import Plan, from_unit, linked
 from flexspline.pipeline.study.store import Finished, Job, TrialStore
 from flexspline.pipeline.study.study import Study
@@ -35,7 +36,7 @@ class _Asked:
 
     study: Study
     solves: tuple[Solve, ...]
-    holes: Factor | None = field(default=None, kw_only=True)
+    holes: HolesEffect | None = field(default=None, kw_only=True)
 
     @cached_property
     def _tables(self) -> dict[str, Any]:
@@ -158,7 +159,8 @@ def study_name(study: Study) -> str:
     told: dict[str, Any] = {
         "design": study.design.model_dump(mode="json"),
         "study": file,
-        "holes": "K_b enclosed, K_e by the nominal design's factor",
+        "holes": "K_b enclosed, K_e by a share of the cut pieces' compliance",
+        "program": FORMAT,  # what a row means changes with what a stage means
         "method": run.method,
         "seed": run.seed,
     }

@@ -18,7 +18,7 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import value_at, with_values
 from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.evaluate import Task
-from flexspline.pipeline.study.holes import Factor
+from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.plan import Listed, linked
 from flexspline.pipeline.study.source import Planned, solves_of
 from flexspline.pipeline.study.study import Study, StudyError, location_of
@@ -180,7 +180,7 @@ class Scattered(Planned):
         return Task(self._tables, changed, self.solves, self.holes)
 
 
-def scattered(study: Study, holes: Factor | None) -> Scattered:
+def scattered(study: Study, holes: HolesEffect | None) -> Scattered:
     """The source of a tolerance study.
 
     Raises

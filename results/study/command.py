@@ -36,6 +36,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.output_folder import folder_of
         from flexspline.results.records import as_json
         from flexspline.results.report.attached import Attachment
+        from flexspline.results.study.best_design import best_warnings, write_best_design
         from flexspline.results.study.best_stress import draw_best_stress
         from flexspline.results.study.figures import write_figures
         from flexspline.results.study.notes import border_warnings, preloaded
@@ -65,7 +66,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         if kept := len(store.rows()):
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
-        for line in (*border_warnings(result), *preloaded(result)):
+        for line in (*border_warnings(result), *preloaded(result), *best_warnings(result)):
             tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)
@@ -83,6 +84,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
                 f"warning: not drawn: {(best.picture and '3-D view ') or ''}best_stress: {best.missing}"
             )
         pictures = write_figures(folder, result, best.picture)
+        if best_file := write_best_design(folder, result):
+            tables.append(best_file)
         record["files"] = [str(p) for p in tables]
         reports = write_study_reports(folder, result, pictures, best, attached)
         record["files"] += [str(p) for p in (*pictures, *reports)]

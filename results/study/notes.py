@@ -12,6 +12,7 @@ from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.study.best_design import best_warnings
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import SHOWN
 from flexspline.results.study.why import signed, unfollowed
@@ -31,6 +32,7 @@ def notes(result: StudyResult) -> list[str]:
     ]
     said += _borders(result)
     said += _whole_gear(result)
+    said += [f"{line[:1].upper()}{line[1:]}." for line in best_warnings(result)]
     if not result.verified:
         asked = result.study.file.run.verify
         why = (
@@ -125,18 +127,19 @@ def _holes(result: StudyResult) -> Iterable[str]:
 def _shaft_holes(result: StudyResult) -> str:
     """How K_e was corrected, and what that does to its bounds."""
     key = "K_e_holes_factor"
-    factor = next((r.outcome.figures[key] for r in result.built if key in r.outcome.figures), None)
-    if factor is None:
+    factors = [r.outcome.figures[key] for r in result.built if key in r.outcome.figures]
+    if not factors:
         return (
             "K_e: of the shaft without its holes or keyway, since the solid solve that would tell their "
             "effect failed."
         )
     moved = drifts(result.study.keys)
     share = f" and by {100 * DRIFT:g} % of the correction" if moved else ""
+    ends = list(dict.fromkeys(_percent(100 * (f - 1)) for f in (max(factors), min(factors))))
     return (
-        f"Holes and keyway change K_e by {_percent(100 * (factor - 1))} in the design that the study began "
-        "with (one solid solve). Every design's K_e is corrected by that; its bounds are widened by what "
-        f"both solves leave open{share}, and are estimates."
+        f"Holes and keyway change K_e by {' to '.join(ends)}: as much of the flange's and the keyway's own "
+        "compliance as in the design that the study began with (one solid solve). Bounds of K_e are widened "
+        f"by what both solves leave open{share}, and are estimates."
     )
 
 

@@ -76,6 +76,7 @@ def test_a_grid_on_one_and_on_two_processes(
     assert sum("ring_thickness_mm" in r["reason"] for r in rows) == 2
     for name in said["files"]:
         assert Path(name).stat().st_size > 0
+    assert "best.toml" in {Path(name).name for name in said["files"]}
     text = "".join(p.extract_text() for p in PdfReader(tmp_path / "1" / "report.pdf").pages)
     assert "4 of 6 designs were built and solved" in text
     assert "#panic(1) $x$ cup" in text  # as its letters

@@ -1,0 +1,53 @@
+"""The best design of a study: as a design file, and what `flexspline run` would warn of in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from flexspline.geometry.sanity import warnings
+from flexspline.geometry.template import design_text
+from flexspline.pipeline.stress_limits import PART_OF
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.atomic import write_bytes
+from flexspline.results.study.record import SHOWN
+
+BEST = "best.toml"
+WAVE_GENERATOR = "wave_generator_peak"
+"""The peak that passes a fatigue limit wherever it lies (`pipeline.stress_limits.limits_passed`)."""
+
+
+def write_best_design(folder: Path, result: StudyResult) -> Path | None:
+    """Write the first of the best designs beside the table; None where no design is better than another."""
+    if result.about_scatter or not result.pareto:
+        return None
+    row = result.pareto[0]
+    name = f"{result.study.design.name}, design {row.slot} of {result.study.name}"
+    design = result.design_of(row).model_copy(update={"name": name})
+    path = folder / BEST
+    write_bytes(path, design_text(design).encode())
+    return path
+
+
+def best_warnings(result: StudyResult) -> Iterable[str]:
+    """Of the first of the best designs, a line each; the numbers of the others that have some."""
+    if result.about_scatter:
+        return
+    said = {row.slot: tuple(_warnings(result, row)) for row in result.best(SHOWN)}
+    for slot, lines in list(said.items())[:1]:
+        yield from (f"design {slot}: {line}" for line in lines)
+    if others := [str(slot) for slot, lines in list(said.items())[1:] if lines]:
+        yield f"of the other best designs {', '.join(others)}: warnings too, which flexspline run says"
+
+
+def _warnings(result: StudyResult, row: Row) -> Iterable[str]:
+    """What the varied dimensions brought about: the first design's own warnings are not repeated."""
+    design = result.design_of(row)
+    known = set(warnings(result.study.design))
+    yield from (line for line in warnings(design) if line not in known)
+    key = f"{WAVE_GENERATOR}_mises_MPa"
+    limit = design.part(PART_OF[WAVE_GENERATOR]).material.fatigue_limit_MPa
+    peak = row.outcome.figures.get(key)
+    if limit is not None and peak is not None and peak > limit:
+        yield f"{key} = {peak:.4g} is above material.flexspline.fatigue_limit_MPa = {limit:g}"

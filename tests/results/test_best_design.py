@@ -1,0 +1,97 @@
+"""The best design of a study as a file, and what `flexspline run` would warn of in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from study_bench import study_of
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.source import study_name
+from flexspline.results.study.best_design import best_warnings, write_best_design
+from flexspline.results.study.notes import notes
+
+RING, PEAK = "flexspline.ring_thickness_mm", "wave_generator_peak_mises_MPa"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{RING}" = {{ min = 0.5, max = 0.9 }}
+[objective]
+"K_b_Nm_per_rad" = "maximize"
+[run]
+method = "sobol"
+"""
+
+TOLERANCE = f"""
+design = "xb1-40.toml"
+[tolerance]
+"{RING}" = {{ std = 0.01 }}
+[run]
+method = "tolerance"
+"""
+
+
+def result_of(*made: tuple[float, float], text: str = STUDY) -> StudyResult:
+    """Of ring thickness [mm] and peak [MPa] of each design; a thicker ring is stiffer."""
+    rows = tuple(
+        Row(i, {RING: ring}, Outcome({"K_b_Nm_per_rad": 1e4 * ring, PEAK: peak}))
+        for i, (ring, peak) in enumerate(made)
+    )
+    return StudyResult(study_of(text), rows)
+
+
+def test_the_file_is_the_best_design(tmp_path: Path) -> None:
+    result = result_of((0.55, 400.0), (0.7, 400.0), (0.6, 400.0))
+    path = write_best_design(tmp_path, result)
+    assert path == tmp_path / "best.toml"
+    design = load_design(path)
+    assert design.name == "XB1-40 cup, design 1 of test"
+    assert design.flexspline.ring_thickness_mm == 0.7
+    assert design == result.design_of(result.rows[1]).changed({"name": design.name})
+
+
+def test_where_no_design_is_better_than_another_there_is_no_file(tmp_path: Path) -> None:
+    result = result_of((0.55, 400.0), text=TOLERANCE)
+    assert write_best_design(tmp_path, result) is None
+    assert not list(best_warnings(result))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_ring_whose_teeth_do_not_fit_is_said_of_the_best() -> None:
+    """19.2 + 0.9 mm is 0.35 mm outside the tooth root, 19.75 mm."""
+    tooth, others = best_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
+    assert tooth.startswith("design 1: tooth-root radius")
+    assert "others" not in tooth
+    assert others.startswith("of the other best designs 2: ")
+    assert not list(best_warnings(result_of((0.55, 400.0))))
+
+
+@pytest.mark.parametrize(("peak", "said"), [(499.0, 0), (501.0, 1)])
+def test_a_peak_above_the_fatigue_limit_is_said(peak: float, said: int) -> None:
+    lines = [
+        line for line in best_warnings(result_of((0.55, peak))) if "fatigue_limit_MPa = 500" in line
+    ]
+    assert len(lines) == said
+    in_report = [line for line in notes(result_of((0.55, peak))) if "fatigue_limit_MPa" in line]
+    assert len(in_report) == said
+
+
+def test_what_the_first_design_is_warned_of_is_not_repeated() -> None:
+    result = result_of((0.9, 400.0))
+    begun = replace(result.study, design=result.design_of(result.rows[0]))
+    assert not list(best_warnings(replace(result, study=begun)))
+
+
+def test_rows_of_a_program_that_means_something_else_are_not_resumed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    study = study_of(STUDY)
+    before = study_name(study)
+    assert study_name(study) == before
+    monkeypatch.setattr("flexspline.pipeline.study.source.FORMAT", 10**6)
+    assert study_name(study) != before
