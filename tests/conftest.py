@@ -41,6 +41,9 @@ SLOWEST = (
 """Files that take sixteen seconds or more, begun first so that no worker is left alone with one at the end.
 The first makes the run that others read, the second the solves of specimens that the third does."""
 
+OF_ONE_HELPER = ("test_estimate_honesty", "test_solid_against_axisymmetric")
+"""Files that read the same solutions, kept in their process: they go to one worker. Others go by file."""
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -65,7 +68,7 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if any(config.getoption(name, default=False) for name in WRITERS):
         option.numprocesses = 0
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
-        option.numprocesses, option.dist = 3, "loadfile"
+        option.numprocesses, option.dist = 3, "loadgroup"
         option.loadscopereorder = False  # `SLOWEST` says the order
         for name, count in ONE_THREAD.items():  # which the workers inherit
             os.environ.setdefault(name, count)
@@ -85,7 +88,11 @@ def pytest_configure(config: pytest.Config) -> None:
         config.option.markexpr = ""  # the long ones too: the page is whole or not written
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    for item in items if config.pluginmanager.hasplugin("xdist") else ():
+        group = item.path.stem if item.path.stem not in OF_ONE_HELPER else OF_ONE_HELPER[0]
+        item.add_marker(pytest.mark.xdist_group(f"{item.path.parent.name}/{group}"))
     place = {name: i for i, name in enumerate(SLOWEST)}
     items.sort(key=lambda item: place.get(item.path.stem, len(place)))
 

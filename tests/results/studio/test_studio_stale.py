@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 from held import HeldStudio
-from studio_page import Page
+from studio_page import PATIENCE_MS, Page
 
 WALL = "flexspline.wall_thickness_mm"
 GREY = 0.6
@@ -58,7 +59,22 @@ def test_a_late_answer_is_grey_too(tab: Page, held: HeldStudio) -> None:
     tab.complete()
     before = tab.value("K_b_Nm_per_rad")
     hold_wall(held, 0.41)
+    asked: list[float] = []
+    kept = held.hold
+
+    def hold(question: str, tables: dict[str, Any]) -> bool:
+        if question == "torsion":
+            asked.append(tables["flexspline"]["wall_thickness_mm"])
+        return kept(question, tables)
+
+    held.hold = hold
     tab.set(WALL, "0.45")
+    ends = time.monotonic() + PATIENCE_MS / 1e3
+    while (
+        0.45 not in asked and time.monotonic() < ends
+    ):  # a busy page asks only for what it has last
+        tab.tab.wait_for_timeout(20)
+    assert 0.45 in asked
     tab.set(WALL, "0.41")
     late = f'#answers tr[data-key="K_b_Nm_per_rad"] td.value:not([data-value="{before!r}"])'
     tab.at(late).first.wait_for()
