@@ -14,6 +14,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from checkout import INSTALLED
@@ -68,7 +69,7 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if any(config.getoption(name, default=False) for name in WRITERS):
         option.numprocesses = 0
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
-        option.numprocesses, option.dist = 3, "loadgroup"
+        option.numprocesses, option.dist = 3, "loadfile"
         option.loadscopereorder = False  # `SLOWEST` says the order
         for name, count in ONE_THREAD.items():  # which the workers inherit
             os.environ.setdefault(name, count)
@@ -88,11 +89,20 @@ def pytest_configure(config: pytest.Config) -> None:
         config.option.markexpr = ""  # the long ones too: the page is whole or not written
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    for item in items if config.pluginmanager.hasplugin("xdist") else ():
-        group = item.path.stem if item.path.stem not in OF_ONE_HELPER else OF_ONE_HELPER[0]
-        item.add_marker(pytest.mark.xdist_group(f"{item.path.parent.name}/{group}"))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """By file, but for `OF_ONE_HELPER`; None: as `--dist` says."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByFileOrHelper(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = super()._split_scope(nodeid)
+            return OF_ONE_HELPER[0] if Path(file).stem in OF_ONE_HELPER else file
+
+    return ByFileOrHelper(config, log) if config.option.dist == "loadfile" else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     place = {name: i for i, name in enumerate(SLOWEST)}
     items.sort(key=lambda item: place.get(item.path.stem, len(place)))
 

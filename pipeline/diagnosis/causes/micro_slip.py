@@ -15,8 +15,9 @@ POWER = "power"
 POWERS = (1.3, 1.6, 2.0, 2.5, 3.2)
 """Tried: joints of bolts lose energy as T^(p + 1) = T^2.3 to T^3 (Segalman, J. Appl. Mech. 72, 752 (2005));
 a spread of thresholds that is even between two values has more."""
-LEAST_POWER, MOST_POWER = 1.1, 4.0
-"""At 1 twist is in proportion to torque, without a loop; above 4 it all lies in the last fifth of torque."""
+LEAST_POWER, MOST_POWER = 1.3, 4.0
+"""The least of bolted joints: towards 1 twist is in proportion to torque, without a loop, and a spring in
+series passes for friction. Above 4 it all lies in the last fifth of torque."""
 INSIDE, OUTSIDE, REACH = 24, 10, 4.0
 """Elements with thresholds up to the largest torque, and beyond it up to `REACH` times that, for predictions.
 The loop's width at the largest torque is then good to 0.5 %."""
