@@ -64,6 +64,13 @@ def share_of_limit(peak: StressPeak, material: Material) -> float | None:
     return peak.mises_MPa / material.fatigue_limit_MPa
 
 
+def stated_limit(design: Design, name: str) -> tuple[float, str] | None:
+    """Fatigue limit [MPa] of the part that bears a peak, and the key that states it; None: not stated."""
+    limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
+    own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
+    return None if limit is None else (limit, f"material.{own}.fatigue_limit_MPa")
+
+
 def limits_passed(design: Design, peaks: Mapping[str, StressPeak]) -> Iterator[PassedLimit]:
     """What is passed, for `peaks` by their names in result.json.
 
@@ -74,9 +81,8 @@ def limits_passed(design: Design, peaks: Mapping[str, StressPeak]) -> Iterator[P
     for name, peak in peaks.items():
         if peak.at_excluded_border and name != "wave_generator_peak":
             continue
-        limit = design.part(PART_OF[name]).material.fatigue_limit_MPa
-        if limit is not None and peak.mises_MPa > limit:
-            own = "shaft" if name == "shaft_torque_peak" and design.material.shaft else "flexspline"
-            yield PassedLimit(name, peak, limit, f"material.{own}.fatigue_limit_MPa")
+        stated = stated_limit(design, name)
+        if stated is not None and peak.mises_MPa > stated[0]:
+            yield PassedLimit(name, peak, *stated)
         if peak.mises_MPa > HIGHEST_STRENGTH_MPA:
             yield PassedLimit(name, peak, HIGHEST_STRENGTH_MPA)

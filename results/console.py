@@ -8,7 +8,7 @@ from typing import Any
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.numbers import grouped
 from flexspline.results.peaks import marked
-from flexspline.results.quantities import QUANTITIES, term_names
+from flexspline.results.quantities import QUANTITIES
 
 SPREAD = "backlash_arcsec.std"
 
@@ -35,6 +35,8 @@ def table(record: dict[str, Any], folder: Path) -> str:
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines.append(f"  {entry.name:<64} {shown}".rstrip())
     if terms := record.get("terms_arcsec"):
+        from flexspline.results.gear_terms import term_names
+
         lines.append(
             f"  Twist between ± {record['terms_torque_Nm']:g} N·m (load.torque_Nm), term by term:"
         )

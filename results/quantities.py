@@ -306,12 +306,3 @@ def quantity(key: str) -> Quantity:
     KeyError : no such key in the table.
     """
     return BY_KEY[key]
-
-
-def term_names() -> dict[str, str]:
-    """Of the whole gear's terms, in the order of the sum; `tight_gear` is not in that."""
-    names = {
-        term: BY_KEY[f"backlash_arcsec.{term}"].name
-        for term in ("shaft", "flexspline", "flank_clearance", "bearing_play")
-    }
-    return {**names, "tight_gear": "Gap without any clearance", "total": "Together"}

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.template import design_text
-from flexspline.pipeline.stress_limits import PART_OF
+from flexspline.pipeline.stress_limits import PEAK_OF, stated_limit
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
 from flexspline.results.study.record import SHOWN
 
 BEST = "best.toml"
-WAVE_GENERATOR = "wave_generator_peak"
+WAVE_GENERATOR = PEAK_OF["wave_generator"]
 """The peak that passes a fatigue limit wherever it lies (`pipeline.stress_limits.limits_passed`)."""
 
 
@@ -34,10 +34,10 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
     """Of the first of the best designs, a line each; the numbers of the others that have some."""
     if result.about_scatter:
         return
-    said = {row.slot: tuple(_warnings(result, row)) for row in result.best(SHOWN)}
-    for slot, lines in list(said.items())[:1]:
+    said = [(row.slot, tuple(_warnings(result, row))) for row in result.best(SHOWN)]
+    for slot, lines in said[:1]:
         yield from (f"design {slot}: {line}" for line in lines)
-    if others := [str(slot) for slot, lines in list(said.items())[1:] if lines]:
+    if others := [str(slot) for slot, lines in said[1:] if lines]:
         yield f"of the other best designs {', '.join(others)}: warnings too, which flexspline run says"
 
 
@@ -47,7 +47,6 @@ def _warnings(result: StudyResult, row: Row) -> Iterable[str]:
     known = set(warnings(result.study.design))
     yield from (line for line in warnings(design) if line not in known)
     key = f"{WAVE_GENERATOR}_mises_MPa"
-    limit = design.part(PART_OF[WAVE_GENERATOR]).material.fatigue_limit_MPa
-    peak = row.outcome.figures.get(key)
-    if limit is not None and peak is not None and peak > limit:
-        yield f"{key} = {peak:.4g} is above material.flexspline.fatigue_limit_MPa = {limit:g}"
+    stated, peak = stated_limit(design, WAVE_GENERATOR), row.outcome.figures.get(key)
+    if stated is not None and peak is not None and peak > stated[0]:
+        yield f"{key} = {peak:.4g} is above {stated[1]} = {stated[0]:g}"
