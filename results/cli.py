@@ -76,6 +76,10 @@ def run(
 
         measured = read_model_file(model) if model is not None else None
         job = begin(design, out)
+        if measured is not None:
+            from flexspline.results.diagnosis.model_notes import model_warnings
+
+            tell_all(model_warnings(measured, job.design))
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
         from flexspline.results.pictures import RunDrawings, write_pictures

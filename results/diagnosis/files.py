@@ -8,6 +8,7 @@ from pathlib import Path
 from flexspline import __version__
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.model.design_digest import design_digests
 from flexspline.pipeline.diagnosis.model.model_file import Provenance
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
@@ -74,6 +75,7 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
         time_recorded=bool(time) or not isinstance(measurement, Sweep),
         first_cycle=cycle,
         first_time_s=time,
+        design_digests=design_digests(diagnosis.design),
     )
     outcome, sweep = diagnosis.outcome, diagnosis.sweep
     doubt = sweep.doubt if sweep is not None else None

@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.grid import read_grid
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.results.atomic import write_bytes
+from flexspline.results.diagnosis.model_notes import model_warnings
 from flexspline.results.records import as_json
 
 PREDICTION = "prediction.csv"
@@ -38,12 +39,7 @@ def predict_and_write(
     """
     file = read_model_file(model)
     predicted = predict_file(file, torque, counts_per_turn)
-    if file.provenance.design != design.name:
-        tell(
-            f"warning: the model is of {one_line(file.provenance.design)}, "
-            f"not of {one_line(design.name)}"
-        )
-    for line in predicted.warnings:
+    for line in (*model_warnings(file, design), *predicted.warnings):
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
         tell(

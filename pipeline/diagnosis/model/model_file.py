@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from flexspline.pipeline.diagnosis.model.model_keys import (
     ORIGIN,
     OWN,
     PROVENANCE,
+    PROVENANCE_OPTIONAL,
     TOP,
     TOP_OPTIONAL,
     UNIT,
@@ -52,7 +53,8 @@ class Provenance:
     ----------
     measurement_sha256 : of the measurement's bytes. time_recorded : where it had no time, rows count
         as seconds. first_cycle, first_time_s : of each unit's record in the file, by the unit's name;
-        absent where not recorded.
+        absent where not recorded. design_digests : of the design's tables, by name
+        (`design_digest.py`); empty in files of earlier versions.
     """
 
     program: str
@@ -65,16 +67,21 @@ class Provenance:
     time_recorded: bool
     first_cycle: Mapping[str, float]
     first_time_s: Mapping[str, float]
+    design_digests: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class ModelFile:
-    """A model, where it comes from, and what its predictions may be off by (None: the file does not say)."""
+    """A model, where it comes from, and what its predictions may be off by (None: the file does not say).
+
+    `alternatives` are, by a cause's id, the causes that its record cannot tell from it.
+    """
 
     path: Path
     model: ExtendedModel
     provenance: Provenance
     doubt: Doubt | None = None
+    alternatives: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def read_model_file(path: Path) -> ModelFile:
@@ -94,7 +101,7 @@ def read_model_file(path: Path) -> ModelFile:
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
     origin, calibrated = data["provenance"], data["calibrated"]
-    check(origin, PROVENANCE, {"gain": (dict,)}, "[provenance]", refuse)
+    check(origin, PROVENANCE, PROVENANCE_OPTIONAL, "[provenance]", refuse)
     if "gain" in origin:
         check(origin["gain"], GAIN, {}, "[provenance.gain]", refuse)
     check(calibrated, CALIBRATED, {}, "[calibrated]", refuse)
@@ -106,11 +113,14 @@ def read_model_file(path: Path) -> ModelFile:
     if len(units) != len(data["unit"]):
         raise refuse("a unit's name appears twice")
     elements: dict[str, tuple[Element, ...]] = {}
+    alternatives: dict[str, tuple[str, ...]] = {}
     for table in tables(data.get("cause", []), "cause", refuse):
         check(table, CAUSE, CAUSE_OPTIONAL, "[[cause]]", refuse)
         if table["id"] in elements:
             raise refuse(f"cause {table['id']} appears twice")
         elements[table["id"]] = _elements(table, refuse)
+        if rivals := table.get("alternatives"):
+            alternatives[table["id"]] = _texts(rivals, "alternatives in [[cause]]", refuse)
     own = {
         name: (
             float(u.get("own_compliance_arcsec_per_Nm", 0.0)),
@@ -129,9 +139,20 @@ def read_model_file(path: Path) -> ModelFile:
     )
     given = {key: origin[key] for key in PROVENANCE}
     cycle, time = ({name: float(u[key]) for name, u in units.items() if key in u} for key in ORIGIN)
-    provenance = Provenance(**given, first_cycle=cycle, first_time_s=time)
+    digests = origin.get("design_digests", {})
+    _texts(digests.values(), "design_digests in [provenance]", refuse)
+    provenance = Provenance(
+        **given, first_cycle=cycle, first_time_s=time, design_digests=dict(digests)
+    )
     doubt = read_doubt(data["doubt"], model, refuse) if "doubt" in data else None
-    return ModelFile(path, model, provenance, doubt)
+    return ModelFile(path, model, provenance, doubt, alternatives)
+
+
+def _texts(values: Iterable[object], where: str, refuse: Refuse) -> tuple[str, ...]:
+    found = tuple(values)
+    if not all(isinstance(v, str) for v in found):
+        raise refuse(f"{where} must be texts")
+    return tuple(map(str, found))
 
 
 def _bend(table: Mapping[str, Any], refuse: Refuse) -> Bend:

@@ -19,6 +19,7 @@ PROVENANCE: Keys = {
     "verdict": (str,), "K_b_Nm_per_rad": NUMBER, "K_e_Nm_per_rad": NUMBER,
     "time_recorded": (bool,),
 }  # fmt: skip
+PROVENANCE_OPTIONAL: Keys = {"gain": (dict,), "design_digests": (dict,)}
 CALIBRATED: Keys = {"compliance_arcsec_per_Nm": NUMBER, "gap_arcsec": NUMBER}
 UNIT: Keys = {"name": (str,), "zero_arcsec": NUMBER}
 OWN: Keys = {"own_compliance_arcsec_per_Nm": NUMBER, "own_gap_arcsec": NUMBER}

@@ -62,8 +62,11 @@ def _provenance(p: Provenance, gain: Gain | None) -> list[str]:
         f"K_e_Nm_per_rad = {number(p.K_e_Nm_per_rad)}",
         f"time_recorded = {str(p.time_recorded).lower()}"
         + ("" if p.time_recorded else "   # no time in the record: a row counts as a second"),
-        "",
     ]
+    if p.design_digests:
+        inner = ", ".join(f"{name} = {quoted(d)}" for name, d in p.design_digests.items())
+        lines.append(f"design_digests = {{ {inner} }}   # of the design's values")
+    lines.append("")
     if gain is not None:
         lines += [
             "[provenance.gain]   # root mean square error on rows not used for fitting",

@@ -1,0 +1,48 @@
+"""What a reader should know of an extended model before its figures are used, one line each."""
+
+from __future__ import annotations
+
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import one_line
+from flexspline.pipeline.diagnosis.model.design_digest import changed_tables
+from flexspline.pipeline.diagnosis.model.model_file import ModelFile
+from flexspline.results.diagnosis.words import title_of
+
+
+def model_warnings(file: ModelFile, design: Design) -> tuple[str, ...]:
+    """Whether the model is of another design, and whether its verdict leaves its causes open."""
+    return (*_of_another(file, design), *_left_open(file))
+
+
+def _of_another(file: ModelFile, design: Design) -> tuple[str, ...]:
+    origin = file.provenance
+    changed = changed_tables(design, origin.design_digests)
+    if not changed and (origin.design_digests or origin.design == design.name):
+        return ()
+    other = f", not of {one_line(design.name)}" if origin.design != design.name else ""
+    tables = f" with other values in {', '.join(f'[{name}]' for name in changed)}" * bool(changed)
+    K_b, K_e = origin.K_b_Nm_per_rad, origin.K_e_Nm_per_rad
+    return (
+        f"the model is of {one_line(origin.design)}{other}{tables}; "
+        f"its angles are for K_b {K_b:.0f} and K_e {K_e:.0f} N·m/rad",
+    )
+
+
+def _left_open(file: ModelFile) -> tuple[str, ...]:
+    if file.provenance.verdict == "unknown":
+        return (
+            "the model's verdict is unknown: its record has an effect that no known cause explains,"
+            " and the model leaves that out",
+        )
+    if file.provenance.verdict != "ambiguous":
+        return ()
+    rivals = "; ".join(
+        f"{title_of(cause)} or {' or '.join(map(title_of, others))}"
+        for cause, others in file.alternatives.items()
+        if others
+    )
+    return (
+        "the model's verdict is ambiguous: its record cannot tell its causes from others"
+        + (f" ({rivals})" if rivals else "")
+        + "; under other conditions the angles may differ",
+    )
