@@ -257,7 +257,7 @@ def diagnose(
     chain = chain_of(context) if against == "gear" else None
     return diagnose_file(
         design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved, counts_per_turn,
-        chain,
+        chain, tuple(f"{n} = {K:g}" for n, K in (("K_b", K_b), ("K_e", K_e)) if K is not None),
     )  # fmt: skip
 
 

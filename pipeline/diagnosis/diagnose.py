@@ -61,6 +61,7 @@ class Diagnosis:
     sweep, end_points, specimens : what stands behind the verdict, of the kind that was measured; None
         where there are too few data.
     gear_inputs : which input of the gear explains what its curve leaves; None of a sweep against the sum.
+    given : the stiffnesses that a person stated, such as `--Kb 31.3`; kept of sweeps.
     """
 
     design: Design
@@ -72,6 +73,7 @@ class Diagnosis:
     end_points: EndPointAnalysis | None = None
     specimens: SpecimenAnalysis | None = None
     gear_inputs: GearInputs | None = None
+    given: tuple[str, ...] = ()
 
     @property
     def kind(self) -> MeasurementKind:
@@ -107,14 +109,15 @@ def diagnose_file(
     context: AnalysisContext | None = None,
     counts_per_turn: float | None = None,
     chain: Chain | None = None,
+    given: tuple[str, ...] = (),
 ) -> Diagnosis:
     """Read a measurement and diagnose it.
 
     Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
     they came from FE: specimens are then solved like the design; without it, given stiffnesses are
     scaled from specimen to specimen by the hole-free model. `counts_per_turn` of the encoder, where a
-    column is in counts. A torque sweep is compared with the curve of the whole gear's `chain`, where it is
-    given, in place of the straight line.
+    column is in counts. A torque sweep is compared with the curve of the whole gear's `chain`, where there
+    is one, in place of the straight line. `given`: the stiffnesses that a person stated, such as `--Kb 31.3`.
 
     Raises
     ------
@@ -134,7 +137,7 @@ def diagnose_file(
             from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
 
             prediction = against_gear(prediction, chain, largest)
-    refuse_absurd(measurement, prediction, K_b, K_e)
+    refuse_absurd(measurement, prediction, K_b, K_e, given)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
         model = behind.model if behind else None
@@ -144,8 +147,9 @@ def diagnose_file(
 
             inputs = gear_inputs(design, chain, behind)
         return Diagnosis(
-            design, measurement, prediction, outcome, model, sweep=behind, gear_inputs=inputs
-        )
+            design, measurement, prediction, outcome, model, sweep=behind, gear_inputs=inputs,
+            given=given,
+        )  # fmt: skip
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model, end_points=analysis)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.measurement.units import ANGLE, STIFFNESS, TORQUE, Factors
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.slope_hints import ANGLE_UNITS, TORQUE_UNITS, unit_hints
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
 ABSURD = 30.0
@@ -24,20 +24,26 @@ POSITION_ERROR_arcsec = 120.0
 """Readings wander so far without torque: catalogues allow small wave gears 2 arcmin of position error."""
 NOTHING = 1e-3
 """Of the simulated twist: less is a channel without a signal as likely as a unit."""
-ANGLE_UNITS, TORQUE_UNITS = ("arcsec", "arcmin", "deg", "mrad", "rad"), ("Nm", "mNm", "Ncm", "kNm")
-"""Units that rigs use; others are not guessed at."""
 AS_LIKELY = 1.5
 """Times further off than the best unit, and a unit is still asked for."""
 TINY = 1e-12
 """Ratios are cut here, for their logarithms."""
+TURNED = "turned?"
+"""Ends each refusal of a sign, which no stiffness explains."""
 OPPOSITE = -1 / 3
 """Of the simulated twist: no friction or drift turns it over."""
 
 
 def refuse_absurd(
-    measurement: Sweep | EndPoints | Specimens, prediction: Prediction, K_b: float, K_e: float
+    measurement: Sweep | EndPoints | Specimens,
+    prediction: Prediction,
+    K_b: float,
+    K_e: float,
+    given: Collection[str] = (),
 ) -> None:
     """Refuse a measurement whose size cannot be the design's; K in N·m/rad.
+
+    `given`: the stiffnesses that a person stated, such as `--Kb 31.3`: these are doubted too.
 
     Raises
     ------
@@ -51,7 +57,13 @@ def refuse_absurd(
     else:
         reason = _absurd_specimens(measurement, K_b, K_e)
     if reason:
-        raise MeasurementError(measurement.path, None, reason)
+        doubted = "" if reason.endswith(TURNED) else given_words(given)
+        raise MeasurementError(measurement.path, None, reason + doubted)
+
+
+def given_words(given: Collection[str]) -> str:
+    """A sentence that names the stiffnesses that a person stated; "" of none."""
+    return f" Or check the stiffness given: {', '.join(given)} (N·m/rad)." if given else ""
 
 
 def absurd_sweep(size: SweepSize, sweep: Sweep) -> str | None:
@@ -60,7 +72,7 @@ def absurd_sweep(size: SweepSize, sweep: Sweep) -> str | None:
     if low > ABSURD or high < -ABSURD or -1 / ABSURD < low <= high < 1 / ABSURD:
         return _twist_words(size.chord, sweep) + suspects(size, sweep)
     if high < OPPOSITE:
-        return "the angle falls where torque rises: is the sign of angle or torque turned?"
+        return f"the angle falls where torque rises: is the sign of angle or torque {TURNED}"
     if size.span_arcsec > ABSURD * (size.simulated_arcsec + POSITION_ERROR_arcsec):
         return _twist_words(size.span_arcsec / size.simulated_arcsec, sweep) + suspects(size, sweep)
     return slope_words(size, sweep) if slope_beyond(size, ABSURD) else None
@@ -89,7 +101,7 @@ def slope_words(size: SweepSize, sweep: Sweep) -> str:
 
 def suspects(size: SweepSize, sweep: Sweep) -> str:
     """Units in which the readings would be right, the likeliest first, as a question."""
-    angle, torque = (_column(sweep.read_as, name) for name in ("angle", "torque"))
+    angle, torque = (sweep.read_as.column(name) for name in ("angle", "torque"))
     found: list[tuple[float, str]] = []
     if angle:
         if abs(size.chord) > 1 and _whole(sweep.angle_arcsec / angle.factor):
@@ -104,8 +116,10 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
             if abs(chord) < np.log(LIKELY):
                 off = max(off, abs(chord))
                 found.append((off, f"is {torque.head} in {unit}, not {torque.unit}"))
+    found += [(0.0, f"is {h.head} in {h.other}, not {h.unit}") for h in unit_hints(size, sweep)]
     best = min((off for off, _ in found), default=0.0)
-    asked = [words for off, words in sorted(found) if off <= best + np.log(AS_LIKELY)]
+    likely = (words for off, words in sorted(found) if off <= best + np.log(AS_LIKELY))
+    asked = list(dict.fromkeys(likely))
     if abs(size.chord) < NOTHING:
         asked.append("was the channel of the angle connected")
     return ": " + (", or ".join(asked) or "are the units of angle and torque right") + "?"
@@ -137,7 +151,7 @@ def times(ratio: float) -> str:
 
 
 def _twist_words(ratio: float, sweep: Sweep) -> str:
-    column = _column(sweep.read_as, "angle")
+    column = sweep.read_as.column("angle")
     turned = " with its sign turned" if ratio < 0 else ""
     return f"{column.head if column else 'the angle'} is {times(ratio)} the simulated twist{turned}"
 
@@ -145,10 +159,6 @@ def _twist_words(ratio: float, sweep: Sweep) -> str:
 def _whole(readings: np.ndarray) -> bool:
     """Whether all readings are whole numbers; those that went through a factor to ours, nearly."""
     return bool(np.all(np.abs(readings - np.round(readings)) <= 1e-9 * np.abs(readings)))
-
-
-def _column(read_as: ReadAs, quantity: str) -> ReadColumn | None:
-    return next((c for c in read_as.columns if c.name.startswith(quantity)), None)
 
 
 def _beyond(ratio: float) -> bool:
@@ -161,12 +171,12 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
         return None
     ratio = float(np.median((points.angle_plus_arcsec - points.angle_minus_arcsec) / simulated))
     if _beyond(abs(ratio)):
-        column = _column(points.read_as, "angle_plus")
+        column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
         ask = f"are they in {unit}, not {column.unit}" if column and unit else "is the unit right"
         return f"the angles are {times(ratio)} the simulated ones: {ask}?"
     if ratio < OPPOSITE:
-        return "angle_plus lies below angle_minus: are the two columns, or the sign, turned?"
+        return f"angle_plus lies below angle_minus: are the two columns, or the sign, {TURNED}"
     return None
 
 
@@ -182,7 +192,7 @@ def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | Non
     if not all(_beyond(r) for r in ratios):
         return None
     ratio = min(ratios, key=lambda r: abs(np.log(r)))
-    column = _column(specimens.read_as, "stiffness")
+    column = specimens.read_as.column("stiffness")
     unit = likely_unit(ratio, column, tuple(STIFFNESS), STIFFNESS)
     ask = f"is it in {unit}, not {column.unit}" if column and unit else "is the unit right"
     head = column.head if column else "the stiffness"

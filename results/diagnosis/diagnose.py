@@ -44,9 +44,14 @@ def diagnose_and_write(
     with context.progress.stage("diagnosis"):
         found = diagnose_file(
             context.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            context if given == (None, None) else None, counts_per_turn, chain,
+            context if given == (None, None) else None, counts_per_turn, chain, _stated(given),
         )  # fmt: skip
     record = diagnosis_record(found)
     with context.progress.stage("figures and report"):
         write_diagnosis(folder, found, record, used, attached)
     return as_json(record) if json else diagnosis_table(found, folder)
+
+
+def _stated(given: tuple[float | None, float | None]) -> tuple[str, ...]:
+    options = zip(("--Kb", "--Ke"), given, strict=True)
+    return tuple(f"{name} {value:g}" for name, value in options if value is not None)

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
+from flexspline.pipeline.diagnosis.plausibility import given_words
+from flexspline.pipeline.diagnosis.slope_hints import slope_hint
 from flexspline.results.diagnosis.words import (
     cause_title,
     channel_words,
@@ -34,8 +37,34 @@ def summary(diagnosis: Diagnosis) -> str:
     """
     far = _far_off(diagnosis)
     if far and diagnosis.verdict == "consistent":
-        return f"The curve has the simulated form, but the {far}."
-    return _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
+        said = f"The curve has the simulated form, but the {far}."
+    else:
+        said = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
+    return said + _hint(diagnosis)
+
+
+def _hint(diagnosis: Diagnosis) -> str:
+    """What the slope of a sweep may come from besides the gear, as a sentence of its own; "" of nothing."""
+    sweep = diagnosis.measurement
+    if not isinstance(sweep, Sweep):
+        return ""
+    if any(u.limit for u in diagnosis.outcome.unexplained):
+        asked = any(u.limit and u.what.endswith("?") for u in diagnosis.outcome.unexplained)
+        return given_words(diagnosis.given) if asked else ""  # it asks for units itself
+    hint = slope_hint(sweep, diagnosis.prediction)
+    if hint is None:
+        return ""
+    soft = hint.softer > 1
+    times = (
+        f"{hint.softer if soft else 1 / hint.softer:.3g} times {'softer' if soft else 'stiffer'}"
+    )
+    if hint.units:
+        units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
+        return f" The slope is {times} than simulated, as with {units}: check the units."
+    return (
+        f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
+        " whose teeth and bearing yield too? Then use --against gear."
+    )
 
 
 def _far_off(diagnosis: Diagnosis) -> str:

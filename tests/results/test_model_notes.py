@@ -44,7 +44,7 @@ def test_the_same_design_by_any_name_is_no_matter(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("flexspline.wall_thickness_mm", 0.5), ("bearing.radial_clearance_um", 30.0),
+    [("flexspline.wall_thickness_mm", 0.5), ("bearing.radial_clearance_um", 20.0),
      ("material.flexspline.youngs_modulus_GPa", 190.0)],
 )  # fmt: skip
 def test_other_values_under_the_same_name_are_told(key: str, value: float, tmp_path: Path) -> None:

@@ -32,6 +32,10 @@ class ReadAs:
     sha256: str = ""
     footer: tuple[int, ...] = ()
 
+    def column(self, quantity: str) -> ReadColumn | None:
+        """The first column of a quantity, such as torque; None where no file has one."""
+        return next((c for c in self.columns if c.name.startswith(quantity)), None)
+
     @property
     def heads(self) -> tuple[str, ...]:
         """All columns, by the file's names; those that are read first."""

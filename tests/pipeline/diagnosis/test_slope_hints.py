@@ -1,0 +1,112 @@
+"""What a slope far from the simulated one may come from: a unit's factor, a complete gear, a stated K."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hidden.cases import draw_case
+from mislabelled import NONE, Fault, mislabelled
+from typer.testing import CliRunner
+
+from flexspline.geometry.load import design_from
+from flexspline.pipeline.diagnosis.bend import Bend
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
+from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
+from flexspline.pipeline.diagnosis.slope_hints import slope_hint
+from flexspline.results.cli import app
+from flexspline.results.diagnosis.summary import summary
+
+CASE = draw_case(1711, 1, "clean")
+EXAMPLES = Path(__file__).parents[3] / "examples"
+DESIGN = design_from(tomllib.loads(CASE.design))
+
+
+def record(tmp_path: Path, fault: Fault = NONE) -> Path:
+    path = tmp_path / "rig.csv"
+    path.write_text(mislabelled(CASE, fault), encoding="utf-8")
+    return path
+
+
+def sweep(tmp_path: Path, fault: Fault = NONE) -> Sweep:
+    read = read_measurement(record(tmp_path, fault))
+    assert isinstance(read, Sweep)
+    return read
+
+
+def predicted(times_stiffer: float = 1.0) -> Prediction:
+    return prediction_of(DESIGN, CASE.K_b * times_stiffer, CASE.K_e * times_stiffer)
+
+
+def torque_in(factor_Nm: float) -> Fault:
+    return Fault("torque_Nm", lambda v: v / factor_Nm, "torque_Nm")
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor_Nm"),  # in N·m, NIST SP 811, appendix B.8
+    [("in·lb", 0.1129848), ("ft·lb", 1.355818), ("kgf·m", 9.80665), ("kgf·cm", 0.0980665)],
+)
+def test_a_torque_in_another_unit_is_suspected(unit: str, factor_Nm: float, tmp_path: Path) -> None:
+    hint = slope_hint(sweep(tmp_path, torque_in(factor_Nm)), predicted())
+    assert hint is not None
+    assert [(u.head, u.unit, u.other) for u in hint.units] == [("torque_Nm", "Nm", unit)]
+    assert hint.softer == pytest.approx(factor_Nm, rel=0.05)
+
+
+def test_a_right_slope_and_one_of_no_unit_s_factor_give_no_hint(tmp_path: Path) -> None:
+    assert slope_hint(sweep(tmp_path), predicted()) is None
+    assert slope_hint(sweep(tmp_path, torque_in(0.8)), predicted()) is None
+    assert slope_hint(sweep(tmp_path, torque_in(1.2)), predicted()) is None
+
+
+def test_a_record_twice_as_soft_may_be_of_a_complete_gear(tmp_path: Path) -> None:
+    soft = sweep(tmp_path, torque_in(2.0))
+    hint = slope_hint(soft, predicted())
+    assert hint is not None
+    assert hint.units == ()
+    gear = predicted()
+    curve = Prediction(gear.compliance, gear.compliance_std, gear.gap_arcsec, gear.gap_std_arcsec,
+                       Bend((0.0, 1.0), (0.0, 0.1)))  # fmt: skip
+    assert slope_hint(soft, curve) is None  # it is compared with one already
+
+
+def test_the_summary_says_them(tmp_path: Path) -> None:
+    for factor, words in (
+        (0.1129848, "as with torque_Nm in in·lb, not Nm"),
+        (2.0, "--against gear"),
+    ):
+        path = record(tmp_path, torque_in(factor))
+        said = summary(diagnose_file(DESIGN, path, CASE.K_b, CASE.K_e))
+        assert words in said
+
+
+def test_a_stated_stiffness_is_doubted_beside_the_units(tmp_path: Path) -> None:
+    wrong = CASE.K_b / 1000
+    given = (f"--Kb {wrong:g}",)
+    with pytest.raises(MeasurementError) as refusal:
+        refuse_absurd(
+            sweep(tmp_path), prediction_of(DESIGN, wrong, CASE.K_e), wrong, CASE.K_e, given
+        )
+    assert f"Or check the stiffness given: --Kb {wrong:g} (N·m/rad)." in str(refusal.value)
+    ten = (CASE.K_b * 15, CASE.K_e * 15)  # not refused, and no cause
+    found = diagnose_file(DESIGN, record(tmp_path), *ten, given=(f"--Kb {ten[0]:g}",))
+    assert found.verdict == "unknown"
+    assert f"Or check the stiffness given: --Kb {ten[0]:g} (N·m/rad)." in summary(found)
+
+
+def test_a_turned_sign_is_no_stiffness_s_fault(tmp_path: Path) -> None:
+    turned = sweep(tmp_path, Fault("angle_arcsec", lambda v: -v, "angle_arcsec"))
+    with pytest.raises(MeasurementError, match=r"turned\?$"):
+        refuse_absurd(turned, predicted(), CASE.K_b, CASE.K_e, ("--Kb 3",))
+
+
+def test_the_command_names_its_option(tmp_path: Path) -> None:
+    words = ("diagnose", EXAMPLES / "xb1-40.toml", EXAMPLES / "measured" / "xb1-40-sweep.csv")
+    options = ("--Kb", 31.3, "--Ke", 43339, "--out", tmp_path / "out")
+    done = CliRunner().invoke(app, [str(w) for w in (*words, *options)])
+    assert done.exit_code == 2
+    assert "Or check the stiffness given: --Kb 31.3, --Ke 43339 (N·m/rad)." in done.stderr
