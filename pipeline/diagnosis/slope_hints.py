@@ -49,6 +49,8 @@ class SlopeHint:
 
 def slope_hint(sweep: Sweep, prediction: Prediction) -> SlopeHint | None:
     """What the slope may come from; None where it is near the simulated one, or no unit's factor stiffer."""
+    if not len(sweep.history):
+        return None
     size = sweep_size(sweep.history, sweep.angle_arcsec, prediction)
     if size is None or size.compliance <= 0:
         return None

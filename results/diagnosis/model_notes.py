@@ -8,10 +8,13 @@ from flexspline.pipeline.diagnosis.model.design_digest import changed_tables
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.results.diagnosis.words import title_of
 
+RATE = "rate_dependence"
+"""The cause that a record without time may show, per row."""
+
 
 def model_warnings(file: ModelFile, design: Design) -> tuple[str, ...]:
     """Whether the model is of another design, and whether its verdict leaves its causes open."""
-    return (*_of_another(file, design), *_left_open(file))
+    return (*_of_another(file, design), *_left_open(file), *_without_time(file))
 
 
 def _of_another(file: ModelFile, design: Design) -> tuple[str, ...]:
@@ -46,3 +49,9 @@ def _left_open(file: ModelFile) -> tuple[str, ...]:
         + (f" ({rivals})" if rivals else "")
         + "; under other conditions the angles may differ",
     )
+
+
+def _without_time(file: ModelFile) -> tuple[str, ...]:
+    if file.provenance.time_recorded or RATE not in file.model.elements:
+        return ()
+    return (f"the model's record had no time: its {title_of(RATE)} counts a row as a second",)

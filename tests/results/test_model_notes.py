@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from histories import shape_of
 from typer.testing import CliRunner
 
 from flexspline.geometry.design import Design
@@ -76,3 +77,16 @@ def test_predict_prints_them(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, [str(w) for w in words])
     assert done.exit_code == 0, done.stderr
     assert "warning: the model's verdict is ambiguous" in done.stderr
+
+
+def test_a_rate_without_time_is_told(tmp_path: Path) -> None:
+    shape = shape_of(
+        "rate_dependence", lag_s=2.0, exponent=1.0, rate_Nm_per_s=1.0, ramp_s=10.0, deadband_Nm=0.0
+    )
+    rate = replace(MODEL, elements={"rate_dependence": (Element(shape, (1.0,)),)})
+    path = tmp_path / "model.toml"
+    for timed in (True, False):
+        text = model_text(rate, replace(ORIGIN, time_recorded=timed))
+        path.write_text(text, encoding="utf-8")
+        told = model_warnings(read_model_file(path), DESIGN)
+        assert any("counts a row as a second" in line for line in told) == (not timed)

@@ -68,7 +68,8 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
     if file.doubt is None:
         return Predicted(angle, tuple(warnings), table.read_as)
     deviation = deviation_of(file.model, file.doubt, history, found.units)
-    warnings += extrapolated(deviation, file.doubt.span, history)
+    timed = file.provenance.time_recorded
+    warnings += extrapolated(deviation, file.doubt.span, history, timed)
     return Predicted(angle, tuple(warnings), table.read_as, deviation.std_arcsec)
 
 

@@ -1,0 +1,56 @@
+"""A record without time has rates per row, and nothing per second."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from histories import sweep
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.model.doubt import Deviation
+from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
+from flexspline.pipeline.diagnosis.model.span import span_of
+from flexspline.results.diagnosis.summary import summary
+from flexspline.results.diagnosis.words import magnitude_words
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
+
+
+def lagging(path: Path, time: bool) -> Path:
+    """Six cycles of an angle that lags torque by six rows, with a gap."""
+    row = np.arange(600)
+    torque = 0.7 * np.sin(2 * np.pi * row / 100)
+    late = 0.7 * np.sin(2 * np.pi * (row - 6) / 100)
+    noise = 0.2 * np.random.default_rng(6).standard_normal(600)
+    angle = 11.35 * late + 36 * np.sign(torque) + noise
+    head = "time_s," * time + "torque_Nm,angle_arcsec"
+    rows = [
+        f"{2.0 * i}," * time + f"{t:.6f},{a:.4f}"
+        for i, t, a in zip(row, torque, angle, strict=True)
+    ]
+    path.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("time", "lag", "per"), [(True, 12.0, "s"), (False, 6.0, "row")])
+def test_a_lag_is_per_second_or_per_row(time: bool, lag: float, per: str, tmp_path: Path) -> None:
+    found = diagnose_file(DESIGN, lagging(tmp_path / "rig.csv", time), 31313, 43339)
+    (cause,) = found.causes
+    assert cause.magnitude == pytest.approx(
+        11.35 * lag, rel=0.05
+    )  # the median error of names is 2 %
+    assert cause.unit == f"arcsec per N·m/{per}"
+    assert magnitude_words(cause).endswith(f"N·m/{per}")
+    assert ("N·m/s" in summary(found)) == time
+
+
+@pytest.mark.parametrize(("timed", "unit"), [(True, "N·m/s"), (False, "N·m/row")])
+def test_what_lies_beyond_the_record_too(timed: bool, unit: str) -> None:
+    record = sweep()
+    far = Deviation(np.ones(len(record)), {"torque_rate": 3})
+    (line,) = extrapolated(far, span_of(record), record, timed)
+    assert line.count(unit) == 2
