@@ -10,9 +10,8 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
-from flexspline.results.diagnosis.summary import summary
+from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
-    VERDICTS,
     calibrated_words,
     capital,
     cause_title,
@@ -31,7 +30,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     """Verdict, causes, gain and what to measure next."""
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
-    lines += _wrapped(f"{VERDICTS[outcome.verdict]} ({outcome.verdict}). {summary(diagnosis)}")
+    lines += _wrapped(f"{verdict_heading(diagnosis)} ({outcome.verdict}). {summary(diagnosis)}")
     for cause in outcome.causes:
         lines.append(
             f"  {capital(cause_title(cause)):<62} {magnitude_words(cause):<28} {sure_words(cause)}"

@@ -79,8 +79,11 @@ def calibrated_sentences(
 
 
 def _against(measured: Estimate, simulated: float, std: float) -> str:
-    stated = plus_minus(simulated, std) if std else f"{simulated:.4g}"
-    return f"{plus_minus(measured.value, measured.std)} (simulated {stated})"
+    found = plus_minus(measured.value, measured.std)
+    if not std:
+        return f"{found} (simulated {simulated:.4g})"
+    off = f"{(measured.value - simulated) / std:+.1f}".replace("-", "−")
+    return f"{found} (simulated {plus_minus(simulated, std)}, {off} deviations)"
 
 
 def rows_used(prepared: PreparedSweep) -> str:

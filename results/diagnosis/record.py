@@ -10,7 +10,7 @@ from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
-from flexspline.results.diagnosis.summary import summary
+from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.records import heading
 
 EXTENDED_MODEL = "extended_model.toml"
@@ -23,6 +23,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
     record: Record = {
         **heading(diagnosis.design),
         "verdict": outcome.verdict,
+        "heading": verdict_heading(diagnosis),
         "summary": summary(diagnosis),
         "against": "sum" if diagnosis.prediction.bend is None else "gear",
         **data_record(diagnosis),

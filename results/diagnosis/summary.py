@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
 from flexspline.pipeline.diagnosis.plausibility import given_words
 from flexspline.pipeline.diagnosis.slope_hints import slope_hint
 from flexspline.results.diagnosis.words import (
+    VERDICTS,
     cause_title,
     channel_words,
     magnitude_words,
@@ -28,6 +29,16 @@ STANDS_OUT = 2.0
 FAR_UNITS = {"gap": "arcsec", "compliance": "arcsec per N·m"}
 LISTED = 12
 """Units that are spelt out; so many fill two lines."""
+
+
+SIZE_ALONE = "The simulated form, but not the simulated size"
+"""The heading in place of `consistent`'s own where gap or compliance lies far off."""
+
+
+def verdict_heading(diagnosis: Diagnosis) -> str:
+    """The verdict as a heading."""
+    alone = diagnosis.verdict == "consistent" and _far_off(diagnosis)
+    return SIZE_ALONE if alone else VERDICTS[diagnosis.verdict]
 
 
 def summary(diagnosis: Diagnosis) -> str:

@@ -38,7 +38,7 @@ VERDICTS = {
     "unknown": "An effect that no known cause explains",
     "insufficient": "Too little data for a verdict",
 }
-"""Headings. What lies far from the simulation in size alone is consistent too: the summary says it."""
+"""Headings."""
 SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 

@@ -11,9 +11,8 @@ from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
-from flexspline.results.diagnosis.summary import summary
+from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
-    VERDICTS,
     capital,
     cause_title,
     channel_words,
@@ -80,7 +79,7 @@ def diagnosis_document(
 def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     outcome = diagnosis.outcome
     tone: Literal["amber", "blue"] = "amber" if outcome.verdict in OPEN else "blue"
-    yield Callout(tone, VERDICTS[outcome.verdict], summary(diagnosis))
+    yield Callout(tone, verdict_heading(diagnosis), summary(diagnosis))
     yield Heading("What was measured")
     facts = tuple((name, fact) for name, fact in measured(diagnosis))
     yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.read_as.sha256))))

@@ -8,7 +8,6 @@ from typing import Any
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.words import (
-    VERDICTS,
     capital,
     cause_title,
     channel_words,
@@ -43,7 +42,7 @@ def told(kind: Kind, design: Design, printed: str) -> Told:
 def _diagnosis(record: Told) -> Told:
     after, gain = record.get("next_measurement"), record.get("gain")
     return {
-        "verdict": VERDICTS[record["verdict"]],
+        "verdict": record["heading"],
         "summary": capital(record["summary"]),
         "causes": [_cause(c) for c in record["causes"]],
         "unexplained": [
