@@ -46,10 +46,12 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
     """
     from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError
     from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
+    from flexspline.results.folder_lock import held_until_the_end
 
     where = f"{path}: " if path else ""
     try:
-        yield
+        with held_until_the_end():
+            yield
     except (MeasurementError, ModelFileError, DesignFileError) as error:  # they name their own file
         tell(f"flexspline: {error}")
         raise typer.Exit(2) from None

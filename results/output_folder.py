@@ -10,37 +10,51 @@ from pathlib import Path
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.temporary_files import discard
+from flexspline.results.folder_lock import hold, locked
 from flexspline.results.job import tell
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
 """A disk without room is no wrong word of the command line."""
 
 
-def folder_of(path: Path, out: Path | None) -> Path:
+def folder_of(path: Path, out: Path | None, shared: bool = False) -> Path:
     """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes.
 
-    Nothing is left in it: a folder that is not there yet is made for a moment.
+    It is the command's own until that ends (`folder_lock`); `shared`: with others that share it. Nothing is
+    left in it: a folder that was not there goes again at the command's end, if it is empty.
 
     Raises
     ------
-    DesignError : it cannot be made, or not be written to.
+    DesignError : it cannot be made, or not be written to, or another command writes there.
     OSError : the disk is full.
     """
     folder = out if out is not None else path.parent / f"{path.stem}.out"
-    verb = "made"
     try:
         if folder.exists() and not folder.is_dir():
             raise DesignError("--out", str(folder), "is a file; name a folder")
-        with _there(folder):
-            verb = "written to"
-            tempfile.TemporaryFile(dir=folder).close()
+        free = hold(_own(folder, shared))
     except OSError as fault:
         if fault.errno in FULL:
             raise OSError(fault.errno, fault.strerror, str(folder)) from None
+        verb = "written to" if folder.is_dir() else "made"
         reason = f"cannot be {verb} ({fault.strerror}); name another folder"
         raise DesignError("--out", str(folder), reason) from None
+    if not free:
+        reason = (
+            "another flexspline command writes there now; wait for its end, or name another folder"
+        )
+        raise DesignError("--out", str(folder), reason)
     discard(folder, tell)
     return folder
+
+
+@contextmanager
+def _own(folder: Path, shared: bool) -> Iterator[bool]:
+    """The folder, made where it is missing and found to be writable; whether no other command has it."""
+    with _there(folder):
+        tempfile.TemporaryFile(dir=folder).close()
+        with locked(folder, shared) as free:
+            yield free
 
 
 @contextmanager

@@ -53,7 +53,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             Attachment(file.name, raw, "Study file"),
             Attachment(base.name, read_raw(base), "Design file"),
         )
-        folder = folder_of(file, out)
+        folder = folder_of(file, out, shared=True)
         run = asked.file.run
         size = source_of(asked).size  # refuse before anything is written
         if run.scheduler and not folder.exists():
