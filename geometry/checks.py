@@ -27,12 +27,13 @@ def check(design: Design) -> None:
 
     Raises
     ------
-    DesignError : the first fault: its key, its value, the range that works; counts the others.
+    DesignError : the first fault: its key, its value, the range that works; the second, or how many more.
     """
     faults = list(_faults(design))
     if faults:
         first = faults[0]
-        raise DesignError(first.key, first.value, first.reason, more=len(faults) - 1)
+        second = faults[1] if len(faults) > 1 else None
+        raise DesignError(first.key, first.value, first.reason, len(faults) - 1, second)
 
 
 def _faults(design: Design) -> Iterator[DesignError]:

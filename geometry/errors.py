@@ -7,6 +7,10 @@ import re
 _UNREAD = re.compile("[\udc80-\udcff]+")
 MISSING = object()
 """The value of a key that is not there."""
+ARTEFACT = 14
+"""Letters of a float: longer ones, such as 0.30000000000000004, are rounding and not what a person wrote."""
+FIXED = range(-6, 7)
+"""Powers of ten that are written out; beyond, zeros have to be counted."""
 
 
 class FlexsplineError(Exception):
@@ -26,10 +30,15 @@ class DesignError(FlexsplineError, ValueError):
     more : how many further faults the design has.
     """
 
-    def __init__(self, key: str, value: object, reason: str, more: int = 0) -> None:
+    def __init__(
+        self, key: str, value: object, reason: str, more: int = 0, second: DesignError | None = None
+    ) -> None:
+        """`second`: the next fault, which is said too where it is the only one."""
         self.key, self.value, self.reason, self.more = key, value, reason, more
         found = "is missing" if value is MISSING else f"= {short(value)}"
         also = f" (and {more} more)" if more else ""
+        if more == 1 and second is not None:
+            also = f"; and {second}"
         super().__init__(f"{one_line(key)} {found}: {one_line(reason)}{also}")
 
 
@@ -64,7 +73,28 @@ def short(value: object, limit: int = 60) -> str:
         text = f'"{value[: limit + 1]}"'
     else:
         text = str(value)
+        if isinstance(value, float) and ("e" in text or len(text) > ARTEFACT):
+            text = plain_number(value)
     return one_line(text, limit)
+
+
+def plain_number(value: float, digits: int = 12) -> str:
+    """A number as a person writes it: 0.3, not 0.30000000000000004; 0.00001, not 1e-05.
+
+    Examples
+    --------
+    >>> plain_number(0.1 + 0.2), plain_number(1e-5), plain_number(2e-9), plain_number(1e6, 6)
+    ('0.3', '0.00001', '2e-9', '1000000')
+    """
+    text = f"{value:.{digits}g}"
+    if "e" not in text:
+        return text
+    mantissa, _, exponent = text.partition("e")
+    power = int(exponent)
+    if FIXED.start <= power < FIXED.stop:
+        text = f"{value:.{max(0, digits - 1 - power)}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    return f"{mantissa}e{power}"
 
 
 def readable(text: str) -> str:

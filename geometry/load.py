@@ -122,7 +122,7 @@ def _what(refused: DesignError) -> str:
     noun = re.match(r"(give|must be) a (whole )?number", refused.reason)
     if noun is None:
         return ""
-    found = re.search(r", not [\w ]+$", refused.reason)
+    found = re.search(r", not [\w ]+(; write .*)?$", refused.reason)
     if found is None and refused.value is not MISSING:
         return ""
     return f"{noun[0]}{found[0] if found else ''}; it "

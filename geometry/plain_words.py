@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.schema import Location, allowed, dotted, keys_of
 from flexspline.geometry.shapes import KINDS
+from flexspline.geometry.toml_read import number_help
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails, ValidationError
@@ -17,13 +18,14 @@ _NOUNS = {str: "text", bool: "true or false", dict: "a table", list: "a list"}
 
 
 def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
-    """The first fault as a DesignError that counts the others.
+    """The first fault as a DesignError that says the second, or counts the others.
 
     Unknown keys come first: a misspelt key is also a missing one, and its own name says more.
     """
     found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
     first = _translated(found[0], data)
-    return DesignError(first.key, first.value, first.reason, more=len(found) - 1)
+    second = _translated(found[1], data) if len(found) == 2 else None
+    return DesignError(first.key, first.value, first.reason, len(found) - 1, second)
 
 
 def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
@@ -39,6 +41,7 @@ def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
     if e["type"] == "missing":
         return DesignError(dotted(location), MISSING, f"give {allowed(location, kind)}")
     wrong = f", not {_NOUNS[type(e['input'])]}" if _is_wrong_type(e) else ""
+    wrong += number_help(e["input"]) if wrong and isinstance(e["input"], str) else ""
     return DesignError(dotted(location), e["input"], f"must be {allowed(location, kind)}{wrong}")
 
 

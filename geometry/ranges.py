@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from flexspline.geometry.errors import plain_number
+
 
 class Range(NamedTuple):
     """Both ends belong to it."""
@@ -19,7 +21,7 @@ class Range(NamedTuple):
         return isinstance(value, int | float) and self.low <= value <= self.high  # false for NaN
 
     def __str__(self) -> str:
-        return f"from {self.low:g} to {self.high:g}"
+        return f"from {plain_number(self.low, 6)} to {plain_number(self.high, 6)}"
 
 
 LENGTH_mm = Range(1e-3, 1e4)

@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.ranges import Range
 
 Location = tuple[str | int, ...]
 Node = dict[str, Any]
@@ -107,12 +108,10 @@ def ends_of(location: Location, kind: str | None = None) -> list[float]:
 
 
 def _range(node: Node) -> str:
-    high = f"{node['maximum']:g}"
-    low = f"from {node['minimum']:g} to {high}"
-    if "anyOf" in node:  # zero stands for "none"
-        zero, rest = node["anyOf"]
-        return f"equal to {zero['const']:g} or from {rest['minimum']:g} to {high}"
-    return low
+    if "anyOf" not in node:
+        return str(Range(node["minimum"], node["maximum"]))
+    zero, rest = node["anyOf"]  # zero stands for "none"
+    return f"equal to {zero['const']:g} or {Range(rest['minimum'], node['maximum'])}"
 
 
 def _unit(location: Location) -> str:

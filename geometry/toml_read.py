@@ -12,6 +12,11 @@ from flexspline.geometry.errors import FlexsplineError
 DEEPEST_KEY = 50
 """Parts of a dotted key; the files of this program have four. `tomllib` takes time with the square of it."""
 _AT_LINE = re.compile(r"at line (\d+)")
+_WITH_UNIT = re.compile(
+    r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\W\d_][^\s#\"']*|[%°'\"µ]\S*)?\s*"
+)
+"""A number, and what may be the unit behind it."""
+_VALUE = re.compile(r"=\s*([^#]*)")
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
@@ -42,14 +47,28 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
     except RecursionError as fault:
         raise TomlError("is nested too deeply") from fault
     except ValueError as fault:  # also integers of more digits than Python converts
-        raise TomlError(f"is not valid TOML: {fault}{_decimal_comma(text, fault)}") from fault
+        raise TomlError(f"is not valid TOML: {fault}{_help(text, fault)}") from fault
 
 
-def _decimal_comma(text: str, fault: ValueError) -> str:
-    """What to write where the line at fault holds a number such as 38,4; else nothing."""
+def number_help(text: str) -> str:
+    """What to write in place of text that holds a number, with a unit or without; "" of other text."""
+    found = _WITH_UNIT.fullmatch(text.strip())
+    if found is None:
+        return ""
+    unit = ": numbers are written without unit, the key's name ends with it" if found[2] else ""
+    return f"; write {found[1]}{unit}" if unit else f"; write {found[1]} without quotation marks"
+
+
+def _help(text: str, fault: ValueError) -> str:
+    """What to write where the line at fault holds a number such as 38,4 or 0.4 mm; else nothing."""
     lines, at = text.split("\n"), _AT_LINE.search(str(fault))
-    number = _COMMA.search(lines[int(at[1]) - 1]) if at and int(at[1]) <= len(lines) else None
-    return f"; write {number[1]}.{number[2]} with a point" if number else ""
+    if at is None or int(at[1]) > len(lines):
+        return ""
+    line = lines[int(at[1]) - 1]
+    if number := _COMMA.search(line):
+        return f"; write {number[1]}.{number[2]} with a point"
+    value = _VALUE.search(line)
+    return number_help(value[1]) if value else ""
 
 
 def _deepest_key(text: str) -> int:

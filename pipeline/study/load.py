@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.load import load_design, read_toml
+from flexspline.geometry.toml_read import number_help
 from flexspline.pipeline.study.check import check
 from flexspline.pipeline.study.schema import KEYS, WORDS, StudyFile, pattern
 from flexspline.pipeline.study.study import Study, StudyError
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 
 def load_study(path: Path) -> Study:
@@ -44,17 +48,21 @@ def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
 def _translated(error: ValidationError) -> StudyError:
     """The first fault in plain words; unknown keys first, since a misspelt one is also missing."""
     found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    first = found[0]
-    where = tuple(p for p in first["loc"])
+    first = _said(found[0])
+    second = _said(found[1]) if len(found) == 2 else None
+    return StudyError(first.key, first.value, first.reason, len(found) - 1, second)
+
+
+def _said(fault: ErrorDetails) -> StudyError:
+    where = fault["loc"]
     key = ".".join(f'"{p}"' if "." in str(p) else str(p) for p in where)
-    more = len(found) - 1
-    if first["type"] == "extra_forbidden":
-        table = pattern(where[:-1])
-        known = KEYS.get(table, ())
+    if fault["type"] == "extra_forbidden":
+        known = KEYS.get(pattern(where[:-1]), ())
         near = get_close_matches(str(where[-1])[:200], known, n=1, cutoff=0.6)
         hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
-        return StudyError(key, first["input"], f"unknown key; {hint}", more)
+        return StudyError(key, fault["input"], f"unknown key; {hint}")
     words = WORDS.get(pattern(where), "something else")
-    if first["type"] == "missing":
-        return StudyError(key, MISSING, f"give {words}", more)
-    return StudyError(key, first["input"], f"must be {words}", more)
+    if fault["type"] == "missing":
+        return StudyError(key, MISSING, f"give {words}")
+    help_ = number_help(fault["input"]) if isinstance(fault["input"], str) else ""
+    return StudyError(key, fault["input"], f"must be {words}{help_}")

@@ -41,8 +41,23 @@ CountsPerTurn = Annotated[
 ]
 
 
+TOML = ".toml"
 SUM, GEAR = "sum", "gear"
 """What `diagnose` compares a sweep with."""
+
+
+def in_order(file: Path, other: Path, words: str) -> None:
+    """Refuse files in another order than the command takes them: `file` is TOML, `other` is measured.
+
+    Raises
+    ------
+    typer.Exit : status 2, after one line.
+    """
+    if file.suffix.lower() != TOML and other.suffix.lower() == TOML:
+        tell(
+            f"flexspline: {file} is no TOML file and {other} is one; the order is flexspline {words}"
+        )
+        raise typer.Exit(2)
 
 
 def register(app: typer.Typer) -> None:
@@ -71,6 +86,7 @@ def diagnose(
     json: Json = False,
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
+    in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
     with answered(design, "; a diagnosis begins again from its start"):
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
 
@@ -96,6 +112,9 @@ def predict(
     json: Json = False,
 ) -> None:
     """The angle for a torque history, by an extended model."""
+    order = "predict DESIGN.toml --model MODEL.toml TORQUE.csv"
+    in_order(design, torque, order)
+    in_order(model, torque, order)
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.results.diagnosis.prediction import predict_and_write

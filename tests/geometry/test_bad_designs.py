@@ -71,15 +71,20 @@ ONE_KEY = [
     hat(("flexspline.boss_diameter_mm", "18", "belongs to a cup", "flange_inner_diameter_mm"), flexspline__boss_diameter_mm="18"),
     cup(("material.flexspline.poissons_ratio", "0.5", "0 to 0.49"), material__flexspline__poissons_ratio="0.5"),
     cup(("material.flexspline.youngs_modulus_GPa", "0", "0.001 to 2000 GPa"), material__flexspline__youngs_modulus_GPa="0"),
-    cup(("load.torque_Nm", "0.0", "1e-09 to 1e+06 N·m"), load__torque_Nm="0.0"),
+    cup(("load.torque_Nm", "0.0", "1e-9 to 1000000 N·m"), load__torque_Nm="0.0"),
     cup(("gear.pressure_angle_deg", "90", "5 to 45 deg"), gear__pressure_angle_deg="90"),
     cup(("bearing.bearing_play_model", '"linear"', '"involute" or "small_displacement"'), bearing__bearing_play_model='"linear"'),
     cup(("solver.model", '"magic"', '"axisymmetric" or "solid" or "auto"'), solver__model='"magic"'),
     cup(("uncertainty.youngs_modulus_pct", "-1", "0 to 100 %"), uncertainty__youngs_modulus_pct="-1"),
+    cup(("flexspline.wall_thickness_mm", "must be a number from 0.001 to 10000 mm, not text; write 0.4: numbers are written without unit, the key's name ends",), flexspline__wall_thickness_mm='"0.4 mm"'),
+    cup(("flexspline", "not text; write .4e0 without quotation marks",), flexspline__wall_thickness_mm='".4e0"'),
+    cup(("flexspline.wall_thickness_mm", "not text"), flexspline__wall_thickness_mm='"thin"'),
+    cup(("flexspline.wall_thickness_mm = 0.00001: must",), flexspline__wall_thickness_mm="1e-5"),
+    cup(("flexspline.ring_thickness_mm = 0.3: must",), flexspline__ring_thickness_mm="0.30000000000000004"),
     cup(("name", "1 to 200 characters"), name='""'),
     cup(("name", r"\n", "one line"), name=r'"two\nlines"'),
     cup(("name", "1 to 200 characters"), name='"' + "x" * 5000 + '"'),
-    cup(("load.torque_Nm", "digits", "1e-09 to 1e+06"), load__torque_Nm="0x" + "f" * 5000),
+    cup(("load.torque_Nm", "digits", "1e-9 to 1000000"), load__torque_Nm="0x" + "f" * 5000),
     cup((r"'od\nd'", "unknown key"), **{r'"od\nd"': "1"}),
 ]  # fmt: skip
 
@@ -163,7 +168,8 @@ def test_missing_table_is_named(tmp_path: Path) -> None:
     with pytest.raises(DesignError) as caught:
         load_design(path)
     assert "radial_clearance_um" in str(caught.value)  # now an unknown key of [gear]
-    assert caught.value.more == 1  # and [bearing] is missing
+    assert caught.value.more == 1
+    assert "; and bearing is missing: give" in str(caught.value)
 
 
 FILES = {
@@ -174,6 +180,15 @@ FILES = {
     "syntax": (b"name = \n[flexspline", "not valid TOML"),
     "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
     "decimal comma": (b'name = "a"\nlength_mm = 38,4  # long\n', "write 38.4 with a point"),
+    "a unit behind a number": (
+        b'name = "a"\nlength_mm = 38.4 mm  # long\n',
+        "write 38.4: numbers are written without unit",
+    ),
+    "a unit without a space": (
+        b'name = "a"\nwidth_um = 3\xc2\xb5m\n',
+        "write 3: numbers are written without unit",
+    ),
+    "no number": (b"name = a b\n", "not valid TOML: [^;]*$"),
     "null byte": (b"name = \x00", "not valid TOML"),
     "deep nesting": (b"x = " + b"[" * 50_000, "TOML|nested"),
     "huge integer": (b"x = " + b"9" * 9000, "TOML"),

@@ -84,7 +84,7 @@ def test_every_number_as_a_stiffness(option: str, tmp_path: Path) -> None:
         assert ended.status == (0 if fits else 2), (number, ended)
         if not fits:
             assert f"{option} = " in ended.said[0]
-            assert "must be a number from 1e-12 to 1e+15 N·m/rad" in ended.said[0]
+            assert "must be a number from 1e-12 to 1e15 N·m/rad" in ended.said[0]
 
 
 COLUMNS = {

@@ -59,7 +59,7 @@ BAD = {
     "an open quote": (rows("torque_Nm,angle_arcsec", *GOOD, '"0.5,3'), "bad.csv"),
     "an empty unit": (sweep_of("unit", [""]), "unit is empty"),
     "negative end points": (
-        rows("unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec", "1,-0.5,3,-3"), "must be from 1e-09",
+        rows("unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec", "1,-0.5,3,-3"), "must be from 1e-9",
     ),
     "a part of no gear": (rows("specimen,stiffness_Nm_per_rad,part", "1,100,bolt"), 'part = "bolt"'),
     "a stiffness of zero": (rows("specimen,stiffness_Nm_per_rad", "1,0"), "must be from 1e-12"),

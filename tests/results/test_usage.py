@@ -33,6 +33,20 @@ def test_one_line_names_what_is_wrong(line: str, tmp_path: Path) -> None:
     assert "--help" in ended.said[0]
 
 
+SWAPPED = {
+    "diagnose sweep.csv cup.toml": "diagnose DESIGN.toml MEASURED.csv",
+    "predict torque.csv --model m.toml cup.toml": "predict DESIGN.toml --model MODEL.toml TORQUE.csv",
+    "predict cup.toml --model torque.csv m.toml": "predict DESIGN.toml --model MODEL.toml TORQUE.csv",
+}
+
+
+@pytest.mark.parametrize("line", SWAPPED)
+def test_files_in_another_order(line: str, tmp_path: Path) -> None:
+    ended = in_process.flexspline(*line.split(), folder=tmp_path)
+    assert ended.status == 2
+    assert ended.said[0].endswith(f"the order is flexspline {SWAPPED[line]}")
+
+
 NAMES = (
     ["gear", ""], ["run", ""], ["study", ""], ["studio", "--no-browser", ""],
     ["diagnose", "cup.toml", ""], ["predict", "cup.toml", "t.csv", "--model", ""],
