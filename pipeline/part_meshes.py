@@ -42,17 +42,11 @@ EDGE_POINTS = 8
 
 @dataclass(frozen=True)
 class MeshedPart:
-    """A mesh, whether it is swept, and its sector's sharp edges (k, 3) [mm] for the stress rule."""
+    """A mesh, how it was made, and its sector's sharp edges (k, 3) [mm] for the stress rule."""
 
     mesh: TetMesh
     sharp_edges: np.ndarray
-    swept: bool
-
-    @property
-    def kind(self) -> Kind:
-        if not self.swept:
-            return "tetwild"
-        return "layered" if isinstance(self.mesh, LayeredMesh) else "swept"
+    kind: Kind
 
 
 @dataclass(frozen=True)
@@ -116,7 +110,7 @@ class PartMeshes:
     def _of_sweep(self, mesh: TetMesh) -> MeshedPart:
         model = self.model
         edges = swept_edges(model.part, model.sector.degrees, self._edge_spacing)
-        return MeshedPart(mesh, edges, swept=True)
+        return MeshedPart(mesh, edges, "layered" if isinstance(mesh, LayeredMesh) else "swept")
 
     def coarsened(self, most_elements: float) -> MeshSpec:
         """The part's first specification, or a coarser one where its swept mesh has more elements than that.
@@ -183,7 +177,7 @@ class PartMeshes:
             progress.note("  the swept mesh fails a check: fTetWild instead")
         surface = self._surface  # by CAD, a stage of its own
         with progress.stage(f"mesh of the {model.name}"):
-            return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges, swept=False)
+            return MeshedPart(mesh_surface(surface, spec), surface.sharp_edges, "tetwild")
 
     def _swept_or_layered(self, spec: MeshSpec) -> MeshedPart | None:
         made = None

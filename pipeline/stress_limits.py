@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
@@ -27,12 +28,32 @@ PEAK_OF = {
 """result.json's name of the peak of a field."""
 
 
+class Peak(Protocol):
+    """What a limit needs of a peak: a `StressPeak`, or a row of a study (`TabledPeak`)."""
+
+    @property
+    def mises_MPa(self) -> float: ...
+    @property
+    def at_excluded_border(self) -> bool: ...
+    @property
+    def exclusion_mm(self) -> float | None: ...
+
+
+@dataclass(frozen=True)
+class TabledPeak:
+    """A peak [MPa] of which a table keeps no place and no distance."""
+
+    mises_MPa: float
+    at_excluded_border: bool
+    exclusion_mm: float | None = None
+
+
 @dataclass(frozen=True)
 class PassedLimit:
     """A limit [MPa] that a peak passes; `key`: where the design states it, "" for HIGHEST_STRENGTH_MPA."""
 
     name: str
-    peak: StressPeak
+    peak: Peak
     limit_MPa: float
     key: str = ""
 
@@ -51,7 +72,9 @@ class PassedLimit:
         """On its own, as a warning."""
         figure = f"{self.name}_mises_MPa = {self.peak.mises_MPa:.4g}"
         if self.peak.at_excluded_border:
-            figure += f" ({self.peak.exclusion_mm:.3g} mm from an edge towards which the stress still rises)"
+            far = self.peak.exclusion_mm
+            place = "at" if far is None else f"{far:.3g} mm from"
+            figure += f" ({place} an edge towards which the stress still rises)"
         if self.key:
             return f"{figure} is above {self.key} = {self.limit_MPa:g}"
         return f"{figure} is {self.words}"
@@ -71,7 +94,7 @@ def stated_limit(design: Design, name: str) -> tuple[float, str] | None:
     return None if limit is None else (limit, f"material.{own}.fatigue_limit_MPa")
 
 
-def limits_passed(design: Design, peaks: Mapping[str, StressPeak]) -> Iterator[PassedLimit]:
+def limits_passed(design: Design, peaks: Mapping[str, Peak]) -> Iterator[PassedLimit]:
     """What is passed, for `peaks` by their names in result.json.
 
     On the wave generator a peak at the excluded border counts too: there the stress is at least so large,

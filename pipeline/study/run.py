@@ -19,6 +19,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
+from flexspline.pipeline.study.start import start_outcome
 from flexspline.pipeline.study.store import TrialStore, TrialStoreError
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.tolerance import Scattered, scattered
@@ -83,10 +84,17 @@ def whole_study(
     watch: Callable[[Progress], None],
     say: Callable[[str], None],
 ) -> StudyResult:
-    """`run_study` with the workers that the study asks for, its K_e corrected for holes."""
+    """`run_study` with the workers that the study asks for, its K_e corrected for holes.
+
+    Where it found a best design, the figures of the design that it began with stand beside it.
+    """
     run = study.file.run
     pool = partial(worker_pool, run.workers, run.scheduler)
-    return run_study(study, store, pool, watch, say=say, holes=nominal_holes(study, store, say))
+    holes = nominal_holes(study, store, say)
+    result = run_study(study, store, pool, watch, say=say, holes=holes)
+    if result.about_scatter or not result.pareto:
+        return result
+    return replace(result, start=start_outcome(study, store, holes))
 
 
 def run_study(

@@ -7,15 +7,14 @@ from pathlib import Path
 
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.template import design_text
-from flexspline.pipeline.stress_limits import PEAK_OF, stated_limit
+from flexspline.pipeline.stress_limits import PART_OF, Peak, TabledPeak, limits_passed
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
+from flexspline.results.study.labels import at_border
 from flexspline.results.study.record import SHOWN
 
 BEST = "best.toml"
-WAVE_GENERATOR = PEAK_OF["wave_generator"]
-"""The peak that passes a fatigue limit wherever it lies (`pipeline.stress_limits.limits_passed`)."""
 
 
 def write_best_design(folder: Path, result: StudyResult) -> Path | None:
@@ -46,7 +45,15 @@ def _warnings(result: StudyResult, row: Row) -> Iterable[str]:
     design = result.design_of(row)
     known = set(warnings(result.study.design))
     yield from (line for line in warnings(design) if line not in known)
-    key = f"{WAVE_GENERATOR}_mises_MPa"
-    stated, peak = stated_limit(design, WAVE_GENERATOR), row.outcome.figures.get(key)
-    if stated is not None and peak is not None and peak > stated[0]:
-        yield f"{key} = {peak:.4g} is above {stated[1]} = {stated[0]:g}"
+    yield from (passed.line for passed in limits_passed(design, _peaks(row)))
+
+
+def _peaks(row: Row) -> dict[str, Peak]:
+    """Those that the row has, by their names in result.json."""
+    figures = row.outcome.figures
+    keys = {name: f"{name}_mises_MPa" for name in PART_OF}
+    return {
+        name: TabledPeak(figures[key], at_border(key, figures))
+        for name, key in keys.items()
+        if key in figures
+    }

@@ -66,7 +66,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         if kept := len(store.rows()):
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
-        for line in (*border_warnings(result), *preloaded(result), *best_warnings(result)):
+        of_best = tuple(best_warnings(result))
+        for line in (*border_warnings(result), *preloaded(result), *of_best):
             tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)
@@ -87,7 +88,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         if best_file := write_best_design(folder, result):
             tables.append(best_file)
         record["files"] = [str(p) for p in tables]
-        reports = write_study_reports(folder, result, pictures, best, attached)
+        reports = write_study_reports(folder, result, pictures, best, attached, of_best)
         record["files"] += [str(p) for p in (*pictures, *reports)]
         show(as_json(record) if json else words(result, record), json)
 

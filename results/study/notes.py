@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
@@ -12,7 +12,6 @@ from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.peaks import BORDER, MEANING
-from flexspline.results.study.best_design import best_warnings
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import SHOWN
 from flexspline.results.study.why import signed, unfollowed
@@ -21,8 +20,8 @@ PRELOAD = "preload_tooth_force_N"
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
-def notes(result: StudyResult) -> list[str]:
-    """Sentences of the section "Scope and limits"."""
+def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
+    """Sentences of the section "Scope and limits"; `of_best`: the warnings of the best designs."""
     said = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
         f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
@@ -32,7 +31,7 @@ def notes(result: StudyResult) -> list[str]:
     ]
     said += _borders(result)
     said += _whole_gear(result)
-    said += [f"{line[:1].upper()}{line[1:]}." for line in best_warnings(result)]
+    said += [f"{line[:1].upper()}{line[1:]}." for line in of_best]
     if not result.verified:
         asked = result.study.file.run.verify
         why = (

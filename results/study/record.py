@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from flexspline import __version__
 from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
@@ -30,6 +32,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "failed": len(result.rows) - len(result.built),
         "incomplete": len(result.incomplete),
         "feasible": len(result.feasible),
+        **({"start": _start(result, result.start)} if result.start else {}),
         "best": [_row(r) for r in best],
         **({"verified": [_verified(v) for v in result.verified]} if result.verified else {}),
         **({"tolerance": [_scatter(s) for s in result.scatter]} if result.scatter else {}),
@@ -97,6 +100,11 @@ def _input(s: Scatter, i: int) -> dict[str, Any]:
     return found
 
 
+def _start(result: StudyResult, start: Outcome) -> dict[str, Any]:
+    found = {"values": result.start_values, "figures": published(start.figures)}
+    return found | ({"reason": start.reason} if start.reason else {})
+
+
 def _row(row: Row) -> dict[str, Any]:
     return {
         "design": row.slot,
@@ -107,21 +115,16 @@ def _row(row: Row) -> dict[str, Any]:
 
 def words(result: StudyResult, record: dict[str, Any]) -> str:
     """For the terminal."""
-    file = result.study.file
     lines = [
         f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
         f"{len(result.feasible)} keep to the constraints"
     ]
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")
-    for row in () if result.about_scatter else result.best(SHOWN):
-        values = ", ".join(
-            f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items()
-        )
-        figures = ", ".join(
-            f"{entry(k).symbol} = {valued(k, row.outcome.figures)}" for k in file.objective
-        )
-        lines.append(f"  design {row.slot}: {values}: {figures}")
+    best = () if result.about_scatter else result.best(SHOWN)
+    if best and result.start is not None:
+        lines.append(_line(result, "start", result.start_values, result.start))
+    lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
     lines += [f"  {line}" for line in misses(result)]
     if result.unscattered:
         lines.append(f"  {result.unscattered}")
@@ -130,6 +133,17 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     for s in result.scatter:
         lines += _scatter_words(s)
     return "\n".join([*lines, *(f"  {name}" for name in record["files"])])
+
+
+def _line(result: StudyResult, name: str, values: Mapping[str, float], outcome: Outcome) -> str:
+    """A design's varied values and its objectives; why these are missing, where they are."""
+    said = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in values.items())
+    figures = ", ".join(
+        f"{entry(k).symbol} = {valued(k, outcome.figures)}"
+        for k in result.study.file.objective
+        if k in outcome.figures
+    )
+    return f"  {name}: {said}: {figures or outcome.reason}"
 
 
 def _verified_words(v: Verified) -> list[str]:

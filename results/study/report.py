@@ -66,17 +66,19 @@ def write_study_reports(
     pictures: Sequence[Path],
     best: BestStress | None = None,
     attached: tuple[Attachment, ...] = (),
+    of_best: Sequence[str] = (),
 ) -> list[Path]:
     """Write report.pdf and report.html, each whole or not at all; their paths.
 
-    With `best` its picture turns in the browser, or the report says why it is missing.
+    With `best` its picture turns in the browser, or the report says why it is missing; `of_best` are the
+    warnings of the best designs.
 
     Raises
     ------
     ReportError : typst refused the document.
     """
     best = best or BestStress()
-    document = study_document(result, [p.name for p in pictures], attached, best.missing)
+    document = study_document(result, [p.name for p in pictures], attached, best.missing, of_best)
     made = reports_of(document, {p.stem: p for p in pictures}, best.views)
     return write_together(folder, made)
 
@@ -86,8 +88,10 @@ def study_document(
     pictures: Sequence[str],
     attached: tuple[Attachment, ...] = (),
     missing: str = "",
+    of_best: Sequence[str] = (),
 ) -> Document:
-    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not."""
+    """The report; `pictures` are the names of the files drawn, `missing` why the best's is not, `of_best`
+    its warnings."""
     study = result.study
     blocks = (
         Paragraph(f"{METHODS[study.file.run.method]} {_counts(result)}"),
@@ -100,7 +104,7 @@ def study_document(
         *(_not_drawn(missing, result) if missing and PICTURE not in pictures else ()),
         *_failures(result),
         Heading("Scope and limits"),
-        Bullets(tuple(map(worded, notes(result)))),
+        Bullets(tuple(map(worded, notes(result, of_best)))),
     )
     return Document(
         title="A study of designs",
@@ -155,21 +159,28 @@ def _best(result: StudyResult) -> Iterable[Block]:
     chosen = () if result.about_scatter else result.best(COLUMNS)
     if not chosen:
         return
+    begun = () if result.start is None else (result.start.figures,)
     lines: list[tuple[str, ...]] = []
     for key in file.vary:
         q = entry(key)
-        lines.append((q.axis, *(q.text(r.values[key]) for r in chosen)))
+        values = (*(result.start_values for _ in begun), *(r.values for r in chosen))
+        lines.append((q.axis, *(q.text(v[key]) if key in v else "" for v in values)))
     for key in dict.fromkeys([*file.objective, *file.constraint, "flexspline_mass_g"]):
         q = entry(key)
         if all(key in r.outcome.figures for r in chosen):
-            lines.append((q.axis, *(_text(key, r.outcome.figures) for r in chosen)))
+            lines.append(
+                (q.axis, *(_text(key, f) for f in (*begun, *(r.outcome.figures for r in chosen))))
+            )
+    heads = (*("start" for _ in begun), *(f"design {r.slot}" for r in chosen))
     yield Heading("The best designs")
-    yield Table(
-        (Column("", grow=1), *(Column(f"design {r.slot}", "right") for r in chosen)), tuple(lines)
-    )
+    yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
+    if begun:
+        yield Paragraph("start: the design that the study began with, solved in the same way.")
 
 
 def _text(key: str, figures: Mapping[str, float]) -> str:
+    if key not in figures:  # the start may lack what each row has
+        return ""
     return entry(key).text(figures[key]) + (" †" if at_border(key, figures) else "")
 
 

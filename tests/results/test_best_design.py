@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,11 +11,15 @@ from study_bench import study_of
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.study.claims import Row
-from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.run import trial_store_of
 from flexspline.pipeline.study.source import study_name
+from flexspline.pipeline.study.start import start_outcome
 from flexspline.results.study.best_design import best_warnings, write_best_design
 from flexspline.results.study.notes import notes
+from flexspline.results.study.record import summary, words
+from flexspline.results.study.report import study_document
 
 RING, PEAK = "flexspline.ring_thickness_mm", "wave_generator_peak_mises_MPa"
 STUDY = f"""
@@ -77,7 +82,8 @@ def test_a_peak_above_the_fatigue_limit_is_said(peak: float, said: int) -> None:
         line for line in best_warnings(result_of((0.55, peak))) if "fatigue_limit_MPa = 500" in line
     ]
     assert len(lines) == said
-    in_report = [line for line in notes(result_of((0.55, peak))) if "fatigue_limit_MPa" in line]
+    told = notes(result_of((0.55, peak)), lines)
+    in_report = [line for line in told if "fatigue_limit_MPa" in line]
     assert len(in_report) == said
 
 
@@ -95,3 +101,48 @@ def test_rows_of_a_program_that_means_something_else_are_not_resumed(
     assert study_name(study) == before
     monkeypatch.setattr("flexspline.pipeline.study.source.FORMAT", 10**6)
     assert study_name(study) != before
+
+
+def test_a_peak_that_no_metal_bears_is_said_as_in_a_run() -> None:
+    (fatigue, elastic) = best_warnings(result_of((0.55, 2500.0)))
+    assert "fatigue_limit_MPa" in fatigue
+    assert "where no metal of gears is elastic" in elastic
+
+
+def begun(*figures: float) -> StudyResult:
+    """A study whose first design had these figures."""
+    result = result_of((0.7, 400.0))
+    return replace(
+        result, start=Outcome(dict(zip(("K_b_Nm_per_rad",), figures, strict=False)), "no K")
+    )
+
+
+def test_the_first_design_stands_beside_the_best() -> None:
+    result = begun(5500.0)
+    record = summary(result)
+    assert record["start"]["values"] == {RING: 0.55}
+    assert record["start"]["figures"]["K_b_Nm_per_rad"] == 5500.0
+    lines = words(result, record | {"files": []}).splitlines()
+    assert re.match(r"  start: ring thickness 0\.55.mm: K_b = 5.?500", lines[1])
+    assert lines[2].startswith("  design 0: ")
+    table = str(study_document(result, ()).payload())
+    assert "'start'" in table
+    assert "'0.55'" in table
+    assert "start: no K" not in table
+
+
+def test_a_first_design_that_fails_says_why() -> None:
+    lines = words(begun(), summary(begun()) | {"files": []}).splitlines()
+    assert lines[1].endswith(": no K")
+
+
+def test_the_first_design_is_solved_once(tmp_path: Path) -> None:
+    study, solved = study_of(STUDY), []
+
+    def solve(task: Task) -> Outcome:
+        solved.append(task.values)
+        return Outcome({"K_b_Nm_per_rad": 7.0})
+
+    found = [start_outcome(study, trial_store_of(study, tmp_path), None, solve) for _ in range(2)]
+    assert solved == [{}]
+    assert found[0] == found[1] == Outcome({"K_b_Nm_per_rad": 7.0})

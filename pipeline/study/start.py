@@ -1,0 +1,30 @@
+"""The design that a study begins with, solved like its rows: what the best designs are compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.figures import USUAL
+from flexspline.pipeline.study.holes import HolesEffect
+from flexspline.pipeline.study.source import solves_of
+from flexspline.pipeline.study.store import TrialStore
+from flexspline.pipeline.study.study import Study
+
+START_NOTE = "start"
+
+
+def start_outcome(
+    study: Study,
+    store: TrialStore,
+    holes: HolesEffect | None,
+    evaluation: Callable[[Task], Outcome] = evaluate,
+) -> Outcome:
+    """Its figures by the solves of the study, kept with the study's trials."""
+    stored = store.notes().get(START_NOTE)
+    if stored is None:
+        tables = study.design.model_dump(mode="json", exclude_none=True)
+        stored = asdict(evaluation(Task(tables, {}, solves_of(study, USUAL), holes)))
+        store.note(START_NOTE, stored)
+    return Outcome(**stored)
