@@ -29,7 +29,7 @@ from flexspline.results.renders.webp import write_webp
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 ELLIPSE = "wave_generator"
-DRAWING = 7
+DRAWING = 8
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 TURNING = 2
 """The same of the 3-D views."""

@@ -13,8 +13,6 @@ from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_pn
 
 CURVE, LOADS = "gear_torque_angle", "gear_loads"
 """Names of the pictures."""
-HEADROOM = 0.22
-"""Of the axes, for the words over the tallest bar."""
 
 
 def write_gear_angle(path: Path, curve: GearCurve) -> None:
@@ -64,17 +62,11 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
             axes.set_title(f"Force of a {what} in N")
             most = int(np.abs(force).argmax())
-            words = f"largest of a {what}: {force[most]:.3g} N at {grouped(angle[most], 0)}°"
-            # left of a bar on the right, so that the words stay within the axes
-            side, shift = ("right", -6) if angle[most] > 0 else ("left", 6)
-            axes.annotate(
-                words,
-                (angle[most], force[most]),
-                xytext=(shift, 4),
-                textcoords="offset points",
-                ha=side,
-            )
-            axes.margins(y=HEADROOM)
+            words = f"largest: {force[most]:.3g} N at {grouped(angle[most], 0)}°"
+            axes.annotate(  # beside the title, where no bar and no line is
+                words, (1.0, 1.0), xycoords="axes fraction", xytext=(0, 6), textcoords="offset points",
+                ha="right",
+            )  # fmt: skip
             axes.set_xlim(-93, 93)
             axes.set_xticks(range(-90, 91, 30))
             axes.grid(True, axis="y")

@@ -74,7 +74,12 @@ def _summary(content: ReportContent) -> Iterable[Block]:
     wave = quantity("wave_generator_peak_mises_MPa").symbol
     tiles = [
         Tile("Backlash", total["value"], total["unit"], total["bounds"]),
-        Tile("Series stiffness", series["value"], series["unit"], series["bounds"]),
+        Tile(
+            "Series stiffness",
+            series["value"],
+            series["unit"],
+            f"{series['bounds']}, {series['kind']}",
+        ),
     ]
     for row in rest:
         if row["symbol"] == wave:
@@ -110,7 +115,7 @@ def _answer(content: ReportContent) -> Iterable[Block]:
             symbol(a["symbol"]),
             bold(a["value"]),
             a["unit"],
-            a["bounds"] or "–",
+            plain(a["bounds"] or "–") + (note(plain(a["kind"])) if a.get("kind") else ()),
         )
         for i, a in enumerate(tables.answers(content))
     ]

@@ -31,16 +31,15 @@ def answers(content: ReportContent) -> list[Row]:
         _row(
             series,
             content.K_series_Nm_per_rad,
-            f"{series.range_text(low, high)}, {bounds_kind(both)}",
+            series.range_text(low, high),
         )
-        | {"note": f"with K_b of load case “{case}”"}
+        | {"note": f"with K_b of load case “{case}”", "kind": bounds_kind(both)}
     )
     for name, stiffness in content.stiffnesses.items():
         entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
-        kind = bounds_kind(stiffness.guaranteed)
-        row = _row(entry, stiffness.K_Nm_per_rad, f"{bounds}, {kind}")
-        rows.append(row | {"note": entry.note})
+        row = _row(entry, stiffness.K_Nm_per_rad, bounds)
+        rows.append(row | {"note": entry.note, "kind": bounds_kind(stiffness.guaranteed)})
     return rows + _stress_rows(content)
 
 

@@ -40,4 +40,23 @@ def test_the_tallest_bars_are_named_with_force_and_place(tmp_path: Path) -> None
     with drawn_figures() as found:
         write_gear_loads(tmp_path / "a.png", curve)
     said = [text.get_text() for axes in found[0].axes for text in axes.texts]
-    assert said == ["largest of a pair of teeth: 41 N at 6°", "largest of a ball: 77 N at −30°"]
+    assert said == ["largest: 41 N at 6°", "largest: 77 N at −30°"]
+
+
+@pytest.mark.parametrize("tallest", [-84.0, 0.0, 84.0])
+def test_no_word_stands_among_the_bars(tmp_path: Path, tallest: float) -> None:
+    at = (-84.0, -40.0, 0.0, 40.0, 84.0)
+    force = tuple(99.0 if a == tallest else 98.0 for a in at)
+    curve = replace(
+        CURVES["usual"],
+        tooth_angle_deg=at,
+        tooth_force_N=force,
+        ball_angle_deg=at,
+        ball_force_N=force,
+    )
+    with drawn_figures() as found:
+        write_gear_loads(tmp_path / "a.png", curve)
+        renderer = found[0].canvas.get_renderer()
+        for axes in found[0].axes:
+            inside = axes.get_window_extent(renderer)
+            assert not any(inside.overlaps(t.get_window_extent(renderer)) for t in axes.texts)

@@ -177,3 +177,11 @@ def test_a_gear_that_was_not_found_costs_only_its_section(tmp_path):
     text, _ = text_of(tmp_path / "r.pdf")
     assert "Not found: the play takes the stroke." in text
     assert "84.6" in text
+
+
+def test_the_answers_stand_on_one_page(finished_cup):
+    """The example's table of answers, its last row with them; the paragraph that follows is its end."""
+    pages = [p.extract_text() for p in PdfReader(finished_cup.folder / "report.pdf").pages]
+    (first,) = (p for p in pages if "Answers. Bounds" in p)
+    assert "shaft, load torque" in re.sub(r"\s+", " ", first)
+    assert "Bounds" not in pages[pages.index(first) + 1].split("The backlash budget")[0]
