@@ -19,8 +19,10 @@ RATED_WHY = (
     f"{RATED_Nm_per_mm3:g} N·m/mm³ of the pitch radius cubed, the median of four catalogue sizes at "
     "ratio 100"
 )
-
-
+STRONGEST_Nm_per_mm3 = 3.2e-3
+"""The largest of these four, size 20."""
+UNUSUAL = 3.0
+"""Times that: the four differ by 1.8 among themselves, a slip of the unit makes ten or more."""
 RATED_SHARES = (1e-3, 1e2)
 """Of that: plastic gears carry a hundredth. Below, rounding shows in the forces; above, nothing holds."""
 
@@ -30,19 +32,30 @@ def rated_in_proportion(pitch_radius_mm: float) -> float:
     return RATED_Nm_per_mm3 * pitch_radius_mm**3
 
 
+def rated_warnings(design: Design) -> Iterator[str]:
+    """A rated torque that no catalogue gear of that pitch diameter has."""
+    stated, radius = design.gear.rated_torque_Nm, _pitch_radius_mm(design)
+    most = STRONGEST_Nm_per_mm3 * radius**3
+    if stated is not None and stated > UNUSUAL * most:
+        yield (
+            f"gear.rated_torque_Nm = {stated:g} is {stated / most:.3g} times what the strongest catalogue gear "
+            f"of {2 * radius:.3g} mm pitch diameter carries, some {most:.3g} N·m (Schaeffler TPI 275, ratio 100)"
+        )
+
+
 def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
     """T_N [N·m], and the assumption where the design states none."""
     stated = design.gear.rated_torque_Nm
     if stated is not None:
         return stated, ()
-    value = rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
+    value = rated_in_proportion(_pitch_radius_mm(design))
     return value, (Assumed("gear.rated_torque_Nm", value, RATED_WHY),)
 
 
 def rated_faults(design: Design) -> Iterator[DesignError]:
     """A rated torque that no gear of that size can have: a slip of the unit."""
     stated = design.gear.rated_torque_Nm
-    usual = rated_in_proportion(design.gear.module_mm * design.gear.teeth_flexspline / 2)
+    usual = rated_in_proportion(_pitch_radius_mm(design))
     low, high = (share * usual for share in RATED_SHARES)
     if stated is not None and not low <= stated <= high:
         yield DesignError(
@@ -50,3 +63,7 @@ def rated_faults(design: Design) -> Iterator[DesignError]:
             stated,
             f"must be {span(low, high, 4)} N·m: a gear of this pitch radius has some {usual:.3g}",
         )
+
+
+def _pitch_radius_mm(design: Design) -> float:
+    return design.gear.module_mm * design.gear.teeth_flexspline / 2

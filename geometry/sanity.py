@@ -12,6 +12,7 @@ from math import pi
 from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
+from flexspline.geometry.rated import rated_warnings
 
 ROOT_TOLERANCE = 0.15
 """Tooth-root radius against ring radius, in modules; farther apart, one of the two is a slip."""
@@ -43,6 +44,7 @@ def warnings(design: Design) -> tuple[str, ...]:
         _clearance,
         _balls,
         _ratio,
+        rated_warnings,
     )
     return tuple(line for rule in rules for line in rule(design))
 

@@ -250,6 +250,8 @@ def init(
     """Print a commented design file to start from."""
     with answered():
         from flexspline.geometry.errors import DesignError
+        from flexspline.geometry.load import design_from, tables_from
+        from flexspline.geometry.sanity import warnings
         from flexspline.geometry.sized import sized_template
         from flexspline.geometry.template import template
 
@@ -261,6 +263,7 @@ def init(
             if size is None
             else sized_template(kind, size, 100 if ratio is None else ratio, rated)
         )
+        tell_all(warnings(design_from(tables_from(text.encode(), "init"))))
         show(text.removesuffix("\n"))
 
 

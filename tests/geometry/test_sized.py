@@ -6,11 +6,13 @@ import re
 import tomllib
 
 import pytest
+from typer.testing import CliRunner
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.sized import sized_template, sized_values
+from flexspline.results.cli import app
 
 
 @pytest.mark.parametrize("kind", ["cup", "hat"])
@@ -72,3 +74,20 @@ def test_the_range_of_rated_torque_that_is_told_works() -> None:
         told = re.findall(r"from (\S+) to (\S+) N·m", str(fault.value))[0][end]
         design = design_from(tomllib.loads(sized_template("cup", 17, 30, float(told))))
         assert design.gear.rated_torque_Nm == float(told)
+
+
+@pytest.mark.parametrize(("rated", "said"), [(31.0, 0), (95.0, 0), (97.0, 1), (2000.0, 1)])
+def test_a_rated_torque_beyond_catalogues_is_told(rated: float, said: int) -> None:
+    """Size 17: 21.59 mm; size 20, the strongest, has 52 N·m at 25.4 mm, so 3 · 32 N·m here (TPI 275)."""
+    design = design_from(tomllib.loads(sized_template("cup", 17, 100, rated)))
+    lines = [line for line in warnings(design) if "gear.rated_torque_Nm" in line]
+    assert len(lines) == said
+    assert all("some 32.2 N·m (Schaeffler TPI 275" in line for line in lines)
+
+
+def test_init_says_it() -> None:
+    words = ["init", "cup", "--size", "17", "--rated", "2000"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0
+    assert "warning: gear.rated_torque_Nm = 2000 is 62" in done.stderr
+    assert CliRunner().invoke(app, [*words[:-1], "31"]).stderr == ""
