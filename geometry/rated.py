@@ -38,8 +38,9 @@ def rated_warnings(design: Design) -> Iterator[str]:
     most = STRONGEST_Nm_per_mm3 * radius**3
     if stated is not None and stated > UNUSUAL * most:
         yield (
-            f"gear.rated_torque_Nm = {stated:g} is {stated / most:.3g} times what the strongest catalogue gear "
-            f"of {2 * radius:.3g} mm pitch diameter carries, some {most:.3g} N·m (Schaeffler TPI 275, ratio 100)"
+            f"gear.rated_torque_Nm = {stated:g} is {stated / most:.3g} times what the strongest catalogue "
+            f"gear of {2 * radius:.3g} mm pitch diameter carries, some {most:.3g} N·m (Schaeffler TPI 275, "
+            "ratio 100)"
         )
 
 

@@ -54,8 +54,9 @@ def sized_template(kind: str, size: float, ratio: int, rated_Nm: float | None = 
     """
     values, why = sized_values(kind, size, ratio, rated_Nm)
     title = (
-        f"# A strain wave gear with a {kind}, size {size:g}, ratio {ratio}. Catalogues do not give inner dimensions:\n"
-        f'# what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
+        f"# A strain wave gear with a {kind}, size {size:g}, ratio {ratio}.\n"
+        "# Catalogues do not give inner dimensions: "
+        f'what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
     )
     if ratio < FAR_BENT:
         title += (
