@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from flexspline.fea.interior_point import CENTRING, room
 from flexspline.geometry.errors import ComputationError
@@ -137,6 +137,7 @@ def _settled(at: Contacts, torque: float, start: np.ndarray | None) -> tuple[np.
         force = np.maximum(start, 1e-3 * typical)
         rotation = 0.0
         gap = np.full(len(at.free), 1e-2 * size)
+    places = np.arange(len(force))
     for _ in range(MOST_ROUNDS):
         spring = at.hertz * force ** (2 / 3)
         fits = at.free + rotation * turning + matrix @ force + spring
@@ -151,24 +152,31 @@ def _settled(at: Contacts, torque: float, start: np.ndarray | None) -> tuple[np.
         if not np.isfinite(both).all():
             raise EquilibriumError("the contact forces did not settle: nothing holds the gear")
         diagonal = gap / force + 2 / 3 * at.hertz * force ** (-1 / 3)
-        try:
-            factor = cho_factor(matrix + np.diag(diagonal), check_finite=False)
-        except LinAlgError as fault:
-            raise EquilibriumError(f"the contact forces did not settle: {fault}") from fault
-        aside = cho_solve(factor, turning)
+        # LAPACK itself: at this size scipy's checks and copies take as long as the solves
+        stiff = matrix.T.copy(order="F")
+        stiff[places, places] += diagonal
+        factor, fault = dpotrf(stiff, lower=1, clean=0, overwrite_a=1)
+        if fault:
+            raise EquilibriumError(
+                f"the contact forces did not settle: row {fault} of their compliance is not positive"
+            )
+        plain, aside = dpotrs(factor, np.array([off - gap, turning]).T, lower=1)[0].T
         weight = float(turning @ aside)
 
-        def towards(product: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-            """Newton step to forces times gaps larger by `product`, to gaps that fit and the torque."""
-            by = cho_solve(factor, product / force + off)  # noqa: B023  (called in this round only)
-            turn = (float(turning @ by) + lack) / weight  # noqa: B023
+        def towards(by: np.ndarray, product: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+            """Newton step to forces times gaps larger by `product`, to gaps that fit and the torque.
+
+            `by`: the step of the forces without a turn.
+            """
+            turn = (float(turning @ by) + lack) / weight  # noqa: B023  (called in this round only)
             by = by - turn * aside  # noqa: B023
             return by, (product - gap * by) / force, turn  # noqa: B023
 
-        push, lift, _ = towards(-both)
+        push, lift, _ = towards(plain, -both)
         reach = room(force, push, gap, lift)
         left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
-        push, lift, turn = towards(left**CENTRING * both.mean() - both - push * lift)
+        product = left**CENTRING * both.mean() - both - push * lift
+        push, lift, turn = towards(dpotrs(factor, product / force + off, lower=1)[0], product)
         reach = BACK * room(force, push, gap, lift)
         force, gap, rotation = force + reach * push, gap + reach * lift, rotation + reach * turn
     raise EquilibriumError(
