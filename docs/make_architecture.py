@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -36,6 +37,7 @@ def imported(path: Path) -> Iterator[tuple[str, ...]]:
                 yield (*node.module.split(".")[1:], alias.name)
 
 
+@cache
 def arrows() -> Counter[tuple[str, str]]:
     """How many import statements lead from one package to another."""
     known, found = packages(), Counter[tuple[str, str]]()

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
@@ -106,25 +106,27 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     if curve is None:
         return None
     inputs = {one.key: one for one in inputs_of(design, chain)}
-    nominal = _angles(chain, curve)
+    start = chain.model.at_torque(curve.smallest_Nm)  # the dearest state: others begin from it
+    nominal = _angles(chain, curve, start)
     curve = _with_numerical(curve, nominal)
     off = curve.angle_arcsec - nominal
     base = float(((off / curve.std_arcsec) ** 2).sum())
-    found = [fitted(one, chain, curve, nominal) for one in inputs.values()]
+    found = [fitted(one, chain, curve, nominal, start) for one in inputs.values()]
     found.sort(key=lambda one: one.chi_square)
     plain = GearInputs("consistent", float(np.sqrt((off**2).mean())), base, len(off), tuple(found))
-    if chi2.sf(base, len(off)) > SURE:
+    if chdtrc(len(off), base) > SURE:
         return plain
     best = found[0]
-    if chi2.sf(best.chi_square, len(off) - 1) < SURE:
-        return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis)
+    if chdtrc(len(off) - 1, best.chi_square) < SURE:
+        return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)
     rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL]
     one = inputs[best.key]
 
     def alone(learnt: CentralCurve) -> Chain:
-        return one.changed(chain, fitted(one, chain, learnt, _angles(chain, learnt)).value)
+        drawn = _angles(chain, learnt, start)
+        return one.changed(chain, fitted(one, chain, learnt, drawn, start).value)
 
-    before, left = _on_other_cycles(alone, chain, analysis)
+    before, left = _on_other_cycles(alone, chain, analysis, start)
     return replace(
         plain,
         outcome="named",
@@ -141,11 +143,11 @@ def _of_pairs(
     chain: Chain,
     curve: CentralCurve,
     analysis: SweepAnalysis,
+    start: Equilibrium,
 ) -> GearInputs:
     """The pair that fits, and those that fit as well; "unknown" where none does."""
 
     def together(learnt: CentralCurve, of: tuple[Input, ...]) -> list[FittedPair]:
-        start = chain.model.at_torque(learnt.smallest_Nm)
         return fitted_pairs(
             of,
             chain,
@@ -154,26 +156,31 @@ def _of_pairs(
             learnt.std_arcsec,
         )
 
-    fit = [p for p in together(curve, inputs) if chi2.sf(p.chi_square, plain.places - 2) >= SURE]
+    fit = [p for p in together(curve, inputs) if chdtrc(plain.places - 2, p.chi_square) >= SURE]
     if not fit:
         return replace(plain, outcome="unknown")
     best = fit[0]
     pairs = tuple(p for p in fit if p.chi_square < best.chi_square + RIVAL)
     before, left = _on_other_cycles(
-        lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis
+        lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis, start
     )
     return replace(plain, outcome="pair", pairs=pairs, before_arcsec=before, left_arcsec=left)
 
 
-def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -> FittedInput:
-    """Its value of least chi square, by secants from the nominal curve (m,) [arcsec]."""
+def fitted(
+    one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray, start: Equilibrium
+) -> FittedInput:
+    """Its value of least chi square, by secants from the nominal curve (m,) [arcsec]; `start`: as below."""
     value, angles, trial = one.nominal, nominal, one.nominal + one.first
     best = (value, _chi_square(curve, angles))
     slope = np.zeros_like(nominal)
-    start = chain.model.at_torque(curve.smallest_Nm)
+    states: list[Equilibrium] = []
     for _ in range(ROUNDS):
+        gear = one.changed(chain, trial)
         try:
-            other = _angles(one.changed(chain, trial), curve, start)
+            if gear.model is not chain.model or not states:  # a spring in series turns no contact
+                states = _states(gear, curve, start)
+            other = _as_recorded(gear, curve, states)
         except ComputationError:  # no gear with that value
             break
         slope = (other - angles) / (trial - value)
@@ -192,14 +199,24 @@ def fitted(one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray) -
     return FittedInput(one.key, one.unit, one.nominal, best[0], std, best[1], at_limit)
 
 
-def _angles(chain: Chain, curve: CentralCurve, start: Equilibrium | None = None) -> np.ndarray:
+def _angles(chain: Chain, curve: CentralCurve, start: Equilibrium) -> np.ndarray:
     """(m,) the gear's angle as the record has it [arcsec]: its mean over the torques of each place.
 
-    `start`: an equilibrium at the smallest torque, of a gear like it.
+    `start`: an equilibrium at about the smallest torque, of a gear like it.
     """
-    known = np.geomspace(curve.smallest_Nm, curve.largest_Nm, KNOTS)
-    states = chain.along(known.tolist(), start)
-    angle = PchipInterpolator(known, [chain.angle(at) for at in states])
+    return _as_recorded(chain, curve, _states(chain, curve, start))
+
+
+def _knots(curve: CentralCurve) -> np.ndarray:
+    return np.geomspace(curve.smallest_Nm, curve.largest_Nm, KNOTS)
+
+
+def _states(chain: Chain, curve: CentralCurve, start: Equilibrium) -> list[Equilibrium]:
+    return chain.along(_knots(curve).tolist(), start)
+
+
+def _as_recorded(chain: Chain, curve: CentralCurve, states: list[Equilibrium]) -> np.ndarray:
+    angle = PchipInterpolator(_knots(curve), [chain.angle(at) for at in states])
     return ARCSEC_PER_RAD * np.array([float(angle(t).mean()) for t in curve.torques_Nm])
 
 
@@ -213,7 +230,10 @@ def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
 
 
 def _on_other_cycles(
-    learn: Callable[[CentralCurve], Chain], chain: Chain, analysis: SweepAnalysis
+    learn: Callable[[CentralCurve], Chain],
+    chain: Chain,
+    analysis: SweepAnalysis,
+    start: Equilibrium,
 ) -> tuple[float | None, float | None]:
     """Root mean square on every second cycle, of the gear as drawn and as learnt on the others."""
     cycles = np.unique(analysis.explained.prepared.rig.history.cycle)
@@ -222,8 +242,8 @@ def _on_other_cycles(
     learnt, other = (central_curve(analysis, cycles[start::2].tolist()) for start in (0, 1))
     if learnt is None or other is None:
         return None, None
-    better = learn(_with_numerical(learnt, _angles(chain, learnt)))
-    before, after = (other.angle_arcsec - _angles(each, other) for each in (chain, better))
+    better = learn(_with_numerical(learnt, _angles(chain, learnt, start)))
+    before, after = (other.angle_arcsec - _angles(each, other, start) for each in (chain, better))
     return float(np.sqrt((before**2).mean())), float(np.sqrt((after**2).mean()))
 
 
