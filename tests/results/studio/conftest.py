@@ -35,13 +35,21 @@ def studio(studio_browser: Browser, tmp_path_factory: pytest.TempPathFactory) ->
     assert [path.name for path in folder.iterdir()] == ["design.toml"]  # jobs leave no folder
 
 
+UNSMOOTHED = """
+const get = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, options) {
+  return get.call(this, kind, options && { ...options, antialias: false });
+};"""
+"""Without a graphics card four samples a pixel are half of what it takes to draw the part."""
+
+
 @contextmanager
 def tabs(browser: Browser, url: str) -> Iterator[Callable[..., Page]]:
     """Opens tabs; afterwards they are closed, and none may have met an error."""
     pages: list[Page] = []
 
     def make(**settings: Any) -> Page:
-        pages.append(Page(browser, url, **settings))
+        pages.append(Page(browser, url, **{"init": UNSMOOTHED} | settings))
         return pages[-1]
 
     yield make
@@ -76,14 +84,6 @@ def held_tabs(held: HeldStudio, studio_browser: Browser) -> Iterator[Callable[..
     with tabs(studio_browser, held.url) as make:
         yield make
         held.hold = lambda question, tables: False
-
-
-UNSMOOTHED = """
-const get = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, options) {
-  return get.call(this, kind, options && { ...options, antialias: false });
-};"""
-"""Without a graphics card four samples a pixel are half of what it takes to draw the part."""
 
 
 @pytest.fixture(scope="module")
