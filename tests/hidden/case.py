@@ -9,7 +9,7 @@ import numpy as np
 from hidden.gear import Rig
 from hidden.record import Unit
 
-KINDS = ("clean", "single", "pair", "foreign", "undecidable")
+KINDS = ("clean", "single", "pair", "triple", "foreign", "undecidable")
 
 
 @dataclass(frozen=True)

@@ -85,8 +85,15 @@ def draw_case(seed: int, number: int, kind: str | None = None, cause: str | None
     rng = np.random.default_rng([seed, number])
     kinds = list(SHARES)
     kind = kind or str(rng.choice(kinds, p=[SHARES[k] for k in kinds]))
-    make = {"clean": _clean, "single": _single, "pair": _pair, "foreign": _foreign}
-    names = {"single": [*CAUSES], "pair": [*CAUSES], "foreign": [*KINDS, UNIT_GAIN]}
+    make = {
+        "clean": _clean, "single": _single, "pair": _pair, "triple": _triple, "foreign": _foreign,
+    }  # fmt: skip
+    names = {
+        "foreign": [*KINDS, UNIT_GAIN],
+        "single": [*CAUSES],
+        "pair": [*CAUSES],
+        "triple": [*CAUSES],
+    }
     cause = cause or str(rng.choice(names.get(kind, [*TRAPS])))
     for _ in range(TRIES):
         case = make.get(kind, _undecidable)(rng, (seed, number), cause)
@@ -129,27 +136,47 @@ def _single(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case
 
 
 def _pair(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:
+    return _together(rng, seed, cause, 2)
+
+
+def _triple(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:
+    return _together(rng, seed, cause, 3)
+
+
+def _together(
+    rng: np.random.Generator, seed: tuple[int, int], cause: str, count: int
+) -> Case | None:
+    """So many causes at once, each of which stands out beside all the others and one that is not there."""
     one, draw = FORMS.get(cause) or (cause, CAUSES[cause])
-    two = str(rng.choice([c for c in CAUSES if c != one]))
-    plan = _both(FOR_CAUSE[one], FOR_CAUSE[two])
-    if plan is None:
-        return None
+    plan, causes = FOR_CAUSE[one], [one]
+    while len(causes) < count:
+        causes.append(str(rng.choice([c for c in CAUSES if c not in causes])))
+        both = _both(plan, FOR_CAUSE[causes[-1]])
+        if both is None:
+            return None
+        plan = both
     level = int(rng.integers(3))
     bench = Bench(plan, rng)
     try:
-        hidden = tuple(make(bench.setting(level), rng) for make in (draw, CAUSES[two]))
+        draws = [draw, *(CAUSES[c] for c in causes[1:])]
+        hidden = tuple(make(bench.setting(level), rng) for make in draws)
     except CannotShowError:
         return None
     units = bench.measured(hidden)
-    found = standing(units, bench.rig, (one, two))
-    hidden = (
-        diluted(widened(hidden[0], hidden[1], bench), hidden[1], bench),
-        diluted(hidden[1], hidden[0], bench),
-    )
-    left = (found.in_company(0, one, two, 1), found.in_company(1, two, one, 0))
+    found = standing(units, bench.rig, tuple(causes))
+    left = tuple(found.in_company(k, causes) for k in range(count))
     if min(left) < DECIDABLE:
         return None
-    return bench.case("pair", hidden, units, severity=LEVELS[level], standing=left, seed=seed)
+    as_measured = tuple(_beside(h, [o for o in hidden if o is not h], bench) for h in hidden)
+    kind = {2: "pair", 3: "triple"}[count]
+    return bench.case(kind, as_measured, units, severity=LEVELS[level], standing=left, seed=seed)
+
+
+def _beside(one: Hidden, others: list[Hidden], bench: Bench) -> Hidden:
+    """An effect with the magnitude that docs/contract.md gives it beside the others."""
+    for other in others:
+        one = diluted(widened(one, other, bench), other, bench)
+    return one
 
 
 def widened(friction: Hidden, other: Hidden, bench: Bench) -> Hidden:

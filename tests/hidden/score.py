@@ -50,16 +50,15 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
     """
     clear = [m for m in marks if m.decidable]
     singles = [m for m in clear if m.kind == "single"]
-    pairs = [m for m in clear if m.kind == "pair"]
+    pairs, triples = ([m for m in clear if m.kind == kind] for kind in ("pair", "triple"))
+    named = [*singles, *pairs, *triples]
     kind = {k: [m for m in marks if m.kind == k] for k in ("clean", "foreign", "undecidable")}
-    sizes = [s for m in (*singles, *pairs) for s in m.sizes]
+    sizes = [s for m in named for s in m.sizes]
     error = [s.error for s in sizes]
     off = [s.deviations for s in sizes]
-    gain = [m.gain / m.oracle for m in (*singles, *pairs) if m.gain is not None and m.oracle]
+    gain = [m.gain / m.oracle for m in named if m.gain is not None and m.oracle]
     levels = {
-        channel: [
-            x.gain / x.oracle for m in (*singles, *pairs) for x in m.levels if x.channel == channel
-        ]
+        channel: [x.gain / x.oracle for m in named for x in m.levels if x.channel == channel]
         for channel in LEVELS
     }
     return [
@@ -68,6 +67,8 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
         _share("single: wrong name with confidence", singles, "wrong", most=0.01),
         _share("pair: exactly right", pairs, "exact", least=0.88),
         _share("pair: wrong name with confidence", pairs, "wrong", most=0.04),
+        _share("triple: exactly right", triples, "exact", least=0.88),
+        _share("triple: wrong name with confidence", triples, "wrong", most=0.04),
         _share("nothing hidden: consistent", kind["clean"], "right", least=0.98),
         _share("foreign: unknown", [m for m in kind["foreign"] if not m.near], "right", least=0.95),
         _share("foreign, nearly a named cause: unknown",
@@ -108,7 +109,7 @@ def breakdown(marks: Sequence[Mark]) -> str:
     groups: dict[tuple[str, str], list[Mark]] = {}
     for m in marks:
         kind = m.kind if m.decidable or m.kind == "undecidable" else f"({m.kind})"
-        for name in m.label.split(" + ") if m.kind == "pair" else [m.label]:
+        for name in m.label.split(" + ") if m.kind in ("pair", "triple") else [m.label]:
             groups.setdefault((kind, name), []).append(m)
     for (kind, name), group in sorted(groups.items()):
         sizes = [s for m in group for s in m.sizes if s.cause == name]

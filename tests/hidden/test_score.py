@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from hidden.case import Case
+from hidden.case import KINDS, Case
 from hidden.cases import draw_case
 from hidden.mark import Mark, mark
 from hidden.oracle import held_out_rows, oracle
@@ -16,7 +16,7 @@ from hidden.score import Figure, figures
 
 @cache
 def cases() -> tuple[Case, ...]:
-    return tuple(draw_case(5, k) for k in range(40))
+    return (*(draw_case(5, k) for k in range(40)), draw_case(5, 40, "triple"))
 
 
 def knows_all(case: Case) -> dict:
@@ -27,7 +27,7 @@ def knows_all(case: Case) -> dict:
     if case.kind == "undecidable":
         causes = [{"id": first[0], "alternatives": sorted(case.expected - {first[0]})}]
     gain = {}
-    if case.kind in ("single", "pair"):
+    if case.kind in ("single", "pair", "triple"):
         rows = np.flatnonzero(held(case))
         best = oracle(list(case.units), case.rig, held(case))
         gain = {
@@ -52,7 +52,7 @@ def of_kind(kind: str) -> Case:
 
 
 def test_every_kind_is_drawn() -> None:
-    assert {c.kind for c in cases()} == {"clean", "single", "pair", "foreign", "undecidable"}
+    assert {c.kind for c in cases()} == {*KINDS}
 
 
 def test_the_truth_earns_every_mark() -> None:

@@ -51,10 +51,15 @@ class Standing:
         best = min(left, key=left.get)
         return min(left[best], self.beyond(k, ())), best
 
-    def in_company(self, k: int, own: str, partner: str, j: int) -> float:
-        """Length of effect k left by its partner's whole family and any third cause."""
-        others = [c for c in self.families if c not in (own, partner)]
-        return min(self.beyond(k, (partner, c), (j,)) for c in others)
+    def in_company(self, k: int, causes: list[str]) -> float:
+        """Length of effect k, of `causes[k]`, left by the others' families and that of an absent cause.
+
+        The other hidden effects are free as well: their own laws may be in no family.
+        """
+        others = tuple(c for j, c in enumerate(causes) if j != k)
+        also = tuple(j for j in range(len(causes)) if j != k)
+        absent = [c for c in self.families if c not in causes]
+        return min(self.beyond(k, (*others, c), also) for c in absent)
 
     def of_two(self, k: int) -> float:
         """Length left by the best two causes."""

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.special import fdtrc, ndtr
 
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.slow_runs import resting
+from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -29,38 +30,42 @@ CORRELATED = 1.5
 
 
 def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
-    """What motion leaves behind in the holds; None where torque never rests, or it is no more than noise.
+    """What motion leaves behind where torque rests; None where it never does, or it is no more than noise.
 
     An output that sticks and breaks away at random stands somewhere else after each way, and stays there
-    while torque rests. Noise in time takes equal steps in holds and between them, and vibration of the drive
-    averages out in a hold. Two tests therefore must agree: the steps from block to block (variances against
-    each other, in motion and at rest), and the holds' means against what their parts leave of doubt (an
-    F-test). The torque's noise is in the angle too; in a hold it is known, up to that of the mean, in
-    motion it is not. The rms is that of the holds' means, less this doubt and what an encoder rounds.
+    while torque rests, in a hold or at a turn. Noise in time takes equal steps in holds and between them, and
+    vibration of the drive averages out in a hold. Two tests therefore must agree: the steps from block to
+    block (variances against each other, in motion and at rest), and the holds' means against what their parts
+    leave of doubt (an F-test). The torque's noise is in the angle too; in a hold it is known, up to that of
+    the mean, in motion it is not. The rms is the larger of two: that of the holds' means, less this doubt and
+    what an encoder rounds; that in motion, less that within holds. A wrong name, such as an error of each
+    position, may be fitted to the means of few holds, not to all the motion.
     """
     history, kept = prepared.rig.history, prepared.kept
-    resting = [rows[kept[rows]] for rows in holds(history)]
-    resting = [rows for rows in resting if len(rows) >= 2 * PARTS]
-    if len(resting) < FEWEST_HOLDS:
+    still = [rows[kept[rows]] for rows in resting(history)]
+    still = [rows for rows in still if len(rows) >= PARTS]
+    if len(still) < FEWEST_HOLDS:
         return None
     left, step = fit.residual(), encoder_step(prepared.sweep.angle_arcsec)
     of_torque = (fit.measured_rig().compliance * torque_noise_Nm(history)) ** 2
-    p_frozen, variance = _frozen(left, resting, step, of_torque)
+    p_frozen, variance = _frozen(left, still, step, of_torque)
     hold = np.full(len(kept), -1)
-    for number, rows in enumerate(resting):
+    for number, rows in enumerate(still):
         hold[rows] = number
     p_motion = _moves_more(left[kept], hold[kept], stretches_of(history, kept), step, of_torque)
     if variance <= 0 or max(p_motion, p_frozen) > LIKELY or p_frozen * p_motion > SURE:
         return None
-    return Jumps(p_frozen * p_motion, float(np.sqrt(variance)))
+    within = float(np.mean([left[rows].var(ddof=1) for rows in still]))
+    moving = float(left[kept & (hold < 0)].var()) - within
+    return Jumps(p_frozen * p_motion, float(np.sqrt(max(variance, moving))))
 
 
 def _frozen(
-    left: np.ndarray, resting: list[np.ndarray], step: float, of_torque: float
+    left: np.ndarray, still: list[np.ndarray], step: float, of_torque: float
 ) -> tuple[float, float]:
     """p-value that the holds' means differ as their parts do, and the variance beyond that [arcsec²]."""
     means, within, spread = [], [], []
-    for rows in resting:
+    for rows in still:
         count = len(rows) // PARTS
         parts = left[rows[: count * PARTS]].reshape(PARTS, count).mean(axis=1)
         means.append(parts.mean())

@@ -1,0 +1,68 @@
+"""Where torque rests or all but rests: holds, and the slow rows around a turn."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_program import holds
+
+SPAN = 0.005
+"""Of the largest torque, within which torque all but rests: a sixth of the shortest way between two breaks of
+an output that sticks, in made-up records (0.03)."""
+FEWEST = 4
+"""Rows of a slow run."""
+SLOWER = 2.0
+"""Times the median number of rows that torque needs for the span."""
+
+
+def resting(history: History) -> list[np.ndarray]:
+    """Rows of each hold and of each other run of rows in which torque moves little, in order."""
+    held = holds(history)
+    free = np.ones(len(history), bool)
+    for rows in held:
+        free[rows] = False
+    torque = less_jitter(history).torque_Nm
+    span = SPAN * float(np.abs(history.torque_Nm).max())
+    runs: list[np.ndarray] = []
+    for rows in history.unit_slices:
+        cuts = np.flatnonzero(np.diff(np.r_[False, free[rows], False].astype(int)))
+        for first, end in cuts.reshape(-1, 2):
+            piece = rows[first:end]
+            runs += [piece[a:b] for a, b in _longest(torque[piece], span)]
+    if not runs:
+        return held
+    fewest = max(FEWEST, SLOWER * float(np.median([len(run) for run in runs])))
+    slow = [run for run in runs if len(run) >= fewest]
+    return sorted([*held, *slow], key=lambda rows: int(rows[0]))
+
+
+def _longest(torque_Nm: np.ndarray, span_Nm: float) -> list[tuple[int, int]]:
+    """Runs (first row, after the last) within a span, none in two of them, the longest chosen first."""
+    first, runs = 0, []
+    highest: deque[int] = deque()
+    lowest: deque[int] = deque()
+    for k, value in enumerate(torque_Nm):
+        while highest and torque_Nm[highest[-1]] <= value:
+            highest.pop()
+        while lowest and torque_Nm[lowest[-1]] >= value:
+            lowest.pop()
+        highest.append(k)
+        lowest.append(k)
+        while torque_Nm[highest[0]] - torque_Nm[lowest[0]] > span_Nm:
+            first += 1
+            if highest[0] < first:
+                highest.popleft()
+            if lowest[0] < first:
+                lowest.popleft()
+        runs.append((first, k + 1))
+    taken = np.zeros(len(torque_Nm), bool)
+    found = []
+    for a, b in sorted(runs, key=lambda run: run[0] - run[1]):
+        if not taken[a:b].any():
+            taken[a:b] = True
+            found.append((a, b))
+    return found
