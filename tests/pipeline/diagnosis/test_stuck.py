@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from histories import PREDICTION, sweep
 
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.torque_program import holds
@@ -57,16 +58,48 @@ def stuck(angle: np.ndarray, history: History = HELD) -> Jumps | None:
     return stuck_of(explained.prepared, explained.identified.fit)
 
 
-def test_what_sticks_is_seen_by_where_the_holds_are() -> None:
-    """Whatever friction's mean width is, they lie about it as they truly do."""
-    way = sticks(5)
-    each = np.array([way[rows].mean() for rows in holds(HELD)])
-    side = np.sign([HELD.torque_Nm[rows].mean() for rows in holds(HELD)])
-    true = np.sqrt(((each - side * (each * side).mean()) ** 2).sum() / (len(each) - 1))
+def test_what_sticks_has_the_size_that_it_has_in_motion() -> None:
+    """Whatever friction's mean width is: these holds happen to lie nearer together than the teeth are high."""
+    way, moving = sticks(5), np.diff(HELD.torque_Nm, prepend=0.0) != 0
+    smooth = np.column_stack(
+        [direction_of_loading(HELD), np.ones(len(HELD)), HELD.torque_Nm, np.sign(HELD.torque_Nm)]
+    )
+    teeth = way - smooth @ np.linalg.lstsq(smooth, way, rcond=None)[0]
     found = stuck(way + noise(2))
     assert found is not None
-    # a hold's mean is known to NOISE/√25 = 0.08 of 1.1 arcsec, and zero and width are of 16 holds: 7 and 3 %
-    assert found.rms_arcsec == pytest.approx(true, rel=0.1)
+    # 400 rows of teeth two rows long: the rms of 200 of them is known to 5 %
+    assert found.rms_arcsec == pytest.approx(teeth[moving].std(), rel=0.1)
+
+
+TURNS = np.sin(2 * np.pi * np.arange(1200) / 200)
+"""Six cycles of a sine: no hold, but 13 rows within half a hundredth of each turn."""
+SINE = History(2.0 * TURNS, np.zeros(1200, int), np.arange(1200) // 200, np.arange(1200.0))
+
+
+def at_turns(angle: np.ndarray) -> Jumps | None:
+    prepared = prepare(record(line(SINE.torque_Nm) + angle, SINE), PREDICTION)
+    return stuck_of(prepared, run_race(prepared).identified.fit)
+
+
+def test_what_sticks_is_seen_at_the_turns_of_a_sine() -> None:
+    """Teeth of 0.1 N·m and 4 arcsec, two rows long where torque is quickest."""
+    rng, behind, out = np.random.default_rng(11), 0.0, np.empty(len(SINE))
+    for k, step in enumerate(np.diff(SINE.torque_Nm, prepend=0.0)):
+        behind -= 40.0 * step
+        if abs(behind) > TOOTH:
+            behind = float(np.sign(behind)) * TOOTH * rng.uniform(0.0, 0.4)
+        out[k] = behind
+    found = at_turns(out + rng.normal(size=len(out)) * NOISE)
+    assert found is not None
+    # a saw-tooth from 0.2 to 1 of 4 arcsec on average has an rms of 0.92
+    assert found.rms_arcsec > 0.7
+
+
+def test_a_reading_that_is_late_at_random_is_nothing_stuck() -> None:
+    """Its noise is in proportion to the rate: little at a turn, and another in each row."""
+    rng = np.random.default_rng(12)
+    late = 20.0 * np.gradient(SINE.torque_Nm) * rng.normal(size=len(SINE))
+    assert at_turns(late + rng.normal(size=len(SINE)) * NOISE) is None
 
 
 def test_a_record_that_sticks_is_unknown() -> None:
