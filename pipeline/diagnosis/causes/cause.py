@@ -98,8 +98,8 @@ class Cause(ABC):
 
     Chosen on made-up records with laws that are none of these shapes, so that one and two deviations
     cover about 68 and 95 % of them. What they cover, given beside each value, is printed by
-    `python tests/hidden/run.py --seed 31 --records 12 --kind single --cause ID`. Of this one, for hardening
-    and thermal clearance: 73 and 100 % of 22; without it, 68 and 91.
+    `python tests/hidden/run.py --seed 31 --records 12 --kind single --cause ID`. This one is for a cause of
+    which no such records have been made yet.
     """
     needs_time: ClassVar[bool] = False
     """Whether nothing can be said of it where time was not recorded."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, pi, sqrt
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
+from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
@@ -68,12 +69,15 @@ def _probability(nats: float) -> float:
 def _std_ahead_arcsec(explained: ExplainedSweep) -> float:
     """What the doubt of the torque carried ahead of the teeth makes of the loop's width.
 
-    Nothing where friction elements behind the gap are fitted beside it: they take up what it leaves.
+    That of the law by which it slides, and that of its size, unless friction elements behind the gap are
+    fitted beside it: they take up what it leaves.
     """
     fit, ahead = explained.identified.fit, explained.ahead
-    if ahead is None or FRICTION in explained.identified.best.named(fit.evidence):
+    if ahead is None:
         return 0.0
-    return 2 * fit.measured_rig().compliance * ahead.torque_std_Nm
+    beside = FRICTION in explained.identified.best.named(fit.evidence)
+    of_law = CARRIED_UNSURE * _ahead_Nm(explained, FRICTION)
+    return 2 * fit.measured_rig().compliance * hypot(0.0 if beside else ahead.torque_std_Nm, of_law)
 
 
 def _own_units(explained: ExplainedSweep, cause: str) -> tuple[str, ...]:
@@ -110,7 +114,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     std = {}
     for cause in identified.named:
         values = np.array([m[cause] for m in each])
-        spread = float(np.sqrt(weight @ (values - best[cause]) ** 2))
+        # the deviation of a normal law of this mean distance: one set far off does not make it as wide
+        spread = sqrt(pi / 2) * float(weight @ np.abs(values - best[cause]))
         std[cause] = hypot(doubt.std[cause], spread)
     return best, std
 

@@ -12,7 +12,6 @@ from histories import PREDICTION, sweep
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
@@ -59,7 +58,7 @@ def stuck(angle: np.ndarray, history: History = HELD) -> Jumps | None:
 
 
 def test_what_sticks_has_the_size_that_it_has_in_motion() -> None:
-    """Whatever friction's mean width is: these holds happen to lie nearer together than the teeth are high."""
+    """Whatever friction's mean width is: these holds happen to lie nearer together than teeth are high."""
     way, moving = sticks(5), np.diff(HELD.torque_Nm, prepend=0.0) != 0
     smooth = np.column_stack(
         [direction_of_loading(HELD), np.ones(len(HELD)), HELD.torque_Nm, np.sign(HELD.torque_Nm)]
