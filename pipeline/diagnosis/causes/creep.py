@@ -9,7 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import hold_s, ramp_s
+from flexspline.pipeline.diagnosis.measurement.holds import hold_s
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
 """Twist as log t (0) or as t^n, 0.3 being near Andrade's t^⅓; 0 cannot be refined, the others are."""

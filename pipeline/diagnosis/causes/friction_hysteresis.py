@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.causes.micro_slip import (
 from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 FRICTION = "friction_hysteresis"
 """This cause's id: the only one that may lie ahead of the teeth."""

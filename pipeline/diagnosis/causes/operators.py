@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
-from flexspline.pipeline.diagnosis.measurement.torque_program import LARGEST_NOISE
+from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
 
 
 def stops(

@@ -9,12 +9,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
-from flexspline.pipeline.diagnosis.measurement.torque_program import (
-    deadband_Nm,
-    ramp_s,
-    shortest_lag_s,
-)
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""

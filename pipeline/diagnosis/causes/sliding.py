@@ -9,7 +9,7 @@ from scipy.special import wrightomega
 
 from flexspline.pipeline.diagnosis.causes.operators import steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 
 
 def _held_still(history: History) -> History:

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import (
-    PARTS,
-    ramp_rate,
-    rates_of,
-    torque_noise_Nm,
-)
+from flexspline.pipeline.diagnosis.measurement.ramps import PARTS, ramp_rate, rates_of
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 SUDDEN = 0.3
 """Of the ramps' rate, between two neighbouring stretches of a few rows: it is 1 at a hold's ends and 2 at

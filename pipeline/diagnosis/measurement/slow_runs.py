@@ -7,8 +7,8 @@ from collections import deque
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 
 SPAN = 0.005
 """Of the largest torque, within which torque all but rests: a sixth of the shortest way between two breaks of

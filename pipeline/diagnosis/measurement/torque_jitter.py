@@ -8,7 +8,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds, torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 FAR = 4.0
 """Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""

@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import LARGEST_NOISE
+from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan
 

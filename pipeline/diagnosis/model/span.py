@@ -7,12 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import (
-    FEWEST,
-    by_travel,
-    rates_of,
-    torque_noise_Nm,
-)
+from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST, by_travel, rates_of
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 Ends = tuple[float, float]
 MOST_TRAVEL = 0.95

@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_history
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, base_columns

@@ -28,9 +28,9 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.diagnosis.decision import Decision, decided
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 from flexspline.pipeline.diagnosis.model.doubt import Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement

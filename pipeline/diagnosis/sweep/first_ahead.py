@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     stops,
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.step_place import (

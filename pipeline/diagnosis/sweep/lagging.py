@@ -6,7 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import ramp_s
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 
 LAGGING = (0.1, 0.4)
 """Time constants, as shares of a ramp, of what a lag can be: a short one, and the longest of

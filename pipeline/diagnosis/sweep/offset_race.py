@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.noise import BAND_SIGMAS
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.first_offset import first_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare

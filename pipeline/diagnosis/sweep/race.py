@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.noise import (
     isolated_outliers,
     stretches_of,
 )
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.evidence import (
     GaussianEvidence,

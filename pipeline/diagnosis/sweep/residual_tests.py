@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 

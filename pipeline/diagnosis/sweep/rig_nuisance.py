@@ -10,7 +10,8 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import hold_s, ramp_s
+from flexspline.pipeline.diagnosis.measurement.holds import hold_s
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 YIELDS = (0.4, 0.55, 0.7, 0.85)

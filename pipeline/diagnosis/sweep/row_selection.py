@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import deadband_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 SETTLED_AT, SETTLING_SHARE = 0.6, 0.3
 """Of the largest torque; of a unit's rows."""

@@ -9,11 +9,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import (
-    FEWEST,
-    by_travel,
-    rates_of,
-)
+from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST, by_travel, rates_of
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from scipy.special import fdtrc, ndtr
 
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.measurement.slow_runs import resting
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep

@@ -14,12 +14,9 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     steadied,
     stops,
 )
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
-from flexspline.pipeline.diagnosis.measurement.torque_program import (
-    deadband_Nm,
-    ramp_s,
-    shortest_lag_s,
-)
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import smooth, wave
 
 LEADS = "output leads torque"

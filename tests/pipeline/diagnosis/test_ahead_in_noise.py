@@ -10,7 +10,7 @@ import pytest
 from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.measurement.torque_program import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep import ahead_race
 from flexspline.pipeline.diagnosis.sweep.first_ahead import AheadGuess
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare

@@ -13,7 +13,8 @@ from hidden.gear import draw_gear, draw_rig
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds, ramp_rate
+from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_rate
 
 PEAK = 2.0
 

@@ -7,8 +7,8 @@ import pytest
 
 from flexspline.pipeline.diagnosis.measurement.corners import corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import jitter, less_jitter
-from flexspline.pipeline.diagnosis.measurement.torque_program import holds
 
 NOISE = 0.05
 """N·m."""

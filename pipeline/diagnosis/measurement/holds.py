@@ -1,0 +1,146 @@
+"""Where torque stands still between two moves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.ramps import (
+    CLEAR,
+    FEWEST,
+    MOVING,
+    ramp_rate,
+    rates_of,
+)
+from flexspline.pipeline.diagnosis.measurement.torque_noise import DEADBAND_SIGMAS, torque_noise_Nm
+
+STILL = 0.08
+"""A hold's torque moves at less than this share of the ramps' rate,"""
+BESIDE = 5
+"""Rows that are just before or after."""
+SPAN = 0.04
+"""Over a whole hold torque changes by less than this share of the largest."""
+RANGE_SIGMAS = 6.0
+"""Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
+SURE_SIGMAS = 3.0
+"""Deviations of a hold's own rate by noise, by which it must be slower than what moves."""
+AROUND = 20
+"""Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
+
+
+def holds(history: History) -> list[np.ndarray]:
+    """Rows of each stretch where torque stands still between two moves, at least `FEWEST` rows."""
+    key = ("holds", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _holds(history)
+    found: list[np.ndarray] = history.memo[key]
+    return found
+
+
+def _holds(history: History) -> list[np.ndarray]:
+    fast = ramp_rate(history)
+    if fast == 0:
+        return []
+    noise = torque_noise_Nm(history)
+    span = SPAN * float(np.abs(history.torque_Nm).max())
+    found = []
+    for rows in history.unit_slices:
+        if len(rows) < 2 * FEWEST:
+            continue
+        assert history.time_s is not None
+        rates = rates_of(history, rows)
+        width, rate = rates.width, np.abs(rates.values)
+        t = history.time_s[rows]
+        floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
+        limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
+        edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
+        runs = zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
+        torque = history.torque_Nm[rows]
+        for i, j in _joined([(int(i), int(j)) for i, j in runs], torque, t, width, noise, fast):
+            before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
+            sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
+            hold = rows[i : j + width]
+            spread = noise * max(RANGE_SIGMAS, _range_sigmas(len(hold)))
+            level = np.ptp(history.torque_Nm[hold]) < span + spread
+            if (
+                len(hold) >= FEWEST
+                and sharp
+                and level
+                and _stands(torque, t, i, j + width, noise, fast)
+            ):
+                found.append(hold)
+    return found
+
+
+def _joined(
+    runs: list[tuple[int, int]],
+    torque_Nm: np.ndarray,
+    time_s: np.ndarray,
+    width: int,
+    noise_Nm: float,
+    fast_Nm_per_s: float,
+) -> list[tuple[int, int]]:
+    """Runs of still rates (first, after the last), joined where only the torque's noise parts them.
+
+    Noise alone passes any limit once in so many rows, and a hold may have thousands. What moves over
+    both runs together is a slow ramp under noise, and stays apart.
+    """
+
+    def level(first: int, last: int) -> float:
+        return float(torque_Nm[max(first, 0) : last + 1].mean())
+
+    found: list[tuple[int, int]] = []
+    for i, j in runs:
+        if found and i - found[-1][1] <= width + BESIDE:
+            a, b = found[-1]
+            stepped = abs(level(max(a, b - AROUND), b) - level(i, min(j, i + AROUND)))
+            share = min(AROUND, (j - a) // 2)  # rows at either end, not the same ones
+            moved = abs(level(a, a + share) - level(j - share, j))
+            passed = time_s[min(j, len(time_s) - 1)] - time_s[a]
+            still = STILL * fast_Nm_per_s * passed + noise_Nm / 2
+            if stepped < CLEAR / 2 * noise_Nm and moved < still:
+                found[-1] = (a, j)
+                continue
+        found.append((i, j))
+    return found
+
+
+def _stands(
+    torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int, noise_Nm: float, fast: float
+) -> bool:
+    """Whether a straight line through rows i to j − 1 stands still, and surely not as torque moves beside.
+
+    A few rows of a slow cycle, of a record with quick ones, may stand still by noise alone.
+    """
+    torque, away = torque_Nm[i:j], time_s[i:j] - time_s[i:j].mean()
+    square = max(float((away**2).sum()), 1e-300)
+    rate, doubt = abs(float(away @ torque)) / square, noise_Nm / square**0.5
+    beside = min(fast, _rate_beside(torque_Nm, time_s, i, j))
+    return rate - doubt < STILL * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
+
+
+def _rate_beside(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int) -> float:
+    """Torque rate before rows i to j − 1 or after them, the slower, in as much time as they last.
+
+    That of the ramp from their level on with the same rms; a side without rows counts for nothing.
+    """
+    level, lasts = float(torque_Nm[i:j].mean()), float(time_s[j - 1] - time_s[i])
+    first = int(np.searchsorted(time_s, time_s[i] - lasts))
+    end = int(np.searchsorted(time_s, time_s[j - 1] + lasts, side="right"))
+    away = [
+        float(np.mean((x - level) ** 2)) for x in (torque_Nm[first:i], torque_Nm[j:end]) if len(x)
+    ]
+    return (3 * min(away)) ** 0.5 / max(lasts, 1e-300) if away else np.inf
+
+
+def _range_sigmas(count: int) -> float:
+    """Range of so many rows of normal noise in its deviations, for many: 2√(2 ln n)."""
+    return 2 * float(np.sqrt(2 * np.log(max(count, 2))))
+
+
+def hold_s(history: History) -> float:
+    """Typical (median) length of a hold, 0 without any."""
+    if history.time_s is None:
+        return 0.0
+    lengths = [float(np.ptp(history.time_s[rows])) for rows in holds(history)]
+    return float(np.median(lengths)) if lengths else 0.0

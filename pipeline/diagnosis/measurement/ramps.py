@@ -1,0 +1,106 @@
+"""How fast torque moves: the rates of rows, of ramps, and the times that follow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+
+MOVING = 0.3
+"""and just before and after it at more than this."""
+FEWEST = 3
+"""Rows of a hold: two are a turn between samples."""
+CLEAR = 8.0
+"""Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+PARTS = 60
+"""Of a cycle."""
+FAST = 0.95
+"""Quantile of rates, or of steps, of rows that move, that is a ramp's."""
+NOISE_MOVES = 5.7
+"""Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Torque rate [N·m/s] from each row of one unit to `width` rows later, (m,), and the travel in it.
+
+    `travel_Nm` (m,) is how far torque moves there beyond what its noise does: 0 in a hold.
+    """
+
+    width: int
+    values: np.ndarray
+    travel_Nm: np.ndarray
+
+
+def rates_of(history: History, rows: np.ndarray) -> Rates:
+    """Rates along one unit's rows, over the fewest rows in which a ramp moves clear of the torque's noise."""
+    assert history.time_s is not None
+    torque, t = history.torque_Nm[rows], history.time_s[rows]
+    noise = torque_noise_Nm(history)
+    widest = max(1, len(rows) // 20)
+    # a ramp's step, from moves over a small part of a cycle
+    coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
+    far = np.abs(torque[coarse:] - torque[:-coarse])
+    far = far[far > NOISE_MOVES * noise]
+    step = np.quantile(far, FAST) / coarse if len(far) else 0.0
+    fewest = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, widest))
+    width = 1  # a ramp may be shorter than that part
+    while width < fewest:
+        moved = np.abs(torque[width:] - torque[:-width])
+        if by_travel(moved, np.maximum(moved - NOISE_MOVES * noise, 0.0), 0.5) >= CLEAR * noise:
+            break
+        width = min(2 * width, fewest)
+    moved = torque[width:] - torque[:-width]
+    travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
+    span = np.maximum(t[width:] - t[:-width], 1e-12)
+    return Rates(width, moved / span, travel)
+
+
+def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
+    """The value below which `share` of the travel lies; 0 without any."""
+    order = np.argsort(values)
+    passed = np.cumsum(travel_Nm[order])
+    if len(passed) == 0 or passed[-1] <= 0:
+        return 0.0
+    return float(values[order][np.searchsorted(passed, share * passed[-1])])
+
+
+def ramp_rate(history: History) -> float:
+    """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
+    key = ("ramp_rate", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _ramp_rate(history)
+    return float(history.memo[key])
+
+
+def _ramp_rate(history: History) -> float:
+    if history.time_s is None:
+        return 0.0
+    found = []
+    for rows in history.unit_slices:
+        if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
+            continue
+        rates = rates_of(history, rows)
+        rate = np.abs(rates.values[rates.travel_Nm > 0])  # most rows may lie in holds
+        if len(rate):
+            fast = np.quantile(rate, FAST)
+            found.append(float(np.median(rate[rate > MOVING * fast])))
+    return float(np.median(found)) if found else 0.0
+
+
+def ramp_s(history: History) -> float:
+    """Time of a ramp from zero to the largest torque, 0 without time or movement."""
+    rate = ramp_rate(history)
+    return float(np.abs(history.torque_Nm).max()) / rate if rate > 0 else 0.0
+
+
+def shortest_lag_s(history: History) -> float:
+    """Lag over which a ramp moves clear of the torque's noise; 0 without time or movement.
+
+    Over a shorter time the noise is a good part of the torque's change.
+    """
+    rate = ramp_rate(history)
+    return CLEAR * torque_noise_Nm(history) / rate if rate > 0 else 0.0
