@@ -5,6 +5,7 @@ from __future__ import annotations
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
@@ -53,6 +54,11 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
+    if copies := copied_rows(prepared.sweep):
+        found.append(
+            f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
+            "appended to itself? They count as measured twice, and the deviations are too small by √2"
+        )
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")

@@ -1,0 +1,33 @@
+"""Whether the last rows of a sweep are its first ones once more: a file that was appended to itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+
+FEWEST = 20
+"""Rows: two readings of a hundred different values each repeat by chance so often in 10⁴⁰ records."""
+
+
+def copied_rows(sweep: Sweep) -> int:
+    """How many rows at the end repeat the rows before them to the last digit; 0 where none do.
+
+    Readings of a rig have noise, so that two cycles are never the same. Where all of them are, the record has
+    none, and nothing is said.
+    """
+    history, n = sweep.history, len(sweep)
+    read = np.column_stack([history.torque_Nm, sweep.angle_arcsec])
+    _, first, which = np.unique(read, axis=0, return_index=True, return_inverse=True)
+    earlier = first[which.ravel()]  # of two dimensions in numpy 2.0.0
+    behind = np.arange(n) - earlier
+    if not behind.any():
+        return 0
+    shift = int(np.bincount(behind[behind > 0]).argmax())
+    count = n - shift
+    if count < FEWEST or not (read[shift:] == read[:count]).all():
+        return 0
+    several = (
+        len({*zip(history.unit[:shift].tolist(), history.cycle[:shift].tolist(), strict=True)}) > 1
+    )
+    return count if several else 0
