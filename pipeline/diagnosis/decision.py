@@ -13,7 +13,13 @@ from math import exp
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained, Verdict
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.outcome import (
+    SIZE_KNOWN,
+    NamedCause,
+    Unexplained,
+    Verdict,
+)
 
 RIVAL_EVIDENCE = 4.0
 """Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
@@ -54,6 +60,16 @@ def chance(best: float, without: Iterable[float]) -> float:
     return exp(min(0.0, max(without) - best))
 
 
+def is_any(cause: NamedCause) -> bool:
+    """Whether a cause's size is beyond `SIZE_KNOWN` of its deviations from none.
+
+    Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation. The
+    amplitude of a wave is never none by chance; its evidence decides.
+    """
+    known = known_causes().get(cause.id)
+    return (known is not None and not known.passes_none) or cause.deviations >= SIZE_KNOWN
+
+
 def decided(
     causes: Iterable[NamedCause],
     unexplained: Iterable[Unexplained],
@@ -68,7 +84,8 @@ def decided(
     ----------
     named_rms, unnamed_rms : of what the causes and what the terms without a name explain, in one unit.
     structure : whether the residual tests leave no doubt of structure, where nothing was found.
-    sure : whether the best explanation beats the simulation by enough to be named.
+    sure : whether the best explanation beats the simulation by enough, and its sizes are known well enough
+        (`is_any`), to be named.
     """
     found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
     left = tuple(unexplained)

@@ -36,12 +36,15 @@ class NamedCause:
     """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
     widest_arcsec: float | None = None
     """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
+    none: float | None = None
+    """The magnitude of no effect, of causes that only specimens show; of others their class states it."""
 
     @property
     def deviations(self) -> float:
         """How many standard deviations the size is away from no effect."""
         cause = known_causes().get(self.id)
-        off = abs(self.magnitude - (cause.none if cause else 0.0))
+        none = cause.none if cause else 0.0
+        off = abs(self.magnitude - (none if self.none is None else self.none))
         return off / self.magnitude_std if self.magnitude_std > 0 else inf
 
     @property

@@ -60,13 +60,16 @@ def _of_end_points(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
         return "closed torque sweeps show the whole curve, not its ends"
     titles = ", ".join(map(title_of, after.causes))
-    apart = "it would confirm or clear the suspicion"
-    if after.aim == "separate":
-        times = f"{after.separation:.0f} times the noise"
-        apart = f"the two of them that are nearest to each other then differ by {times}"
-        if after.same_points is not None:
-            apart += f" (end points at the same torques: {after.same_points:.1f})"
-    return f"on unit {after.where}: {after.doing}; it tells {titles} apart: {apart}"
+    here = f"on unit {after.where}: {after.doing}"
+    if after.aim != "separate":
+        return f"{here}; it would confirm or clear the suspicion of {titles}"
+    apart = (
+        "the two of them that are nearest to each other then differ by "
+        f"{after.separation:.0f} times the noise"
+    )
+    if after.same_points is not None:
+        apart += f" (end points at the same torques: {after.same_points:.1f})"
+    return f"{here}; it tells {titles} apart: {apart}"
 
 
 def _of_specimens(after: NextMeasurement) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from flexspline.pipeline.diagnosis.decision import is_any
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -144,11 +145,17 @@ def _said(cause: NamedCause) -> str:
 
 
 def _rivals(causes: Sequence[NamedCause]) -> str:
-    return "; ".join(
+    told = [
         f"{cause_title(c)} cannot be told from {' or '.join(map(title_of, c.alternatives))}"
         for c in causes
         if c.alternatives
-    )
+    ]
+    told += [
+        f"{cause_title(c)}, {magnitude_words(c)}, is only a suspicion"
+        for c in causes
+        if not is_any(c)
+    ]
+    return "; ".join(told)
 
 
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:

@@ -14,6 +14,7 @@ from flexspline.pipeline.diagnosis.decision import (
     Decision,
     chance,
     decided,
+    is_any,
     is_rival,
     probability,
 )
@@ -57,7 +58,8 @@ def decide(
             () if best.own is None else (names[best.own],),
         ))  # fmt: skip
     rms = hypot(*(c.rms_arcsec for c in found))
-    return decided(found, (), named_rms=rms, unnamed_rms=0.0, sure=best.score > NAMING_NATS)
+    sure = best.score > NAMING_NATS and all(map(is_any, found))
+    return decided(found, (), named_rms=rms, unnamed_rms=0.0, sure=sure)
 
 
 def _unnamed(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Unexplained:

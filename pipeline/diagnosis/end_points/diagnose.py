@@ -78,7 +78,8 @@ def diagnose_end_points(
     if decision.verdict == "ambiguous":
         first = decision.causes[0]
         rivals = rivals_for_unit(points, rig, prediction, worst, (first.id, *first.alternatives))
-        plans = separated(worst.torque_Nm, rivals, prediction, null.reading)
+        if rivals:  # none of a cause that moves mid positions alone
+            plans = separated(worst.torque_Nm, rivals, prediction, null.reading)
     named = decision.verdict == "named"
     kept = best.best if named else null
     analysis = EndPointAnalysis(

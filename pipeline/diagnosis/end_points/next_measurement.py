@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
 from flexspline.pipeline.diagnosis.measurement.history import History
@@ -73,9 +74,13 @@ def next_measurement(
     """What to measure next: closed sweeps for the unknown, the widest plan on the worst unit for rivals."""
     if decision.verdict == "unknown":
         return NextMeasurement("torque_Nm", "find_structure")
-    if not plans or not decision.causes:
+    if decision.verdict != "ambiguous":
         return None
-    first, best = decision.causes[0], plans[0]
+    first = decision.causes[0]
+    if not plans:
+        cause = known_causes()[first.id]
+        return NextMeasurement(cause.vary, "confirm", (first.id,), cause.reveals, worst.unit)
+    best = plans[0]
     same = next((p.separation for p in plans[1:] if p.vary == "torque_Nm"), None)
     return NextMeasurement(
         best.vary, "separate" if first.alternatives else "confirm", (first.id, *first.alternatives),

@@ -6,6 +6,7 @@ Rules, with their numbers:
 - A second term must be NAMING_NATS better than the explanation without it.
 - Rivals (`../decision.py`): another cause in a cause's place, within 4 nats of evidence or 6 of penalised
   likelihood: `ambiguous`.
+- A size less than two of its deviations from none is only a suspicion (`../decision.py`): `ambiguous`.
 - Unnamed structure of more than half the named causes' rms: `unknown`.
 """
 
@@ -18,7 +19,14 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.decision import Decision, chance, decided, is_rival, probability
+from flexspline.pipeline.diagnosis.decision import (
+    Decision,
+    chance,
+    decided,
+    is_any,
+    is_rival,
+    probability,
+)
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
@@ -26,7 +34,8 @@ from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""
-UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", "load_zone": "1"}
+LOAD_ZONE = "load_zone"
+UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", LOAD_ZONE: "1"}
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,7 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
         unexplained,
         named_rms=hypot(*(100 * _rms(race, best, (c,)) for c in best.named)),
         unnamed_rms=hypot(*(u.rms for u in unexplained)),
+        sure=all(map(is_any, found)),
     )
     return SpecimenExplanation(decision, best, tuple(rivals))
 
@@ -99,6 +109,7 @@ def _named(
         cause, probability(cause, ((f.named, f.score) for f in race.fits)), alternatives, value, std,
         UNITS.get(cause, "mm"), best.score - without,
         ARCSEC_PER_RAD * torque_Nm * _rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
+        none=race.data.fe.base_zone if cause == LOAD_ZONE else 0.0,
     )  # fmt: skip
 
 

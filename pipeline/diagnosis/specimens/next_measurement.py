@@ -33,12 +33,12 @@ def next_specimen(
         case "unknown":
             u = decision.unexplained[0]
             return NextMeasurement(u.channel, "find_structure", where=u.what)
-        case "named":
+        case "ambiguous" if explanation.rivals:
+            return _separating(explanation, bench, design, part, noise)
+        case "named" | "ambiguous":
             cause = decision.causes[-1].id
             vary = CONFIRM.get(cause) or cause.removeprefix("geometry:")
             return NextMeasurement(vary, "confirm", (cause,))
-        case "ambiguous":
-            return _separating(explanation, bench, design, part, noise)
         case _:
             return None
 

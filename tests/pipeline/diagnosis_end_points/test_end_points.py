@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import SIGNIFICANT
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import prediction_of
+from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
+from flexspline.results.diagnosis.summary import summary
 
 ROOT = Path(__file__).parents[3]
 DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")
@@ -180,6 +182,25 @@ def test_two_torques_show_asymmetry_that_one_cannot() -> None:
     assert outcome.gain is None or outcome.gain.rmse_after <= outcome.gain.rmse_before + 1
     one = diagnose_end_points(DESIGN, only(made, 1.0), PREDICTION)[0]
     assert "direction_asymmetry" not in {c.id for c in one.causes}
+
+
+def test_a_size_that_is_not_known_is_a_suspicion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The asymmetry of the test above, were its size asked to be surer than it is."""
+    made = units([1.0, 6.0], 5, np.random.default_rng(6), asymmetry=0.2)
+    outcome = diagnose_end_points(DESIGN, made, PREDICTION)[0]
+    surer = outcome.causes[0].deviations + 0.01
+    monkeypatch.setattr("flexspline.pipeline.diagnosis.decision.SIZE_KNOWN", surer)
+    outcome, analysis, model = diagnose_end_points(DESIGN, made, PREDICTION)
+    assert outcome.verdict == "ambiguous"
+    assert [c.id for c in outcome.causes] == ["direction_asymmetry"]
+    assert outcome.gain is None
+    assert model is None
+    said = summary(Diagnosis(DESIGN, made, PREDICTION, outcome, end_points=analysis))
+    assert "is only a suspicion" in said
+    assert outcome.next_measurement.aim == "confirm"
+    advice = why(outcome.next_measurement, "end_points")
+    assert advice.startswith(f"on unit {outcome.next_measurement.where}: ")
+    assert advice.endswith("the suspicion of stiffness that differs with the torque's direction")
 
 
 def only(points: EndPoints, torque: float) -> EndPoints:

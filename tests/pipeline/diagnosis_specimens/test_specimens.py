@@ -18,15 +18,17 @@ from flexspline.geometry.keys import (
 from flexspline.geometry.load import design_from, load_design, read_toml
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
+from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
+from flexspline.results.diagnosis.summary import summary
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "xb1-40.toml"
@@ -158,6 +160,20 @@ def test_a_large_joint_is_named(bench, fe) -> None:
     cause = outcome.causes[0]
     assert cause.id == "series_compliance"
     assert cause.magnitude == pytest.approx(60, abs=3 * cause.magnitude_std)
+
+
+def test_a_size_that_is_not_known_is_a_suspicion(bench, fe, monkeypatch) -> None:
+    """The joint of the test above, were its size asked to be surer than it is."""
+    K = noisy(fe.flexspline + 0.6 * fe.flexspline.mean(), 2)
+    size = diagnosed(bench, K)[0].causes[0].deviations
+    monkeypatch.setattr("flexspline.pipeline.diagnosis.decision.SIZE_KNOWN", size + 0.01)
+    outcome, analysis = diagnosed(bench, K)
+    assert outcome.verdict == "ambiguous"
+    assert outcome.causes[0].id == "series_compliance"
+    assert outcome.next_measurement.aim == "confirm"
+    prediction = prediction_of(DESIGN, bench.K_b, bench.K_e)
+    said = summary(Diagnosis(DESIGN, measured(K), prediction, outcome, specimens=analysis))
+    assert "is only a suspicion" in said
 
 
 def test_lobes_and_a_joint_alike_are_ambiguous_and_the_next_specimen_is_computed(bench, fe) -> None:
