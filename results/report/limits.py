@@ -106,7 +106,7 @@ def _ellipse(content: ReportContent) -> str:
         f"A given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, that "
         "the seat follows without friction and without lifting off. In load case “lobes” the "
         "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
-        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. Its stress hangs on that."
+        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. That sets its stress."
     )
     if content.wave_generator_peak is None:
         return said

@@ -173,7 +173,7 @@ def _scatter_words(s: Scatter) -> list[str]:
 
 
 def _shares(s: Scatter, i: int) -> list[str]:
-    """An input's indices, and what half its scatter buys."""
+    """An input's indices, and by how much half its scatter narrows the 95 % range."""
     if s.indices is None:
         return []
     first = index_text(s.indices.first[i], s.indices.first_ends[i])
@@ -183,5 +183,7 @@ def _shares(s: Scatter, i: int) -> list[str]:
     ]
     for t in s.tightened:
         if t.key == s.inputs[i].key and t.factor == 0.5:
-            said.append(f"half its scatter buys {max(0.0, t.bought):.2f} {entry(s.key).unit}")
+            said.append(
+                f"with half its scatter the 95 % range is {max(0.0, t.bought):.2f} {entry(s.key).unit} narrower"
+            )
     return said

@@ -25,7 +25,7 @@ def scatter_section(s: Scatter) -> Iterable[Block]:
         sentence += f" {s.dropped} designs could not be built or solved and are left out."
     bought = ("× 0.75", "× 0.5", "× 0.25", "perfect") if s.tightened else ()
     heads = ("Sobol, first", "Sobol, total") if s.indices else ()
-    yield Heading("What scatters, and what a tighter tolerance buys")
+    yield Heading("Scatter, and how much a tighter tolerance narrows it")
     yield Paragraph(sentence)
     yield Table(
         (
@@ -60,8 +60,8 @@ def source_words(s: Scatter) -> str:
         tried = f" (a quadratic surface would miss {100 * (1 - explained):.2g} % of the variance)"
     if s.indices:
         return (
-            f"Sobol indices come from the sample itself{tried}; what a tighter tolerance buys is not "
-            "known from it."
+            f"Sobol indices come from the sample itself{tried}, which does not say how much a tighter "
+            "tolerance narrows the range."
         )
     enough = s.shares.enough
     would = f"; about {enough} would do" if enough and enough <= MOST else ""

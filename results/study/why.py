@@ -68,7 +68,7 @@ def misses(result: StudyResult) -> list[str]:
 
 
 def limits(result: StudyResult) -> list[str]:
-    """Spans and constraints that the best design leans on."""
+    """Spans and constraints that hold the best design back."""
     if not result.pareto:
         return []
     best, file = result.pareto[0], result.study.file
