@@ -183,7 +183,6 @@ def _shares(s: Scatter, i: int) -> list[str]:
     ]
     for t in s.tightened:
         if t.key == s.inputs[i].key and t.factor == 0.5:
-            said.append(
-                f"with half its scatter the 95 % range is {max(0.0, t.bought):.2f} {entry(s.key).unit} narrower"
-            )
+            less = f"{max(0.0, t.bought):.2f} {entry(s.key).unit}"
+            said.append(f"with half its scatter the 95 % range is {less} narrower")
     return said

@@ -56,8 +56,8 @@ CAPTIONS = {
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
     PICTURE: "Design {first} on the wave generator, by the solid model.",
-    "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, where "
-    "known.",
+    "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
+    "where known.",
 }
 
 
