@@ -1,26 +1,18 @@
-"""Whether the CAD kernel loads on this machine: asked once, in a process of its own."""
+"""Whether the CAD kernel loads on this machine: asked once, in this process, as a library that is missing
+crashes nothing and who asks mostly needs the kernel next (two seconds of loading)."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from functools import cache
-from pathlib import Path
 
-_LOAD = """
 from flexspline.geometry.kernel import CadKernelError, load_kernel
-try:
-    load_kernel()
-except CadKernelError as error:
-    raise SystemExit(str(error))
-"""
 
 
 @cache
 def why_no_cad() -> str:
     """The reason, "" where it does."""
-    out = subprocess.run(
-        [sys.executable, "-c", _LOAD],
-        cwd=Path(__file__).parents[2], capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    return "" if out.returncode == 0 else out.stderr.strip().splitlines()[-1]
+    try:
+        load_kernel()
+    except CadKernelError as error:
+        return str(error)
+    return ""

@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 VIEWPORT = {"width": 1280, "height": 800}
 PATIENCE_MS = 60_000
 """A loaded machine; what is waited for takes a second on an idle one."""
+UNSMOOTHED = """
+const get = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, options) {
+  return get.call(this, kind, options && { ...options, antialias: false });
+};"""
+"""Without a graphics card four samples a pixel are half of what it takes to draw the part."""
 
 
 @dataclass
@@ -78,7 +84,9 @@ def write_design(path: Path, *, holes: bool = False, name: str = "a cup") -> Pat
 class Page:
     """One tab of the studio; without `url` it is opened later."""
 
-    def __init__(self, browser: Browser, url: str = "", init: str = "", **settings: Any) -> None:
+    def __init__(
+        self, browser: Browser, url: str = "", init: str = UNSMOOTHED, **settings: Any
+    ) -> None:
         shape = {"viewport": VIEWPORT, **settings}
         self.context = browser.new_context(accept_downloads=True, **shape)
         self.context.add_init_script(init)

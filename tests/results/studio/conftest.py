@@ -35,21 +35,13 @@ def studio(studio_browser: Browser, tmp_path_factory: pytest.TempPathFactory) ->
     assert [path.name for path in folder.iterdir()] == ["design.toml"]  # jobs leave no folder
 
 
-UNSMOOTHED = """
-const get = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, options) {
-  return get.call(this, kind, options && { ...options, antialias: false });
-};"""
-"""Without a graphics card four samples a pixel are half of what it takes to draw the part."""
-
-
 @contextmanager
 def tabs(browser: Browser, url: str) -> Iterator[Callable[..., Page]]:
     """Opens tabs; afterwards they are closed, and none may have met an error."""
     pages: list[Page] = []
 
     def make(**settings: Any) -> Page:
-        pages.append(Page(browser, url, **{"init": UNSMOOTHED} | settings))
+        pages.append(Page(browser, url, **settings))
         return pages[-1]
 
     yield make
@@ -88,7 +80,7 @@ def held_tabs(held: HeldStudio, studio_browser: Browser) -> Iterator[Callable[..
 
 @pytest.fixture(scope="module")
 def kept_tab(held: HeldStudio, studio_browser: Browser) -> Iterator[Page]:
-    page = Page(studio_browser, init=UNSMOOTHED)
+    page = Page(studio_browser)
     yield page
     page.close()
 
