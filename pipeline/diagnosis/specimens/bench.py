@@ -14,7 +14,7 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part import NO_HOLES, PartName
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.part_stiffness import part_stiffness
@@ -63,7 +63,9 @@ class Bench:
         """Compliance [rad per N·m] of the part without holes."""
         solid = replace(self.context, design=design).part(part).context.design
         own = without_holes(solid).part(part)
-        material, shape = Elastic.of(own.material), own.shape.model_dump(mode="json")
+        material = Elastic.of(own.material)
+        # where nothing is drilled, a circle and a diameter of holes may still be stated
+        shape = own.shape.model_copy(update=NO_HOLES).model_dump(mode="json")
         tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
 
         def make() -> float:
