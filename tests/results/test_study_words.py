@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from scipy.stats import spearmanr
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
@@ -97,6 +98,18 @@ def test_without_an_objective_the_usual_figures_are_followed() -> None:
         "Flexspline stiffness", "Peak von Mises stress", "Backlash",
     ]  # fmt: skip
     assert all("rises with wall thickness (rank correlation +1.00)" in s for s in said)
+
+
+def test_ranks_count_and_equal_values_share_theirs() -> None:
+    """Spearman's correlation as scipy has it, of a cubic with pairs of equal values."""
+    walls, cubes = [0.3 + 0.04 * (i // 2) for i in range(10)], [(i - 3.0) ** 3 for i in range(10)]
+    given = result_of()
+    rows = tuple(
+        replace(row, values={WALL: w}, outcome=Outcome({K: 3e4 + c, STRESS: 300.0, TOTAL: 85.0}))
+        for row, w, c in zip(given.rows, walls, cubes, strict=True)
+    )
+    (said, *_) = influences(replace(given, rows=rows))
+    assert f"(rank correlation {spearmanr(walls, cubes).statistic:+.2f})" in said
 
 
 @pytest.mark.parametrize(
