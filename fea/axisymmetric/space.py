@@ -172,23 +172,6 @@ def assembled(form: BilinearForm, basis: Any, **fields: np.ndarray) -> csr_matri
     return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()
 
 
-def weighted_laplace(basis: Any, weight: np.ndarray) -> csr_matrix:
-    """∫ weight ∇u·∇v over the mesh, `weight` (m, q), as scikit-fem's form of it.
-
-    One product of matrices for each triangle; the form calls Python for each pair of the 6 functions, a
-    third of a bracket's time.
-    """
-    gradients = np.stack([function.grad for (function,) in basis.basis])  # (6, 2, m, q)
-    of_triangle = gradients.transpose(2, 0, 1, 3)
-    m, n = of_triangle.shape[:2]
-    weighted = of_triangle * (weight * basis.dx)[:, None, None]
-    local = weighted.reshape(m, n, -1) @ of_triangle.reshape(m, n, -1).transpose(0, 2, 1)
-    numbers = basis.element_dofs.T
-    rows, columns = np.repeat(numbers, n, axis=1), np.tile(numbers, n)
-    at = rows.ravel(), columns.ravel()
-    return coo_matrix((local.ravel(), at), shape=(basis.N, basis.N)).tocsr()
-
-
 def solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
     """Direct solve of a symmetric positive definite system."""
     return factorised(matrix).solve(load)

@@ -33,20 +33,14 @@ from math import pi
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from skfem import Functional, condense
+from skfem import BilinearForm, Functional, condense
 from skfem.helpers import dot, grad
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary
-from flexspline.fea.axisymmetric.space import (
-    Space,
-    moved,
-    relative_residual,
-    solved,
-    straight,
-    weighted_laplace,
-)
+from flexspline.fea.axisymmetric.space import Space, moved, relative_residual, solved, straight
 
+WEIGHTED_LAPLACE = BilinearForm(lambda u, v, w: w.weight * dot(grad(u), grad(v)))
 WEIGHTED_ENERGY = Functional(lambda w: w.weight * dot(grad(w.field), grad(w.field)))
 CROSS_PRODUCT = Functional(lambda w: w.psi.grad[1] * w.phi.grad[0] - w.psi.grad[0] * w.phi.grad[1])
 PRIMAL_DEGREE = 5
@@ -136,7 +130,7 @@ def _primal(space: Space) -> tuple[np.ndarray, float, float]:
     driven = space.on("driven")
     psi[driven] = 1.0
     free = np.setdiff1d(np.arange(space.count), np.union1d(driven, space.on("held")))
-    matrix = weighted_laplace(space.basis, space.r**3)
+    matrix = WEIGHTED_LAPLACE.assemble(space.basis, weight=space.r**3)
     inside, load = condense(matrix, x=psi, I=free, expand=False)
     psi[free] = solved(inside, load)
     reaction = 2 * pi * float((matrix @ psi)[driven].sum())
@@ -148,7 +142,7 @@ def _dual(
 ) -> tuple[np.ndarray, float]:
     """φ = P x with one unknown x for each free piece (`_tied`), and the residual."""
     tied = _tied(space, mesh, boundary)
-    matrix = tied.T @ weighted_laplace(space.basis, weight) @ tied
+    matrix = tied.T @ WEIGHTED_LAPLACE.assemble(space.basis, weight=weight) @ tied
     jumps = np.zeros(space.count)
     for piece in range(boundary.pieces):
         jumps[space.on(_piece(piece))[0]] += boundary.jump[piece]
