@@ -7,8 +7,9 @@ import numpy as np
 SPLINE = 6
 """Degree of a smooth function over a channel, Legendre polynomials: up to five turns. More turns are
 waves and ripples, which begin with 3 half periods."""
-MOST_LEVELS = 8
-"""Columns of one nuisance term at most: as each costs evidence, more would never pay."""
+FEW_LEVELS, MANY_LEVELS = 8, 40
+"""Columns of one nuisance term at most. Each costs evidence: few find a weak scatter; a strong one needs one
+for each cycle or position, as what neighbours that share a level leave passes for slow noise."""
 
 
 def smooth(x: np.ndarray, degree: int = SPLINE) -> np.ndarray:
@@ -22,11 +23,11 @@ def wave(x: np.ndarray, half_periods: int) -> np.ndarray:
     return np.column_stack([np.cos(turn), np.sin(turn)])
 
 
-def levels(values: np.ndarray) -> np.ndarray:
-    """(n, k) one column per level but the first; neighbouring levels share one where they are many."""
+def levels(values: np.ndarray, most: int = FEW_LEVELS) -> np.ndarray:
+    """(n, k) one column per level but the first; neighbouring levels share one where they are over `most`."""
     seen = np.unique(values)
-    if len(seen) > MOST_LEVELS + 1:
-        seen = np.quantile(values, np.linspace(0, 1, MOST_LEVELS + 2)[:-1])
+    if len(seen) > most + 1:
+        seen = np.quantile(values, np.linspace(0, 1, most + 2)[:-1])
         index = np.clip(np.searchsorted(seen, values, side="right") - 1, 0, None)
     else:
         index = np.searchsorted(seen, values)

@@ -6,7 +6,12 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
-from flexspline.pipeline.diagnosis.sweep.basis_functions import levels, smooth, wave
+from flexspline.pipeline.diagnosis.sweep.basis_functions import (
+    MANY_LEVELS,
+    levels,
+    smooth,
+    wave,
+)
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 STEPS = 25
@@ -19,6 +24,8 @@ STEADY_K = 0.3
 """A temperature that varies by less is constant to a usual sensor's ±0.3 K at 0 °C (IEC 60751, class B)."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
+ZERO_OF_CYCLE = "a zero of its own in each cycle"
+ZERO_OF_POSITION = "a zero of its own at each position"
 DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
@@ -72,7 +79,7 @@ def over_cycle(rig: Rig) -> Made:
         return
     own = levels(rig.history.cycle.astype(float))
     torque = rig.history.torque_Nm / rig.torque_Nm
-    yield "cycle", "a zero of its own in each cycle", own
+    yield "cycle", ZERO_OF_CYCLE, own
     yield "cycle", "a stiffness of its own in each cycle", own * torque[:, None]
     ramp = rig.history.cycle / (rig.cycles - 1)
     for power in (1.0, 0.5):
@@ -107,6 +114,22 @@ def over_temperature(rig: Rig) -> Made:
         yield "temperature_C", "a gap not linear in temperature", bent[:, None]
 
 
+def zeros_apart(rig: Rig) -> Made:
+    """A zero of each cycle's and of each position's own, none shared with its neighbours."""
+    if rig.cycles > 1:
+        yield "cycle", ZERO_OF_CYCLE, levels(rig.history.cycle.astype(float), MANY_LEVELS)
+    if _telling(rig):
+        assert rig.history.input_angle_deg is not None
+        position = np.mod(rig.history.input_angle_deg, 360.0)
+        yield "input_angle_deg", ZERO_OF_POSITION, levels(position, MANY_LEVELS)
+
+
+def _telling(rig: Rig) -> bool:
+    """Whether zeros of the record's positions may be something else than the harmonics 1, 2 and 4."""
+    angle = rig.history.input_angle_deg
+    return angle is not None and len(np.unique(np.mod(angle, 360.0))) > TELLING
+
+
 def over_position(rig: Rig) -> Made:
     """Zero, stiffness and gap of each position's own."""
     angle = rig.history.input_angle_deg
@@ -114,8 +137,8 @@ def over_position(rig: Rig) -> Made:
         return
     torque = rig.history.torque_Nm / rig.torque_Nm
     own = levels(np.mod(angle, 360.0))
-    if len(np.unique(np.mod(angle, 360.0))) > TELLING:
-        yield "input_angle_deg", "a zero of its own at each position", own
+    if _telling(rig):
+        yield "input_angle_deg", ZERO_OF_POSITION, own
         yield "input_angle_deg", "a stiffness of its own at each position", own * torque[:, None]
     yield "input_angle_deg", "a gap of its own at each position", own * rig.history.sign[:, None]
 

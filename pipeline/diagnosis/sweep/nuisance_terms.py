@@ -22,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     over_time,
     over_unit,
     waves_and_steps,
+    zeros_apart,
 )
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.rig_nuisance import giving_way, ringing
@@ -35,6 +36,9 @@ from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     softening,
 )
 
+SPREAD, SLIGHT_SPREAD = 0.15, 0.015
+"""Prior sizes of an amplitude, as shares of the predicted angle. Of many zeros each costs the log of its
+prior over what is known of it: at the usual size twenty would hide a scatter of a third of the noise."""
 NEW_SHARE = 0.25
 """Of a column's own size: one of which less is new beside torque and gap is no nuisance term."""
 
@@ -46,6 +50,8 @@ class NuisanceTerm:
     channel: str
     what: str
     columns: np.ndarray
+    spread: float
+    """Prior size of an amplitude, as a share of the predicted angle."""
     positive: bool = False
     against: frozenset[str] = frozenset()
     """Causes beside which it does not stand: it is their opposite, or all that they are and more, and the two
@@ -63,6 +69,7 @@ class _Kind:
     less: Callable[[Rig], np.ndarray] | None = None
     positive: bool = False
     against: frozenset[str] = frozenset()
+    spread: float = SPREAD
 
 
 def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
@@ -86,7 +93,12 @@ def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
             if good.any():
                 found.append(
                     NuisanceTerm(
-                        channel, what, rest[:, good] / rms[good], kind.positive, kind.against
+                        channel,
+                        what,
+                        rest[:, good] / rms[good],
+                        kind.spread,
+                        kind.positive,
+                        kind.against,
                     )
                 )
     return found
@@ -133,6 +145,7 @@ KINDS = (
     _Kind(over_cycle),
     _Kind(over_temperature),
     _Kind(over_position),
+    _Kind(zeros_apart, spread=SLIGHT_SPREAD),
     _Kind(over_unit),
     _Kind(giving_way),
     _Kind(ringing, less=_of_lags),

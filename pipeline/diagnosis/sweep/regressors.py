@@ -15,8 +15,6 @@ from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nui
 
 ZERO_STD_ARCSEC = 1e5
 """The zero of the angle is free."""
-NUISANCE_SPREAD = 0.15
-"""Prior size of an unnamed term, as a share of the predicted angle."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,7 @@ def _nuisance_regressor(
 ) -> Regressor:
     alike = sum(r.channel == rival.channel for r in rivals)
     k = rival.columns.shape[1]
-    prior = np.full(k, NUISANCE_SPREAD * rig.scale_arcsec)
+    prior = np.full(k, rival.spread * rig.scale_arcsec)
     return Regressor(
         None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike),
         rival.against,
