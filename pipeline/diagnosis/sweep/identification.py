@@ -11,6 +11,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import is_rival
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
@@ -29,6 +30,18 @@ has but one shape."""
 MORE_WITHOUT, MORE_OF_RIVAL = 2, 3
 """Terms that a set without a cause, or with a rival in its place, may have more than the best set: another
 law takes two or three elements for one."""
+DRIVEN = (
+    "friction_hysteresis",
+    "rate_dependence",
+    "creep",
+    "?direction",
+    "?torque_rate",
+    "?torque_amplitude",
+)
+"""Owners of terms with a memory of the torque."""
+OF_TORQUE_NOISE = 0.3
+"""Of what the torque's noise is in the angle: the noise drives a memory too, and leaves a trace of it up to
+so large. In made-up records true ones begin at 1.2; one from noise alone had 0.1."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
 
@@ -128,11 +141,24 @@ def _worth(
 
 
 def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
-    """The best set in which effects do not nearly cancel: such sets fit a misfit, or the noise."""
+    """The best set in which effects do not nearly cancel, and none is the torque's noise through a memory.
+
+    Sets that do fit a misfit, or the noise.
+    """
     for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
-        if not _cancels(evidence, c):
+        if not _cancels(evidence, c) and not _is_torque_noise(evidence, c):
             return c
     return search.candidate(())
+
+
+def _is_torque_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
+    """Whether the noise of the torque that drives a memory may have made what a term of it explains."""
+    driven = sorted(c.owners(evidence) & {*DRIVEN})
+    if not driven:
+        return False
+    fit = fit_regressors(evidence, c.terms)
+    of_noise = fit.measured_rig().compliance * torque_noise_Nm(evidence.columns.rig.history)
+    return min(owner_rms(fit, driven).values()) < OF_TORQUE_NOISE * of_noise
 
 
 def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
