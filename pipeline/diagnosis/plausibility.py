@@ -28,8 +28,8 @@ AS_LIKELY = 1.5
 """Times further off than the best unit, and a unit is still asked for."""
 TINY = 1e-12
 """Ratios are cut here, for their logarithms."""
-TURNED = "turned?"
-"""Ends each refusal of a sign, which no stiffness explains."""
+TURNED, CONNECTED = "turned?", "connected?"
+"""Ends of refusals that no stiffness explains: a sign, and a reading that never changes."""
 OPPOSITE = -1 / 3
 """Of the simulated twist: no friction or drift turns it over."""
 
@@ -57,7 +57,7 @@ def refuse_absurd(
     else:
         reason = _absurd_specimens(measurement, K_b, K_e)
     if reason:
-        doubted = "" if reason.endswith(TURNED) else given_words(given)
+        doubted = "" if reason.endswith((TURNED, CONNECTED)) else given_words(given)
         raise MeasurementError(measurement.path, None, reason + doubted)
 
 
@@ -68,6 +68,8 @@ def given_words(given: Collection[str]) -> str:
 
 def absurd_sweep(size: SweepSize, sweep: Sweep) -> str | None:
     """Why the size of a sweep is absurd, in one clause; None where it is not."""
+    if np.ptp(sweep.angle_arcsec) == 0:
+        return f"the angle is the same in all rows: was its channel {CONNECTED}"
     low, high = size.chord_range
     if low > ABSURD or high < -ABSURD or -1 / ABSURD < low <= high < 1 / ABSURD:
         return _twist_words(size.chord, sweep) + suspects(size, sweep)

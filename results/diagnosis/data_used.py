@@ -12,6 +12,9 @@ from flexspline.results.diagnosis.reading import columns_record, form_record
 from flexspline.results.diagnosis.words import plus_minus
 from flexspline.results.numbers import grouped
 
+AS_SIMULATED = 0.8
+"""Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+
 
 def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
     """The file with its hash, how it was read, rows by their use, and the calibration.
@@ -82,6 +85,8 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
     found = plus_minus(measured.value, measured.std)
     if not std:
         return f"{found} (simulated {simulated:.4g})"
+    if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
+        return f"{found} (as simulated: this record does not narrow it)"
     off = f"{(measured.value - simulated) / std:+.1f}".replace("-", "−")
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} deviations)"
 

@@ -57,7 +57,7 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     if copies := copied_rows(prepared.sweep):
         found.append(
             f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured twice, and the deviations are too small by √2"
+            "appended to itself? They count as measured anew, which makes the deviations too small"
         )
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:

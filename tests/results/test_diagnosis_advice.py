@@ -23,3 +23,11 @@ def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
     unknown = calibrated_sentences(calibration, prediction, True)
     assert calibrated_sentences(calibration, prediction, False) in unknown
     assert "unexplained and may have moved them" in unknown
+
+
+def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
+    said = calibrated_sentences(calibration, prediction, False)
+    assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
+    assert "as simulated: this record does not narrow it" in said

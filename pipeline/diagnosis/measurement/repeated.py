@@ -11,7 +11,7 @@ FEWEST = 20
 
 
 def copied_rows(sweep: Sweep) -> int:
-    """How many rows at the end repeat the rows before them to the last digit; 0 where none do.
+    """How many rows at the end repeat those at the beginning to the last digit; 0 where none do.
 
     Readings of a rig have noise, so that two cycles are never the same. Where all of them are, the record has
     none, and nothing is said.

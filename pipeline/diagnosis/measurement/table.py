@@ -136,7 +136,8 @@ def _values(grid: Grid, column: ReadColumn, texts: list[str], mark: Mark) -> np.
         what = "is empty" if not text else f'= "{text[:SHOWN]}" is not a finite number'
         many = sum(not _holds(t) for t in texts)
         if not _holds(text) and many > 1:
-            what += f" (so are {many} of {len(texts)} rows; fill them, or take the column out)"
+            way = "take the column out" if column.name in OPTIONAL else "leave these rows out"
+            what += f" (so are {many} of {len(texts)} rows; fill them, or {way})"
         raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
     large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
     if len(large):

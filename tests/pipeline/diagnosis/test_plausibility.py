@@ -124,3 +124,12 @@ def test_specimens(unit: str, part: str, factor: float, needle: str, tmp_path: P
         return
     with pytest.raises(MeasurementError, match=needle):
         checked(case, text, tmp_path)
+
+
+def test_an_angle_that_never_changes_was_not_connected(tmp_path: Path) -> None:
+    rows = "\n".join(f"{t:.2f},153.2" for t in np.linspace(-2, 2, 60))
+    with pytest.raises(MeasurementError) as refusal:
+        checked(CLEAN[0], f"torque_Nm,angle_arcsec\n{rows}\n", tmp_path)
+    assert str(refusal.value).endswith(
+        "the angle is the same in all rows: was its channel connected?"
+    )
