@@ -152,6 +152,8 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
         vary, doing = known_causes()[cause].vary, ""
         if aim == "confirm" and vary == "torque_rate" and _has_rates(explained):
             vary, doing = "torque_amplitude", LARGER
+        if rivals == ("series_compliance",):  # a loop shrinks with its amplitude, a spring does not
+            vary, doing = "torque_amplitude", LARGER
         return NextMeasurement(vary, aim, (cause, *rivals), doing)
     noise = explained.prepared.noise.std_arcsec
     best = most_telling(plans(explained.prepared), models, noise)
