@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead
 
@@ -36,7 +37,9 @@ def written_model(
     identified = explained.identified
     evidence, terms = identified.search.evidence, identified.best.terms
     kept = tuple(i for i in terms if (c := evidence.terms[i].cause) is not None and c.id in named)
-    fit = identified.fit if kept == tuple(terms) else fit_regressors(evidence, kept)
+    fit = identified.fit
+    if kept != tuple(terms):
+        fit = _refitted(evidence, kept) or fit
     model = model_of(fit, sweep, list(named), explained.offset_Nm)
     noise = explained.identified.fit.residual_as_read()[explained.prepared.kept]
     floor = float(np.sqrt(np.mean(noise**2)))
@@ -47,6 +50,22 @@ def written_model(
         span_of(sweep.history),
     )
     return WrittenModel(model, doubt)
+
+
+def _refitted(evidence: GaussianEvidence, terms: tuple[int, ...]) -> SweepFit | None:
+    """Fit of these terms without those that then have an amplitude that physics forbids.
+
+    None where a cause would go with them.
+    """
+    causes = {evidence.terms[i].owner for i in terms}
+    while {evidence.terms[i].owner for i in terms} == causes:
+        fit = fit_regressors(evidence, terms)
+        pairs = zip(terms, fit.posterior.amplitudes(evidence), strict=True)
+        forbidden = {i for i, a in pairs if evidence.terms[i].positive and a.min() < 0}
+        if not forbidden:
+            return fit
+        terms = tuple(i for i in terms if i not in forbidden)
+    return None
 
 
 def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -> np.ndarray:
