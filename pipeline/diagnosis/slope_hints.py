@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import log
+from math import hypot, log
 
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.units import ANGLE, TORQUE, Factors
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
@@ -18,6 +20,8 @@ CHORD_NEAR = 0.3
 AS_GEAR = 1.5
 """Times softer than flexspline and shaft from which a complete gear is as likely as a fault. At small torque
 its few teeth in mesh and its bearing yield twice what the two parts do (docs/whole-gear.md)."""
+DEVIATIONS = 3.0
+"""Of a named compliance's own, on either side: one in 370 lies beyond."""
 ANGLE_UNITS, TORQUE_UNITS = ("arcsec", "arcmin", "deg", "mrad", "rad"), ("Nm", "mNm", "Ncm", "kNm")
 """Units that rigs use and this program reads; others are not guessed at."""
 TORQUES: Factors = {unit: TORQUE[unit] for unit in TORQUE_UNITS} | {
@@ -37,45 +41,98 @@ class UnitHint:
 
 
 @dataclass(frozen=True)
+class Slope:
+    """Measured over simulated compliance, and the least and largest ratio that the record allows."""
+
+    ratio: float
+    low: float
+    high: float
+
+    @property
+    def sharp(self) -> bool:
+        """Whether it is known as well as the simulated one is: to `NEAR`."""
+        return self.low > 0 and max(self.high / self.ratio, self.ratio / self.low) < 1 + NEAR
+
+    @property
+    def far(self) -> bool:
+        """Whether it lies farther off than a fault of the gear is likely to bring it."""
+        return self.low > AS_GEAR or self.high < 1 / AS_GEAR
+
+    def spans(self, factor: float) -> bool:
+        """Whether the ratio may be `factor`; `NEAR` and the record's own range in quadrature."""
+        if self.low <= 0:
+            return False
+        end = self.high if factor > self.ratio else self.low
+        return abs(log(factor / self.ratio)) < hypot(log(end / self.ratio), NEAR)
+
+
+@dataclass(frozen=True)
 class SlopeHint:
-    """A slope `softer` times softer than simulated, and the units that would explain it just so.
+    """A slope softer than simulated by a ratio, and the units that would explain it just so.
 
     Without any it may be a complete gear's, which the sum of two parts is not.
     """
 
-    softer: float
+    slope: Slope
     units: tuple[UnitHint, ...] = ()
 
 
-def slope_hint(sweep: Sweep, prediction: Prediction) -> SlopeHint | None:
-    """What the slope may come from; None where it is near the simulated one, or no unit's factor stiffer."""
+def slope_hint(
+    sweep: Sweep, prediction: Prediction, causes: Sequence[NamedCause] = ()
+) -> SlopeHint | None:
+    """What the slope may come from; None where it is near the simulated one, or no unit's factor stiffer.
+
+    `causes` : those named. Series compliance among them is the slope, with friction and temperature allowed
+    for; else the slope is a straight line's.
+    """
     if not len(sweep.history):
         return None
     size = sweep_size(sweep.history, sweep.angle_arcsec, prediction)
-    if size is None or size.compliance <= 0:
+    if size is None:
         return None
-    units = unit_hints(size, sweep)
-    soft = size.compliance_range[0] > AS_GEAR and prediction.bend is None
-    return SlopeHint(size.compliance, units) if units or soft else None
+    named = [c for c in causes if c.id == "series_compliance"]
+    if any(c.own_units for c in named):  # a unit of measurement is all units' under test
+        return None
+    slope = _named_slope(named[0]) if named else _line_slope(size)
+    if slope.ratio <= 0:
+        return None
+    units = unit_hints(size, sweep, slope)
+    soft = slope.low > AS_GEAR and prediction.bend is None
+    return SlopeHint(slope, units) if units or soft else None
 
 
-def unit_hints(size: SweepSize, sweep: Sweep) -> tuple[UnitHint, ...]:
-    """Units in which the slope would be as simulated, within `NEAR`."""
+def unit_hints(size: SweepSize, sweep: Sweep, slope: Slope | None = None) -> tuple[UnitHint, ...]:
+    """Units in which the slope would be as simulated, within `NEAR` and its own range.
+
+    None of a slope that is known roughly and may be a fault's.
+    """
+    slope = slope or _line_slope(size)
+    if slope.ratio <= 0 or not (slope.sharp or slope.far):
+        return ()
     found: list[UnitHint] = []
     torque, angle = (sweep.read_as.column(name) for name in ("torque", "angle"))
-    if torque is not None and size.compliance > 0:
-        found += _hints(torque, TORQUES, size.compliance)
-    if angle is not None and size.compliance > 0 and size.chord > 0:
-        off = abs(log(size.chord / size.compliance))
-        found += _hints(angle, ANGLES, 1 / size.compliance) if off < CHORD_NEAR else []
+    if torque is not None:
+        found += _hints(torque, TORQUES, slope, 1)
+    if angle is not None and size.chord > 0:
+        off = abs(log(size.chord / slope.ratio))
+        found += _hints(angle, ANGLES, slope, -1) if off < CHORD_NEAR else []
     return tuple(found)
 
 
-def _hints(column: ReadColumn, factors: Factors, ratio: float) -> list[UnitHint]:
-    """Units worth `ratio` of the column's, but its own."""
-    wanted = column.factor * ratio
+def _named_slope(series: NamedCause) -> Slope:
+    ratio, off = 1 + series.magnitude / 100, DEVIATIONS * series.magnitude_std / 100
+    return Slope(ratio, ratio - off, ratio + off)
+
+
+def _line_slope(size: SweepSize) -> Slope:
+    return Slope(size.compliance, *size.compliance_range)
+
+
+def _hints(column: ReadColumn, factors: Factors, slope: Slope, power: int) -> list[UnitHint]:
+    """Units but the column's own; the slope goes with their factor to the `power`."""
     return [
         UnitHint(column.head, column.unit, unit)
         for unit, factor in factors.items()
-        if abs(log(factor / wanted)) < NEAR < abs(log(factor / column.factor))
+        if slope.spans((factor / column.factor) ** power)
+        and abs(log(factor / column.factor)) > NEAR
     ]

@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
 from flexspline.pipeline.diagnosis.plausibility import given_words
-from flexspline.pipeline.diagnosis.slope_hints import slope_hint
+from flexspline.pipeline.diagnosis.slope_hints import Slope, slope_hint
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
@@ -63,13 +63,10 @@ def _hint(diagnosis: Diagnosis) -> str:
     if any(u.limit for u in diagnosis.outcome.unexplained):
         asked = any(u.limit and u.what.endswith("?") for u in diagnosis.outcome.unexplained)
         return given_words(diagnosis.given) if asked else ""  # it asks for units itself
-    hint = slope_hint(sweep, diagnosis.prediction)
+    hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes)
     if hint is None:
         return ""
-    soft = hint.softer > 1
-    times = (
-        f"{hint.softer if soft else 1 / hint.softer:.3g} times {'softer' if soft else 'stiffer'}"
-    )
+    times = _times(hint.slope)
     if hint.units:
         units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
         return f" The slope is {times} than simulated, as with {units}: check the units."
@@ -77,6 +74,15 @@ def _hint(diagnosis: Diagnosis) -> str:
         f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
         " whose teeth and bearing yield too? Then use --against gear."
     )
+
+
+def _times(slope: Slope) -> str:
+    """ "1.36 times softer"; both ends of a slope that is known roughly."""
+    soft = slope.ratio > 1
+    ends = (slope.low, slope.high) if soft else (1 / slope.high, 1 / slope.low)
+    size = slope.ratio if soft else 1 / slope.ratio
+    named = f"{size:.3g}" if slope.sharp or slope.low <= 0 else f"{ends[0]:.2g} to {ends[1]:.2g}"
+    return f"{named} times {'softer' if soft else 'stiffer'}"
 
 
 def _far_off(diagnosis: Diagnosis) -> str:

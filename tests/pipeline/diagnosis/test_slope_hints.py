@@ -10,11 +10,12 @@ from hidden.cases import draw_case
 from mislabelled import NONE, Fault, mislabelled
 from typer.testing import CliRunner
 
-from flexspline.geometry.load import design_from
+from flexspline.geometry.load import design_from, load_design
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.slope_hints import slope_hint
@@ -54,7 +55,7 @@ def test_a_torque_in_another_unit_is_suspected(unit: str, factor_Nm: float, tmp_
     hint = slope_hint(sweep(tmp_path, torque_in(factor_Nm)), predicted())
     assert hint is not None
     assert [(u.head, u.unit, u.other) for u in hint.units] == [("torque_Nm", "Nm", unit)]
-    assert hint.softer == pytest.approx(factor_Nm, rel=0.05)
+    assert hint.slope.ratio == pytest.approx(factor_Nm, rel=0.05)
 
 
 def test_a_right_slope_and_one_of_no_unit_s_factor_give_no_hint(tmp_path: Path) -> None:
@@ -82,6 +83,53 @@ def test_the_summary_says_them(tmp_path: Path) -> None:
         path = record(tmp_path, torque_in(factor))
         said = summary(diagnose_file(DESIGN, path, CASE.K_b, CASE.K_e))
         assert words in said
+
+
+def series(magnitude: float, std: float) -> NamedCause:
+    return NamedCause("series_compliance", 1.0, (), magnitude, std, "%", 50.0, 1.0)
+
+
+def test_a_named_compliance_is_the_slope(tmp_path: Path) -> None:
+    read = sweep(tmp_path, torque_in(0.0980665))  # a straight line's slope is that of kgf·cm
+    hint = slope_hint(read, predicted(), (series(-88.5, 0.46),))
+    assert hint is not None
+    assert [u.other for u in hint.units] == ["in·lb"]
+    assert hint.slope.ratio == pytest.approx(0.115)
+
+
+def test_all_units_that_a_rough_slope_spans_are_named(tmp_path: Path) -> None:
+    read = sweep(tmp_path, torque_in(0.105))
+    hint = slope_hint(read, predicted(), (series(-89.5, 1.0),))
+    assert hint is not None
+    assert {u.other for u in hint.units} == {"in·lb", "kgf·cm"}
+
+
+def test_a_rough_slope_that_a_fault_may_bring_suggests_no_unit(tmp_path: Path) -> None:
+    read = sweep(tmp_path, torque_in(1.36))
+    assert slope_hint(read, predicted(), (series(36.0, 0.4),)) is not None  # ft·lb
+    assert slope_hint(read, predicted(), (series(36.0, 4.0),)) is None
+
+
+@pytest.mark.parametrize(("softer", "unit"), [(1.5, ""), (9.80665, "kgf·m")])
+def test_friction_and_temperature_leave_a_line_s_slope_rough(
+    softer: float, unit: str, tmp_path: Path
+) -> None:
+    given = read_measurement(EXAMPLES / "measured" / "xb1-40-sweep.csv")
+    assert isinstance(given, Sweep)
+    h = given.history
+    assert h.time_s is not None
+    assert h.temperature_C is not None
+    columns = (h.cycle, h.time_s, h.temperature_C, h.torque_Nm / softer, given.angle_arcsec)
+    lines = [",".join(f"{v:.10g}" for v in row) for row in zip(*columns, strict=True)]
+    path = tmp_path / "rig.csv"
+    head = "cycle,time_s,temperature_C,torque_Nm,angle_arcsec"
+    path.write_text("\n".join([head, *lines]), encoding="utf-8")
+    read = read_measurement(path)
+    assert isinstance(read, Sweep)
+    gear = load_design(EXAMPLES / "xb1-40.toml")
+    hint = slope_hint(read, prediction_of(gear, 31_300.0, 44_000.0))
+    assert (hint is None) == (not unit)
+    assert [u.other for u in (hint.units if hint else ())] == ([unit] if unit else [])
 
 
 def test_a_stated_stiffness_is_doubted_beside_the_units(tmp_path: Path) -> None:
