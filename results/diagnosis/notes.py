@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.measurement.record import EndPoints
+from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
@@ -41,13 +42,28 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
-        return (*_sweep_notes(diagnosis.sweep.explained),)
+        measured = diagnosis.measurement
+        of_record = record_notes(measured) if isinstance(measured, Sweep) else []
+        return (*_sweep_notes(diagnosis.sweep.explained), *of_record)
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
         of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
         return (*end_point_notes(diagnosis.end_points), *of_race)
     if diagnosis.specimens is not None:
         return (*_specimen_notes(diagnosis.specimens),)
     return ()
+
+
+def record_notes(sweep: Sweep) -> list[str]:
+    """Channels of the file that stand still."""
+    found = []
+    if sweep.history.time_s is None and sweep.read_as.column("time_s") is not None:
+        found.append("time is the same in all rows: taken as not recorded")
+    if lines := constant_lines(sweep):
+        found.append(
+            f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: did the "
+            "channels drop out? Those rows count as measured; remove them if so"
+        )
+    return found
 
 
 def _sweep_notes(explained: ExplainedSweep) -> list[str]:

@@ -28,7 +28,7 @@ class NamedHistory:
 
 
 def history_of(table: MeasuredTable) -> NamedHistory:
-    """What the rig did, by a table with `torque_Nm`.
+    """What the rig did, by a table with `torque_Nm`; a clock that stands still was not recorded.
 
     Raises
     ------
@@ -67,13 +67,19 @@ def history_of(table: MeasuredTable) -> NamedHistory:
         values, index = np.unique(given, return_inverse=True)
         counted[rows] = index if not recorded else (given - values[0]).astype(int)
         own.append(tuple(float(v) for v in values))
+    time = table.numbers.get("time_s")
     history = History(
         torque, unit, counted,
-        table.numbers.get("time_s"),
+        None if time is None or is_frozen(time) else time,
         table.numbers.get("temperature_C"),
         table.numbers.get("input_angle_deg"),
     )  # fmt: skip
     return NamedHistory(history, names, tuple(own))
+
+
+def is_frozen(time_s: np.ndarray) -> bool:
+    """Whether a clock stands still in all rows, which says no more than no clock."""
+    return len(time_s) > 1 and bool(np.ptp(time_s) == 0)
 
 
 def counted_cycles(torque_Nm: np.ndarray) -> np.ndarray:
