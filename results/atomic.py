@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
+import stat
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -34,25 +36,51 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
 
     Raises
     ------
-    OSError : with the path's name; what was there before still is, unless a move failed.
+    OSError : with the path's name; what was there before still is; nothing is moved where one file cannot be
+        replaced.
     """
     folder.mkdir(parents=True, exist_ok=True)
     made: dict[Path, Path] = {}
     try:
         for name, data in files.items():
-            made[folder / name] = unfinished(folder, data)
+            with _named(folder / name):
+                made[folder / name] = unfinished(folder, data)
             # mkstemp's 0600 would hide it from the user's colleagues
             os.chmod(made[folder / name], 0o666 & ~UMASK)
+        for path in made:  # before the first is moved: an answer is not half replaced
+            _refuse_fixed(path)
         with _not_stopped():
             for path, part in made.items():
-                try:
+                with _named(path):
                     os.replace(part, path)
-                except OSError as fault:
-                    raise OSError(fault.errno, fault.strerror, str(path)) from None
     finally:
         for part in made.values():
             part.unlink(missing_ok=True)
     return list(made)
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Faults name the file of the answer; those of a full disk name none, others an unfinished one."""
+    try:
+        yield
+    except OSError as fault:
+        raise OSError(fault.errno, fault.strerror, str(path)) from None
+
+
+def _refuse_fixed(path: Path) -> None:
+    """What `os.replace` cannot replace: a folder, or another user's file in a sticky folder."""
+    try:
+        there = path.lstat()
+    except FileNotFoundError:
+        return
+    if stat.S_ISDIR(there.st_mode):
+        raise OSError(errno.EISDIR, "is a folder, where a file is to be written", str(path))
+    above = path.parent.stat()
+    sticky = bool(above.st_mode & stat.S_ISVTX) and hasattr(os, "geteuid")
+    if sticky and os.geteuid() not in (0, there.st_uid, above.st_uid):
+        reason = "belongs to another user, whose files this folder keeps"
+        raise OSError(errno.EPERM, reason, str(path))
 
 
 @contextmanager

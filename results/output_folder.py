@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -36,7 +37,7 @@ def folder_of(path: Path, out: Path | None, shared: bool = False) -> Path:
     except OSError as fault:
         if fault.errno in FULL:
             raise OSError(fault.errno, fault.strerror, str(folder)) from None
-        verb = "written to" if folder.is_dir() else "made"
+        verb = "written to" if os.path.isdir(folder) else "made"  # Path.is_dir fails at a long name
         reason = f"cannot be {verb} ({fault.strerror}); name another folder"
         raise DesignError("--out", str(folder), reason) from None
     if not free:
