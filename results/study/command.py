@@ -56,7 +56,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         folder = folder_of(file, out, shared=True)
         run = asked.file.run
         size = source_of(asked).size  # refuse before anything is written
-        if run.scheduler and not folder.exists():
+        if run.scheduler and not any(folder.iterdir()):
             check_scheduler(run.scheduler)
         if run.method == "grid" and size != run.evaluations:
             tell(f"the grid has {size} designs (run.evaluations = {run.evaluations})")

@@ -34,11 +34,11 @@ SAME = 1e-7
 which an unsupported rim, floppy as it is, keeps nine digits."""
 
 
-DRAG = """async (key) => {  // three seconds, or until both have moved often enough
+DRAG = """async (key) => {  // until both have moved often enough; a slow machine has twelve seconds
   const slider = document.querySelector(`.row[data-key="${key}"] input[type=range]`);
   const figures = new Set(), pictures = new Set();
-  for (let i = 0; i < 60 && (figures.size < 4 || pictures.size < 3); i++) {
-    slider.value = String(0.3 + 0.003 * i);
+  for (let i = 0; i < 240 && (figures.size < 4 || pictures.size < 3); i++) {
+    slider.value = String(0.3 + 0.003 * (i % 60));
     slider.dispatchEvent(new Event("input", { bubbles: true }));
     await new Promise((done) => setTimeout(done, 50));
     figures.add(document.querySelector('#answers tr[data-key="K_b_Nm_per_rad"] td.value').textContent);
