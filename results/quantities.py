@@ -1,19 +1,18 @@
 """The one table of quantities: result.json key, unit, long name, symbol and how it is printed.
 
-JSON, CSV, figures and the report all read it; no other file spells a unit or a symbol.
+JSON, CSV, figures and the report all read it; no other file spells a unit or a symbol. The whole gear's
+part of it stands in `gear_quantities.py`.
 """
 
 from __future__ import annotations
 
-from flexspline.results.quantity import Quantity
+from flexspline.results.gear_quantities import GEAR_QUANTITIES
+from flexspline.results.quantity import STIFFNESS_UNIT, Quantity
 
 
 def bounds_kind(guaranteed: bool) -> str:
     """What bounds are: "guaranteed" where both ends are theorems, else "estimated"."""
     return "guaranteed" if guaranteed else "estimated"
-
-
-_STIFFNESS = "N·m/rad"
 
 
 def _stiffness(
@@ -23,9 +22,18 @@ def _stiffness(
     value, bounds = f"{key}_Nm_per_rad", f"{key}_bounds_Nm_per_rad"
     return (
         Quantity(
-            value, value, _STIFFNESS, name, symbol, digits=digits, note=note, short_name=short_name
+            value,
+            value,
+            STIFFNESS_UNIT,
+            name,
+            symbol,
+            digits=digits,
+            note=note,
+            short_name=short_name,
         ),
-        Quantity(bounds, bounds, _STIFFNESS, f"Bounds of the {bounded}", symbol, "bounds", digits),
+        Quantity(
+            bounds, bounds, STIFFNESS_UNIT, f"Bounds of the {bounded}", symbol, "bounds", digits
+        ),
     )
 
 
@@ -80,7 +88,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "K_series_Nm_per_rad",
         "K_series_Nm_per_rad",
-        _STIFFNESS,
+        STIFFNESS_UNIT,
         "Series stiffness of flexspline and shaft",
         "K",
         digits=5,
@@ -194,100 +202,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "Reason for that limit",
         kind="text",
     ),
-    *(
-        Quantity(
-            f"{key}_Nm_per_rad",
-            f"{key}_Nm_per_rad",
-            _STIFFNESS,
-            f"{key} of the whole gear, {name}",
-            f"K_{key[1]}",
-            rounded=True,
-        )
-        for key, name in (
-            ("K1", "from 0 to T1"),
-            ("K2", "from T1 to T2"),
-            ("K3", "from T2 to rated torque"),
-        )
-    ),
-    *(
-        Quantity(key, key, "N·m", name, symbol, digits=3)
-        for key, name, symbol in (
-            ("T1_Nm", "Torque T1", "T_1"),
-            ("T2_Nm", "Torque T2", "T_2"),
-            ("rated_torque_Nm", "Rated torque", "T_N"),
-        )
-    ),
-    Quantity(
-        "lost_motion_arcsec",
-        "lost_motion_arcsec",
-        "arcsec",
-        "Lost motion, between ± 4 % of rated torque",
-        "θ_lm",
-        decimals=1,
-    ),
-    Quantity(
-        "lost_motion_torque_Nm",
-        "lost_motion_torque_Nm",
-        "N·m",
-        "Torque of the lost motion, each way",
-        "T_lm",
-        digits=3,
-    ),
-    Quantity(
-        "free_angle_arcsec",
-        "free_angle_arcsec",
-        "arcsec",
-        "Free angle, clearance of both ways; K1 leaves it out",
-        "θ_0",
-        decimals=1,
-    ),
-    Quantity(
-        "teeth_in_contact",
-        "teeth_in_contact",
-        "",
-        "Teeth in contact at rated torque",
-        "z_c",
-        kind="count",
-    ),
-    Quantity(
-        "preload_tooth_force_N",
-        "preload_tooth_force_N",
-        "N",
-        "Largest tooth force without torque, where both flanks press",
-        "F_0",
-        digits=2,
-    ),
-    Quantity(
-        "buckling_torque_Nm",
-        "buckling_torque_Nm",
-        "N·m",
-        "Buckling torque of the flexspline's tube, estimate",
-        "T_b",
-        digits=2,
-    ),
-    Quantity(
-        "ratcheting_torque_Nm",
-        "ratcheting_torque_Nm",
-        "N·m",
-        "Ratcheting torque, upper limit by loss of engagement",
-        "T_r",
-        digits=2,
-    ),
-    *(
-        Quantity(
-            f"compliance_shares.{part}",
-            f"compliance_share_{part}",
-            "",
-            f"Share of the {name} in the compliance at rated torque",
-            decimals=3,
-        )
-        for part, name in (
-            ("flexspline", "flexspline"),
-            ("shaft", "shaft"),
-            ("teeth", "teeth"),
-            ("bearing", "bearing"),
-        )
-    ),
+    *GEAR_QUANTITIES,
     Quantity("solver.model", "solver_model", "", "Model of K_b", kind="text"),
     Quantity("solver.elements", "solver_elements", "", "Elements, finest mesh", kind="count"),
     Quantity("solver.dofs", "solver_dofs", "", "Unknowns, finest mesh", kind="count"),

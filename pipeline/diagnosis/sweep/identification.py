@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from math import log
 
@@ -146,32 +146,38 @@ def _plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> C
     Sets that do fit a misfit, or the noise.
     """
     for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
-        if not _cancels(evidence, c) and not _is_torque_noise(evidence, c):
+        if not _fits_noise(evidence, c):
             return c
     return search.candidate(())
 
 
-def _is_torque_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
-    """Whether the noise of the torque that drives a memory may have made what a term of it explains."""
-    driven = sorted(c.owners(evidence) & {*DRIVEN})
-    if not driven:
+def _fits_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
+    """Whether a set's effects nearly cancel, or one is the torque's noise through a memory."""
+    owners = c.owners(evidence)
+    nuisance = any(o.startswith("?") for o in owners)
+    driven = sorted(owners & {*DRIVEN})
+    if not nuisance and not driven:
         return False
     fit = fit_regressors(evidence, c.terms)
+    if nuisance and _cancels(fit, owners):
+        return True
+    return bool(driven) and _is_torque_noise(fit, driven)
+
+
+def _is_torque_noise(fit: SweepFit, driven: Sequence[str]) -> bool:
+    """Whether the noise of the torque that drives a memory may have made what a term of it explains."""
+    evidence = fit.evidence
     of_noise = fit.measured_rig().compliance * torque_noise_Nm(evidence.columns.rig.history)
     return min(owner_rms(fit, driven).values()) < OF_TORQUE_NOISE * of_noise
 
 
-def _cancels(evidence: GaussianEvidence, c: Candidate) -> bool:
+def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
     """Whether a set with a nuisance term holds large effects that together are small, all or two of them.
 
     A nuisance term is less what torque and its lags explain. Beside a cause that is not, the two may leave
     those lags, which know the true torque better than its reading does.
     """
-    owners = c.owners(evidence)
-    if not any(o.startswith("?") for o in owners):
-        return False
-    fit = fit_regressors(evidence, c.terms)
-    parts = np.array([fit.added(o)[evidence.kept] for o in owners])
+    parts = np.array([fit.added(o)[fit.evidence.kept] for o in owners])
     parts -= parts.mean(axis=1, keepdims=True)
     if (parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum():
         return True

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN
+from flexspline.pipeline.diagnosis.decision import is_beyond_none
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leakage import leaked
 
@@ -45,16 +45,14 @@ class SizeDoubt:
         return cls(fit, magnitude, std)
 
     def is_any(self, cause: str) -> bool:
-        """Whether a size is beyond `SIZE_KNOWN` of its deviations from none.
+        """Whether a size is far enough from none (`../decision.py`).
 
         That a term helps is sure by its evidence; that it is this cause, and not what others' shapes miss, is
         only as sure as its size. Friction counts by its loop where that is widest.
         """
-        known = known_causes()[cause]
-        if not known.passes_none:
-            return True
         size = self.fit.widest_loop_arcsec() if cause == FRICTION else self.magnitude[cause]
-        return abs(size - known.none) >= SIZE_KNOWN * self.std[cause]
+        off, std = abs(size - known_causes()[cause].none), self.std[cause]
+        return is_beyond_none(cause, off / std if std > 0 else inf)
 
 
 def _cancelled(fit: SweepFit, cause: str, magnitude: float) -> float:

@@ -1,0 +1,102 @@
+"""The whole gear's part of the table of quantities (`quantities.py`)."""
+
+from __future__ import annotations
+
+from flexspline.results.quantity import STIFFNESS_UNIT, Quantity
+
+GEAR_QUANTITIES: tuple[Quantity, ...] = (
+    *(
+        Quantity(
+            f"{key}_Nm_per_rad",
+            f"{key}_Nm_per_rad",
+            STIFFNESS_UNIT,
+            f"{key} of the whole gear, {name}",
+            f"K_{key[1]}",
+            rounded=True,
+        )
+        for key, name in (
+            ("K1", "from 0 to T1"),
+            ("K2", "from T1 to T2"),
+            ("K3", "from T2 to rated torque"),
+        )
+    ),
+    *(
+        Quantity(key, key, "N·m", name, symbol, digits=3)
+        for key, name, symbol in (
+            ("T1_Nm", "Torque T1", "T_1"),
+            ("T2_Nm", "Torque T2", "T_2"),
+            ("rated_torque_Nm", "Rated torque", "T_N"),
+        )
+    ),
+    Quantity(
+        "lost_motion_arcsec",
+        "lost_motion_arcsec",
+        "arcsec",
+        "Lost motion, between ± 4 % of rated torque",
+        "θ_lm",
+        decimals=1,
+    ),
+    Quantity(
+        "lost_motion_torque_Nm",
+        "lost_motion_torque_Nm",
+        "N·m",
+        "Torque of the lost motion, each way",
+        "T_lm",
+        digits=3,
+    ),
+    Quantity(
+        "free_angle_arcsec",
+        "free_angle_arcsec",
+        "arcsec",
+        "Free angle, clearance of both ways; K1 leaves it out",
+        "θ_0",
+        decimals=1,
+    ),
+    Quantity(
+        "teeth_in_contact",
+        "teeth_in_contact",
+        "",
+        "Teeth in contact at rated torque",
+        "z_c",
+        kind="count",
+    ),
+    Quantity(
+        "preload_tooth_force_N",
+        "preload_tooth_force_N",
+        "N",
+        "Largest tooth force without torque, where both flanks press",
+        "F_0",
+        digits=2,
+    ),
+    Quantity(
+        "buckling_torque_Nm",
+        "buckling_torque_Nm",
+        "N·m",
+        "Buckling torque of the flexspline's tube, estimate",
+        "T_b",
+        digits=2,
+    ),
+    Quantity(
+        "ratcheting_torque_Nm",
+        "ratcheting_torque_Nm",
+        "N·m",
+        "Ratcheting torque, upper limit by loss of engagement",
+        "T_r",
+        digits=2,
+    ),
+    *(
+        Quantity(
+            f"compliance_shares.{part}",
+            f"compliance_share_{part}",
+            "",
+            f"Share of the {name} in the compliance at rated torque",
+            decimals=3,
+        )
+        for part, name in (
+            ("flexspline", "flexspline"),
+            ("shaft", "shaft"),
+            ("teeth", "teeth"),
+            ("bearing", "bearing"),
+        )
+    ),
+)
