@@ -9,7 +9,13 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
-from flexspline.pipeline.diagnosis.measurement.units import ANGLE, STIFFNESS, TORQUE, Factors
+from flexspline.pipeline.diagnosis.measurement.units import (
+    ANGLE,
+    STIFFNESS,
+    TORQUE,
+    Factors,
+    symbol,
+)
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.slope_hints import ANGLE_UNITS, TORQUE_UNITS, unit_hints
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
@@ -109,7 +115,7 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
         if abs(size.chord) > 1 and _whole(sweep.angle_arcsec / angle.factor):
             found.append((0.0, f"is {angle.head} in counts of an encoder (--counts-per-turn N)"))
         for unit, off in likely_units((size.chord, size.compliance), angle, ANGLE_UNITS, ANGLE):
-            found.append((off, f"is {angle.head} in {unit}, not {angle.unit}"))
+            found.append((off, f"is {angle.head} in {unit}, not {symbol(angle.unit)}"))
     if torque and size.compliance:
         for unit, off in likely_units((1 / size.compliance,), torque, TORQUE_UNITS, TORQUE):
             elastic = size.simulated_arcsec - size.simulated_gap_arcsec
@@ -117,7 +123,7 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
             chord = float(np.log(max(abs(size.chord), TINY) * size.simulated_arcsec / simulated))
             if abs(chord) < np.log(LIKELY):
                 off = max(off, abs(chord))
-                found.append((off, f"is {torque.head} in {unit}, not {torque.unit}"))
+                found.append((off, f"is {torque.head} in {unit}, not {symbol(torque.unit)}"))
     found += [(0.0, f"is {h.head} in {h.other}, not {h.unit}") for h in unit_hints(size, sweep)]
     best = min((off for off, _ in found), default=0.0)
     likely = (words for off, words in sorted(found) if off <= best + np.log(AS_LIKELY))
@@ -175,7 +181,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
     if _beyond(abs(ratio)):
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
-        ask = f"are they in {unit}, not {column.unit}" if column and unit else "is the unit right"
+        ask = f"are they in {unit}, not {symbol(column.unit)}" if column and unit else "is the unit right"
         return f"the angles are {times(ratio)} the simulated ones: {ask}?"
     if ratio < OPPOSITE:
         return f"angle_plus lies below angle_minus: are the two columns, or the sign, {TURNED}"
@@ -196,6 +202,6 @@ def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | Non
     ratio = min(ratios, key=lambda r: abs(np.log(r)))
     column = specimens.read_as.column("stiffness")
     unit = likely_unit(ratio, column, tuple(STIFFNESS), STIFFNESS)
-    ask = f"is it in {unit}, not {column.unit}" if column and unit else "is the unit right"
+    ask = f"is it in {unit}, not {symbol(column.unit)}" if column and unit else "is the unit right"
     head = column.head if column else "the stiffness"
     return f"{head} is {times(ratio)} the simulated one: {ask}?"

@@ -8,7 +8,12 @@ from math import hypot, log
 
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.measurement.units import ANGLE, TORQUE, Factors
+from flexspline.pipeline.diagnosis.measurement.units import (
+    ANGLE,
+    TORQUE,
+    Factors,
+    symbol,
+)
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
@@ -23,11 +28,10 @@ its few teeth in mesh and its bearing yield twice what the two parts do (docs/wh
 DEVIATIONS = 3.0
 """Of a named compliance's own, on either side: one in 370 lies beyond."""
 ANGLE_UNITS, TORQUE_UNITS = ("arcsec", "arcmin", "deg", "mrad", "rad"), ("Nm", "mNm", "Ncm", "kNm")
-"""Units that rigs use and this program reads; others are not guessed at."""
-TORQUES: Factors = {unit: TORQUE[unit] for unit in TORQUE_UNITS} | {
-    "in·lb": 0.112985, "ft·lb": 1.355818, "kgf·m": 9.80665, "kgf·cm": 0.0980665, "oz·in": 0.00706155,
-}  # fmt: skip
-"""N·m of one, NIST SP 811 (2008), appendix B.8."""
+"""Units that rigs use; others are not guessed at."""
+TORQUES: Factors = {
+    unit: TORQUE[unit] for unit in (*TORQUE_UNITS, "in_lbf", "ft_lbf", "kgf_m", "kgf_cm", "in_ozf")
+}
 ANGLES: Factors = {unit: ANGLE[unit] for unit in ANGLE_UNITS}
 
 
@@ -131,7 +135,7 @@ def _line_slope(size: SweepSize) -> Slope:
 def _hints(column: ReadColumn, factors: Factors, slope: Slope, power: int) -> list[UnitHint]:
     """Units but the column's own; the slope goes with their factor to the `power`."""
     return [
-        UnitHint(column.head, column.unit, unit)
+        UnitHint(column.head, symbol(column.unit), symbol(unit))
         for unit, factor in factors.items()
         if slope.spans((factor / column.factor) ** power)
         and abs(log(factor / column.factor)) > NEAR

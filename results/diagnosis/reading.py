@@ -8,7 +8,7 @@ from typing import Any
 from flexspline.geometry.errors import one_line
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
-from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES
+from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES, symbol
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 MARKS = {".": "point", ",": "comma"}
@@ -89,7 +89,7 @@ def _words(column: ReadColumn, read_as: ReadAs) -> str:
         return column.name
     if column.unit == COUNTS:
         return f"{column.name}, {column.factor:.6g} each"
-    unit, ours = column.unit.replace("_per_", "/"), QUANTITIES[quantity].unit.replace("_per_", "/")
+    unit, ours = symbol(column.unit), symbol(QUANTITIES[quantity].unit)
     if column.shift:
         return f"{column.name}, in {unit} ({column.shift:g} added)"
     return f"{column.name}, in {unit} (1 {unit} = {column.factor:.6g} {ours})"

@@ -10,11 +10,23 @@ from math import pi
 Factors = Mapping[str, float]
 
 
+ARCSEC_PER_TURN = 1_296_000.0
+KGF_N = 9.80665
+"""Standard gravity on 1 kg: NIST SP 811 (2008), appendix B.8."""
+LBF_N = 0.45359237 * KGF_N
+"""The international pound, the same place."""
+INCH_M, FOOT_M = 0.0254, 0.3048
+
 # what one of each unit is in ours: N·m, arcsec, s, °C, N·m/rad
-TORQUE: Factors = {"Nm": 1.0, "Nmm": 1e-3, "mNm": 1e-3, "Ncm": 1e-2, "kNm": 1e3}
+TORQUE: Factors = {
+    "Nm": 1.0, "Nmm": 1e-3, "mNm": 1e-3, "Ncm": 1e-2, "kNm": 1e3, "uNm": 1e-6, "daNm": 10.0,
+    "in_lbf": LBF_N * INCH_M, "ft_lbf": LBF_N * FOOT_M, "in_ozf": LBF_N / 16 * INCH_M,
+    "kgf_m": KGF_N, "kgf_cm": KGF_N * 1e-2, "kgf_mm": KGF_N * 1e-3, "gf_cm": KGF_N * 1e-5,
+}  # fmt: skip
 ANGLE: Factors = {
     "arcsec": 1.0, "arcmin": 60.0, "deg": 3600.0, "mdeg": 3.6, "gon": 3240.0,
     "urad": 0.18 * 3.6 / pi, "mrad": 180 * 3.6 / pi, "rad": 180 * 3600 / pi,
+    "rev": ARCSEC_PER_TURN,
 }  # fmt: skip
 TIME: Factors = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
 TEMPERATURE: Factors = {"C": 1.0, "K": 1.0}
@@ -27,7 +39,6 @@ KELVIN_AT_0_C = 273.15
 """SI Brochure, 9th edition (2019), section 2.3.1."""
 COUNTS = "counts"
 """Of an encoder: an angle only once the counts of a turn are known."""
-ARCSEC_PER_TURN = 1_296_000.0
 
 
 @dataclass(frozen=True)
@@ -54,20 +65,46 @@ QUANTITIES: Mapping[str, Quantity] = {
 """By the name that our columns begin with."""
 
 
+_NEWTON_METRES = (
+    "newtonmeter newtonmetre newtonmeters newtonmetres newton-meter newton-metre newton-meters newton-metres"
+)
+_INCH, _FOOT, _CM = "in inch inches", "ft foot feet", "cm"
+_POUND = "lbf lb lbs lbsf pound pounds pound-force pounds-force"
+_OUNCE = "ozf oz ounce ounces ounce-force"
+_KGF = "kgf kg kp"
+
+
+def _products(forces: str, lengths: str) -> str:
+    """Every way of writing force times length: in both orders, with a hyphen between or nothing."""
+    pairs = [(f, n) for f in forces.split() for n in lengths.split()]
+    return " ".join(
+        f"{one}{between}{two}"
+        for pair in pairs
+        for one, two in (pair, pair[::-1])
+        for between in ("", "-")
+    )
+
+
 _WRITTEN: Mapping[str, Mapping[str, str]] = {
     "torque": {
-        "Nm": "Nm NM nm N_m N-m newtonmeter newtonmetre newtonmeters newtonmetres newton-meter",
-        "Nmm": "Nmm", "mNm": "mNm mnm", "Ncm": "Ncm", "kNm": "kNm knm KNm",
+        "Nm": f"Nm NM nm N-m N-M n-m {_NEWTON_METRES}",
+        "Nmm": "Nmm N-mm", "mNm": "mNm mnm mN-m", "Ncm": "Ncm N-cm cNm cN-m",
+        "kNm": "kNm knm KNm kN-m", "uNm": "uNm µNm μNm uN-m µN-m μN-m", "daNm": "daNm daN-m",
+        "in_lbf": _products(_POUND, _INCH), "ft_lbf": _products(_POUND, _FOOT),
+        "in_ozf": _products(_OUNCE, _INCH), "kgf_m": _products(_KGF, "m"),
+        "kgf_cm": _products(_KGF, _CM), "kgf_mm": _products(_KGF, "mm"), "gf_cm": _products("gf g", _CM),
     },
     "angle": {
-        "arcsec": "arcsec arcsecs arc-sec arc-seconds arcsecond arcseconds asec ″ \" '' ” "
-        "bogensekunde bogensekunden",
-        "arcmin": "arcmin arcmins arc-min arc-minutes arcminute arcminutes amin ′ ' ’ bogenminute "
-        "bogenminuten",
+        "arcsec": "arcsec arcsecs arc-sec arc-seconds arcsecond arcseconds asec ″ \" '' ′′ ’’ ” "
+        "secondsofarc secofarc bogensekunde bogensekunden",
+        "arcmin": "arcmin arcmins arc-min arc-minutes arcminute arcminutes amin ′ ' ’ "
+        "minutesofarc minofarc bogenminute bogenminuten",
         "deg": "deg degs degree degrees ° º Grad",
         "mdeg": "mdeg m°", "gon": "gon",
-        "urad": "urad µrad μrad", "mrad": "mrad milliradian milliradians",
-        "rad": "rad radian radians radiant",
+        "urad": "urad µrad μrad microradian microradians",
+        "mrad": "mrad millirad milliradian milliradians",
+        "rad": "rad rads radian radians radiant",
+        "rev": "rev revs revolution revolutions turn turns umdrehung umdrehungen",
         COUNTS: "counts count cts inc incs increment increments inkr inkremente pulses ticks digits",
     },
     "time": {
@@ -88,22 +125,31 @@ UNITS: Mapping[str, Mapping[str, str]] = {
     name: {way: unit for unit, ways in units.items() for way in ways.split()}
     for name, units in _WRITTEN.items()
 }
-"""By the quantity's name: our word for each way of writing a unit, without spaces and product signs."""
-_PRODUCT = re.compile(r"(?<=[A-Za-z])\s*[·⋅∙•×*.]\s*(?=[A-Za-z])|\s+|[⁻^](?=\d|¹)")
+"""By the quantity's name: our word for each way of writing a unit, without spaces; the sign of a product is
+left out, a hyphen stays."""
+_PRODUCT = re.compile(
+    r"(?<=[A-Za-z])\s*[·⋅∙•・･×*.]\s*(?=[A-Za-zµμ])|\s+|[⁻^](?=\d|¹)|(?<=[A-Za-z])\.$"
+)
+"""Signs of a product, spaces, a power's sign, and the dot of an abbreviation at the end."""
+_HYPHEN = re.compile(r"(?<=[A-Za-z])\.?[-−‐‑–_](?=[A-Za-z])")
+"""What may stand for a product in a unit of two words; `m-s` and `m_Nm` are none, so a table holds them."""
 
 
 def unit_named(name: str, written: str) -> str | None:
     """Our word for a unit of the quantity `name`; None for what is none."""
     ways = UNITS[name]
-    plain = _PRODUCT.sub("", written.strip())
-    if plain in ways:
-        return ways[plain]
-    # words in any case; symbols are told by case: mNm is no MNm, and grad (gon) no Grad (°)
-    lower = plain.lower()
-    long = len(lower) > 3 and lower != "grad"
-    return ways.get(lower) if long else None
+    bare = written.strip()
+    plain = _PRODUCT.sub("", bare)
+    for way in (plain, bare, _HYPHEN.sub("-", plain)):
+        if way in ways:
+            return ways[way]
+        # words in any case; symbols are told by case: mNm is no MNm, and grad (gon) no Grad (°)
+        lower = way.lower()
+        if len(lower) > 3 and lower != "grad" and lower in ways:
+            return ways[lower]
+    return None
 
 
-def names_with(written: str) -> tuple[str, ...]:
-    """Names of the quantities that have a unit so written."""
-    return tuple(name for name in UNITS if unit_named(name, written) is not None)
+def symbol(unit: str) -> str:
+    """A unit as it is printed: in·lbf, Nm/rad."""
+    return unit.replace("_per_", "/").replace("_", "·")

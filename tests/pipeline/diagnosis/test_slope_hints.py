@@ -49,7 +49,7 @@ def torque_in(factor_Nm: float) -> Fault:
 
 @pytest.mark.parametrize(
     ("unit", "factor_Nm"),  # in N·m, NIST SP 811, appendix B.8
-    [("in·lb", 0.1129848), ("ft·lb", 1.355818), ("kgf·m", 9.80665), ("kgf·cm", 0.0980665)],
+    [("in·lbf", 0.1129848), ("ft·lbf", 1.355818), ("kgf·m", 9.80665), ("kgf·cm", 0.0980665)],
 )
 def test_a_torque_in_another_unit_is_suspected(unit: str, factor_Nm: float, tmp_path: Path) -> None:
     hint = slope_hint(sweep(tmp_path, torque_in(factor_Nm)), predicted())
@@ -77,7 +77,7 @@ def test_a_record_twice_as_soft_may_be_of_a_complete_gear(tmp_path: Path) -> Non
 
 def test_the_summary_says_them(tmp_path: Path) -> None:
     for factor, words in (
-        (0.1129848, "as with torque_Nm in in·lb, not Nm"),
+        (0.1129848, "as with torque_Nm in in·lbf, not Nm"),
         (2.0, "--against gear"),
     ):
         path = record(tmp_path, torque_in(factor))
@@ -93,7 +93,7 @@ def test_a_named_compliance_is_the_slope(tmp_path: Path) -> None:
     read = sweep(tmp_path, torque_in(0.0980665))  # a straight line's slope is that of kgf·cm
     hint = slope_hint(read, predicted(), (series(-88.5, 0.46),))
     assert hint is not None
-    assert [u.other for u in hint.units] == ["in·lb"]
+    assert [u.other for u in hint.units] == ["in·lbf"]
     assert hint.slope.ratio == pytest.approx(0.115)
 
 
@@ -101,12 +101,12 @@ def test_all_units_that_a_rough_slope_spans_are_named(tmp_path: Path) -> None:
     read = sweep(tmp_path, torque_in(0.105))
     hint = slope_hint(read, predicted(), (series(-89.5, 1.0),))
     assert hint is not None
-    assert {u.other for u in hint.units} == {"in·lb", "kgf·cm"}
+    assert {u.other for u in hint.units} == {"in·lbf", "kgf·cm"}
 
 
 def test_a_rough_slope_that_a_fault_may_bring_suggests_no_unit(tmp_path: Path) -> None:
     read = sweep(tmp_path, torque_in(1.36))
-    assert slope_hint(read, predicted(), (series(36.0, 0.4),)) is not None  # ft·lb
+    assert slope_hint(read, predicted(), (series(36.0, 0.4),)) is not None  # ft·lbf
     assert slope_hint(read, predicted(), (series(36.0, 4.0),)) is None
 
 

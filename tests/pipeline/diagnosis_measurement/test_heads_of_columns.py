@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name
+from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
 
 SAID = {
     "torque_Nm": ("torque", "Nm"), "Torque [Nm]": ("torque", "Nm"), "Torque (N·m)": ("torque", "Nm"),
@@ -31,14 +32,37 @@ SAID = {
     "Steifigkeit [Nm/arcmin]": ("stiffness", "Nm_per_arcmin"),
     "Stiffness std [N·m/rad]": ("stiffness_std", "Nm_per_rad"),
     "flexspline.length_mm": ("flexspline.length_mm", None),
+    "torque_m_Nm": ("torque", "Nm"), "torque_m-Nm": ("torque", "Nm"),
+}  # fmt: skip
+WRITTEN = {
+    "Nm": "Nm N.m N*m N·m N-m N−m N_m N・m N•m NM newton-metres",
+    "mNm": "mNm mN.m mN·m mN-m", "kNm": "kNm kN.m kN-m", "Ncm": "Ncm N.cm cN.m", "uNm": "µNm uN-m",
+    "daNm": "daNm daN·m",
+    "in_lbf": "in-lbf in_lbf lbf.in in*lbf lbf·in in-lb in-lbs lb-in inlb in.-lb lbf-in. IN-LBF inch-pounds "
+    "pound-inches",
+    "ft_lbf": "ft-lbf ft.lbf lbf*ft ft-lb ft-lbs lb-ft lbft foot-pounds FT-LBS",
+    "in_ozf": "oz-in ozf.in in-oz ozin ounce-inches OZ-IN",
+    "kgf_m": "kgf-m kgf·m kgf.m kgm kp·m", "kgf_cm": "kgf.cm kgf-cm kg-cm kgcm kp·cm", "kgf_mm": "kgf·mm",
+    "gf_cm": "gf·cm g-cm",
+    "deg": "deg deg. ° degrees", "rad": "rad rads", "mrad": "mrad", "urad": "µrad μrad urad microradians",
+    "arcmin": "arcmin arc-min ' ′ arcmin.", "arcsec": 'arcsec arc-sec " ″ \'\' ′′ arcsec.',
+    "rev": "rev revs rev. turns turn revolutions Umdrehungen",
+}  # fmt: skip
+"""How programs, catalogues and people write each unit; a space is none of it here."""
+IN_WORDS = {
+    "Torque (in lbf)": "in_lbf", "Torque, ft lbs": "ft_lbf", "Torque / oz in": "in_ozf",
+    "Drehmoment in in-lbf": "in_lbf", "torque_in-lbf": "in_lbf", "torque_kgf_cm": "kgf_cm",
+    "Torque [in. lb]": "in_lbf", "Angle (arc min)": "arcmin", "Angle [sec of arc]": "arcsec",
 }  # fmt: skip
 NOT_OURS = (
     "Motor torque [Nm]", "Torque setpoint [Nm]", "Soll-Winkel [°]", "Angle rate [deg/s]", "Cycle time [s]",
     "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
 )  # fmt: skip
 NO_UNIT = {
-    "torque": "", "Drehmoment": "", "torque_lbf": "lbf", "Torque [lbf·in]": "lbf·in", "angle_min": "min",
+    "torque": "", "Drehmoment": "", "torque_lbf": "lbf", "Torque [lbf]": "lbf",
+    "Torque [kg]": "kg", "Torque [lb/in]": "lb/in", "Torque [m-N]": "m-N", "angle_min": "min",
     "Angle [grad]": "grad", "Temp [F]": "F", "Torque [deg]": "deg", "Torque [MNm]": "MNm",
+    "Torque [MN-m]": "MN-m",
 }  # fmt: skip
 """Quantities whose unit is missing or none: grad is degrees or gon, MNm no small gear's."""
 
@@ -49,6 +73,24 @@ def test_a_quantity_and_its_unit(head: str) -> None:
     assert found is not None
     assert (found.quantity, found.unit) == SAID[head]
     assert found.strange is None
+
+
+@pytest.mark.parametrize(
+    ("written", "unit"), [(way, unit) for unit, ways in WRITTEN.items() for way in ways.split()]
+)
+def test_every_way_of_writing_a_unit_is_read(written: str, unit: str) -> None:
+    quantity = "torque" if unit in QUANTITIES["torque"].factors else "angle"
+    for head in (f"{quantity} [{written}]", f"{quantity} ({written})", f"{quantity} / {written}"):
+        found = column_name(head)
+        assert found is not None
+        assert (found.quantity, found.unit) == (quantity, unit), head
+
+
+@pytest.mark.parametrize("head", IN_WORDS)
+def test_units_of_two_words_are_read_beside_others(head: str) -> None:
+    found = column_name(head)
+    assert found is not None
+    assert found.unit == IN_WORDS[head]
 
 
 @pytest.mark.parametrize("head", NOT_OURS)
