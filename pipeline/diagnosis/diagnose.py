@@ -42,7 +42,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
-from flexspline.pipeline.diagnosis.timeless import per_row
+from flexspline.pipeline.diagnosis.timeless import in_rows
 from flexspline.pipeline.parts import AnalysisContext
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def diagnose_file(
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)
         if measurement.history.time_s is None:
-            outcome = per_row(outcome)
+            outcome = in_rows(outcome)
         model = behind.model if behind else None
         inputs = None
         if chain and behind:

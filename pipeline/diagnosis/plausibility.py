@@ -181,7 +181,11 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
     if _beyond(abs(ratio)):
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
-        ask = f"are they in {unit}, not {symbol(column.unit)}" if column and unit else "is the unit right"
+        ask = (
+            f"are they in {unit}, not {symbol(column.unit)}"
+            if column and unit
+            else "is the unit right"
+        )
         return f"the angles are {times(ratio)} the simulated ones: {ask}?"
     if ratio < OPPOSITE:
         return f"angle_plus lies below angle_minus: are the two columns, or the sign, {TURNED}"

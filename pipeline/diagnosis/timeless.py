@@ -1,15 +1,43 @@
-"""Units of a record without time: rows stand for seconds in the computation, and must not be called so."""
+"""Words of a record without time: rows stand for seconds in the computation, and must not be called so."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 
 PER_SECOND, PER_ROW = "N·m/s", "N·m/row"
+TIME, ROW = "time_s", "row"
+"""The channel that such a record lacks, and the one that it has in its place."""
+_IN_TIME = re.compile(r"\b(in|of|with) time\b")
 
 
-def per_row(outcome: DiagnosisOutcome) -> DiagnosisOutcome:
-    """The outcome with rates per row in place of per second."""
+def in_rows(outcome: DiagnosisOutcome) -> DiagnosisOutcome:
+    """The outcome with rates per row in place of per second, and structure over rows in place of time."""
     causes = (replace(c, unit=c.unit.replace(PER_SECOND, PER_ROW)) for c in outcome.causes)
-    return replace(outcome, causes=tuple(causes))
+    unexplained = (
+        replace(u, channel=over_rows(u.channel), what=_along(u.what)) for u in outcome.unexplained
+    )
+    return replace(
+        outcome,
+        causes=tuple(causes),
+        unexplained=tuple(unexplained),
+        next_measurement=_next(outcome.next_measurement),
+    )
+
+
+def over_rows(channel: str) -> str:
+    """The channel that stands for `channel` where time was not recorded."""
+    return ROW if channel == TIME else channel
+
+
+def _along(what: str) -> str:
+    return _IN_TIME.sub("along the record", what)
+
+
+def _next(after: NextMeasurement | None) -> NextMeasurement | None:
+    """What is still to be found; a measurement that tells named causes apart may need time."""
+    if after is None or after.aim != "find_structure":
+        return after
+    return replace(after, vary=over_rows(after.vary), where=_along(after.where))

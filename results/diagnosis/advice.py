@@ -22,6 +22,8 @@ SHOWS_STRUCTURE = {
     "temperature_C": "repeat the sweep at three temperatures, soaked, wave generator untouched",
     "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
+    "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
+    "record: the pause changes what comes with time, and leaves what comes with the cycles",
     "cycle": "if the gear was clamped anew between cycles, give each clamp a name in a column unit and "
     "diagnose again; else run twenty further cycles at constant temperature, touching nothing",
     "unit": "measure the units again in another order, each clamped anew",

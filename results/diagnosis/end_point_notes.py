@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 
@@ -25,7 +26,7 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
             "its prior; the rest is each unit's own"
         )
     mids = analysis.mids
-    told = ", ".join(f"{m:+.1f}" for m in mids.mid_arcsec[:LISTED])
+    told = listed((f"{m:+.1f}" for m in mids.mid_arcsec), "units")
     notes.append(
         f"mid positions {told} arcsec: the symmetric model predicts 0, but where an angle reading has its "
         "zero is free for each unit, so they neither support nor refute it; stiffness that differs with "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
@@ -100,10 +101,8 @@ def _unit_notes(explained: ExplainedSweep) -> list[str]:
         if not shares.differ:
             found.append(f"{title}: common to all {len(names)} units")
             continue
-        each = ", ".join(
-            f"{n} {s:.2f} ± {d:.2f}"
-            for n, s, d in zip(names, shares.share, shares.share_std, strict=True)
-        )
+        own = zip(names, shares.share, shares.share_std, strict=True)
+        each = listed((f"{n} {s:.2f} ± {d:.2f}" for n, s, d in own), "units")
         found.append(f"{title}: differs between units; shares of the common effect: {each}")
     return found
 

@@ -6,14 +6,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from flexspline.geometry.errors import one_line
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES, symbol
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
 MARKS = {".": "point", ",": "comma"}
-FOOTER_LINES = 3
-"""As many are named; a remark is seldom longer."""
 HEAD_LETTERS = 60
 """Of a column's head in a sentence: the longest of our own names and a unit; a file may hold anything."""
 
@@ -57,9 +56,8 @@ def reading_notes(read_as: ReadAs) -> list[str]:
     if read_as.empty:
         found.append(f"columns empty in every row: {heads(read_as.empty)}")
     if read_as.footer:
-        lines = ", ".join(str(n) for n in read_as.footer[:FOOTER_LINES])
-        more = " …" if len(read_as.footer) > FOOTER_LINES else ""
-        found.append(f"words below the last row, left out: line {lines}{more}")
+        lines = listed(read_as.footer, "lines")
+        found.append(f"words below the last row, left out: line {lines}")
     return found
 
 

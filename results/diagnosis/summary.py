@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.decision import is_any
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -28,8 +29,6 @@ AGREES = {
 STANDS_OUT = 2.0
 """Times the noise, from which structure without a name is a part of the summary."""
 FAR_UNITS = {"gap": "arcsec", "compliance": "arcsec per N·m"}
-LISTED = 12
-"""Units that are spelt out; so many fill two lines."""
 
 
 SIZE_ALONE = "The simulated form, but not the simulated size"
@@ -146,7 +145,7 @@ def _listed(causes: Sequence[NamedCause]) -> str:
 
 
 def _said(cause: NamedCause) -> str:
-    where = f" (only {', '.join(cause.own_units)})" if cause.own_units else ""
+    where = f" (only {listed(cause.own_units, 'units')})" if cause.own_units else ""
     return f"{cause_title(cause)}, {magnitude_words(cause)}{where}"
 
 
@@ -183,7 +182,7 @@ def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis)
     others = ", ".join(map(title_of, first.alternatives))
     rival = f"{title} cannot be told from {others}" if others else f"{title} is only a suspicion"
     beyond = [u.unit for u in analysis.units if not u.within]
-    named = ", ".join(beyond[:LISTED])
+    named = listed(beyond, "units")
     who = f"Unit {named} lies" if len(beyond) == 1 else f"Units {named} lie"
     where = (
         f"{who} beyond the predicted envelope"

@@ -18,6 +18,7 @@ CHANNELS = {
     "direction": "direction of loading",
     "cycle": "load cycle",
     "time_s": "time",
+    "row": "the order of the rows",
     "temperature_C": "temperature",
     "input_angle_deg": "wave generator angle",
     "unit": "unit under test",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
@@ -111,7 +112,7 @@ def _causes(outcome: DiagnosisOutcome) -> Iterable[Block]:
 
 
 def _cause(cause: NamedCause) -> tuple[Text, ...]:
-    units = ", ".join(cause.own_units)
+    units = listed(cause.own_units, "units")
     odds = "" if cause.alternatives else odds_words(cause.evidence_nats)
     others = ", ".join(map(title_of, cause.alternatives))
     return (

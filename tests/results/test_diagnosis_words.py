@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,13 @@ def test_a_stiffer_gear_is_no_part_left_out() -> None:
         "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec. "
         f"The simulation is too soft: {stiffer}."
     )
+
+
+def test_many_units_are_counted_and_not_all_listed() -> None:
+    own = replace(
+        named("series_compliance", 12.0), own_units=tuple(f"no{i}" for i in range(1, 193))
+    )
+    assert "(only no1, no2, no3, … no192 (192 units))" in left_out([own])
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -66,7 +66,8 @@ QUANTITIES: Mapping[str, Quantity] = {
 
 
 _NEWTON_METRES = (
-    "newtonmeter newtonmetre newtonmeters newtonmetres newton-meter newton-metre newton-meters newton-metres"
+    "newtonmeter newtonmetre newtonmeters newtonmetres "
+    "newton-meter newton-metre newton-meters newton-metres"
 )
 _INCH, _FOOT, _CM = "in inch inches", "ft foot feet", "cm"
 _POUND = "lbf lb lbs lbsf pound pounds pound-force pounds-force"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHistory, history_of
@@ -63,7 +64,7 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
                 )
     angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
     strange = [u for u in found.units if u not in file.model.zeros_arcsec]
-    told = f"unit {', '.join(strange)}" if any(strange) else "a file without units"
+    told = f"unit {listed(strange, 'units')}" if any(strange) else "a file without units"
     warnings = [f"{told}: not in the model's record, so its zero is taken as 0"] if strange else []
     if file.doubt is None:
         return Predicted(angle, tuple(warnings), table.read_as)

@@ -8,6 +8,7 @@ from math import log
 
 import numpy as np
 
+from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST, by_travel, rates_of
 
@@ -40,8 +41,6 @@ FEWEST_PLACES, FEWEST_UNITS = 4, 3
 two what units have in common."""
 EVERY = 3
 """Of cycles or positions, one in so many is held out."""
-MOST_NAMED = 6
-"""Positions that a label lists."""
 
 
 @dataclass(frozen=True)
@@ -66,14 +65,14 @@ def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Sp
         places = [1] if count == 2 else [c for c in range(1, count - 1) if c % EVERY == 1]
         chosen = present[places]
         own = names[0] if len(names[0]) == count else tuple(present + 1.0)
-        label = ", ".join(f"{own[c]:g}" for c in places)
+        label = listed((f"{own[c]:g}" for c in places), "cycles")
         return Split(
             f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
         )
     position = history.input_angle_deg
     if position is not None and len(spots := np.unique(position)) >= FEWEST_PLACES:
         chosen_places = spots[1::EVERY]
-        label = ", ".join(f"{p:g}" for p in chosen_places[:MOST_NAMED])
+        label = listed((f"{p:g}" for p in chosen_places), "positions")
         return Split(f"input_angle_deg {label}", np.isin(position, chosen_places))
     units = history.unit_slices
     if len(units) >= FEWEST_UNITS:

@@ -43,12 +43,12 @@ def parts(shown: SweepPictureData) -> list[Part]:
     for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:
             continue
-        title, lines = _unnamed(owner, rms)
+        title, lines = _unnamed(shown.channel_name(owner.removeprefix("?")), owner, rms)
         found.append(Part(owner, title, lines, shown.channel(_channel_of(owner))))
     return found
 
 
-def _unnamed(owner: str, rms_arcsec: float) -> tuple[str, tuple[str, ...]]:
+def _unnamed(channel: str, owner: str, rms_arcsec: float) -> tuple[str, tuple[str, ...]]:
     """Title and lines of structure, or of a cause that the model holds and the verdict does not name."""
     size = f"{rms_arcsec:.2g} arcsec rms"
     if owner in known_causes():
@@ -57,7 +57,7 @@ def _unnamed(owner: str, rms_arcsec: float) -> tuple[str, tuple[str, ...]]:
             "a trace of it;",
             "too little to name",
         )
-    words = channel_words(owner.removeprefix("?"))
+    words = channel_words(channel)
     lines = (size, f"lies in: {words}", "no known cause explains it")
     return f"Without a name: structure in {words}", lines
 

@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
+from flexspline.pipeline.diagnosis.timeless import over_rows
 
 MOST_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
@@ -129,6 +130,11 @@ class SweepPictureData:
             names = plain_names(sweep.units)
             found.append(Channel("unit", LABELS["unit"], h.unit.astype(float), names))
         return [c for c in found if np.ptp(c.values) > 0]
+
+    def channel_name(self, key: str) -> str:
+        """The name by which structure in a channel is said: in time only where time was recorded."""
+        timed = self.explained.prepared.sweep.history.time_s is not None
+        return key if timed else over_rows(key)
 
     def channel(self, key: str) -> Channel:
         """The channel of that name; torque where it was not recorded."""

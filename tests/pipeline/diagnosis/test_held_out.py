@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
-from flexspline.pipeline.diagnosis.sweep.splits import whole_levels
+from flexspline.pipeline.diagnosis.sweep.splits import between_others, whole_levels
 
 NOISE_ARCSEC = 0.5
 CROSSED_OVER = 0.02
@@ -40,6 +40,16 @@ def test_rows_in_the_gap_s_crossing_are_left_out() -> None:
     assert np.abs(torque[rows]).min() > behind.explained.prepared.band_Nm
     # 370 rows: ± 4 %, thrice that
     assert outcome.gain.rmse_after == pytest.approx(NOISE_ARCSEC, rel=0.12)
+
+
+def test_many_cycles_held_out_are_counted_and_not_all_listed() -> None:
+    history = sweep(cycles=30, hold=0, rows=1200)
+    split = between_others(history, (tuple(float(n) for n in range(1, 31)),))
+    assert split is not None
+    assert split.label == "cycles 2, 5, 8, … 29 (10 cycles)"
+    few = between_others(sweep(cycles=8, hold=0, rows=800), (tuple(range(1, 9)),))
+    assert few is not None
+    assert few.label == "cycles 2, 5"
 
 
 def levels(amplitudes: tuple[float, ...], seconds: tuple[float, ...]) -> History:

@@ -13,8 +13,11 @@ from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.span import span_of
+from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import magnitude_words
+from flexspline.results.figures.diagnosis.contribution_parts import parts
+from flexspline.results.figures.diagnosis.seen import seen
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
@@ -46,6 +49,49 @@ def test_a_lag_is_per_second_or_per_row(time: bool, lag: float, per: str, tmp_pa
     assert cause.unit == f"arcsec per N·m/{per}"
     assert magnitude_words(cause).endswith(f"N·m/{per}")
     assert ("N·m/s" in summary(found)) == time
+
+
+def swinging(path: Path, time: bool, added_arcsec: np.ndarray) -> Path:
+    """Six cycles of a straight line with a gap, and what is added to the angle."""
+    row = np.arange(600)
+    torque = 0.7 * np.sin(2 * np.pi * row / 100)
+    noise = 0.2 * np.random.default_rng(3).standard_normal(600)
+    angle = 11.35 * torque + 36 * np.sign(torque) + noise + added_arcsec
+    head = "time_s," * time + "torque_Nm,angle_arcsec"
+    rows = [
+        f"{2.0 * i}," * time + f"{t:.6f},{a:.4f}"
+        for i, t, a in zip(row, torque, angle, strict=True)
+    ]
+    path.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+ADDED = {
+    "a wave": 6 * np.sin(2 * np.pi * np.arange(600) / 240),
+    "a stiffness that changes": 3.4 * np.sin(2 * np.pi * np.arange(600) / 100) * (np.arange(600) / 600) ** 2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", ADDED)
+@pytest.mark.parametrize("timed", [True, False])
+def test_structure_lies_in_time_only_where_time_was_recorded(
+    what: str, timed: bool, tmp_path: Path
+) -> None:
+    path = swinging(tmp_path / "rig.csv", timed, ADDED[what])
+    found = diagnose_file(DESIGN, path, 31313, 43339)
+    after = found.outcome.next_measurement
+    assert after is not None
+    told = [u.channel for u in found.outcome.unexplained]
+    assert any(what in u.what for u in found.outcome.unexplained)
+    assert ("time_s" in told) == timed
+    assert ("row" in told) != timed
+    shown = seen(found)
+    assert shown is not None
+    said = (
+        summary(found), *(u.what for u in found.outcome.unexplained), why(after, "sweep").split(": ")[0],
+        *(word for part in parts(shown) for word in (part.title, *part.lines)),
+    )  # fmt: skip
+    assert any("time" in line.replace("times", "") for line in said) == timed
 
 
 @pytest.mark.parametrize(("timed", "unit"), [(True, "N·m/s"), (False, "N·m/row")])

@@ -1,0 +1,24 @@
+"""Lists in a sentence, short enough to be read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+MOST = 8
+"""Entries that are all written out; they fill half a line of a console."""
+FIRST = 3
+"""Entries of a longer list that are written out before its last: they show its step."""
+
+
+def listed(words: Iterable[object], what: str) -> str:
+    """The entries with commas between; of a long list the first and the last, and how many there are.
+
+    >>> listed([2, 5, 8], "cycles")
+    '2, 5, 8'
+    >>> listed(range(1, 193), "cycles")
+    '1, 2, 3, … 192 (192 cycles)'
+    """
+    every = [str(w) for w in words]
+    if len(every) <= MOST:
+        return ", ".join(every)
+    return f"{', '.join(every[:FIRST])}, … {every[-1]} ({len(every)} {what})"
