@@ -37,6 +37,8 @@ whose tail is cut, within 3.6 %."""
 REACH, MOST_REACH = 0.35, 0.8
 """Of the largest torque, start and limit of what `loaded` = CLOSING has: at 0.8 the loop is still
 exp(−1/(2·0.8²)) = 46 % as wide at the largest torque, and closes no more."""
+LEAST_GROWTH, MOST_GROWTH = 0.5, 3.0
+"""Of the power of |T| by which what is `loaded` = GROWING grows: 1 is a friction coefficient."""
 MOST_BENT = 2.0
 """Dahl's exponent: steel is near 1, brittle friction below, ductile above."""
 LOOP_ROWS = 201
@@ -75,7 +77,7 @@ class FrictionHysteresis(Cause):
     title = "friction hysteresis"
     unit = "arcsec"
     positive = True
-    tunable = ("threshold_Nm", "exponent", "reach", POWER)
+    tunable = ("threshold_Nm", "exponent", "reach", "growth", POWER)
     shape_doubt = 0.015
     """Of 12 made-up records one and two deviations cover 58 and 83 %; without it, 42 and 67."""
     vary = "torque_rate"
@@ -95,7 +97,7 @@ class FrictionHysteresis(Cause):
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
                     "deadband_Nm": deadband, "exponent": float(spread == DAHL),
-                    "reach": REACH * (loaded == CLOSING),
+                    "reach": REACH * (loaded == CLOSING), "growth": float(loaded == GROWING),
                 })  # fmt: skip
         return found + [
             {POWER: p, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
@@ -113,6 +115,7 @@ class FrictionHysteresis(Cause):
             )
             and shape["exponent"] <= MOST_BENT
             and shape["reach"] < MOST_REACH
+            and (shape["loaded"] != GROWING or LEAST_GROWTH <= shape["growth"] <= MOST_GROWTH)
         )
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
@@ -168,7 +171,7 @@ class FrictionHysteresis(Cause):
                 at_end = float(weight @ np.minimum(1, largest / each))
             state = state - at_end * history.torque_Nm / largest
         if shape["loaded"] == GROWING:
-            state = state * np.abs(history.torque_Nm) / largest
+            state = state * np.abs(history.torque_Nm / largest) ** shape.get("growth", 1.0)
         elif shape["loaded"] == CLOSING:
             state = state * np.exp(-((history.torque_Nm / (shape["reach"] * largest)) ** 2) / 2)
         return -state[:, None]

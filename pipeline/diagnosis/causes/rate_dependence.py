@@ -13,6 +13,8 @@ from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
+RATE = "rate_dependence"
+"""This cause's id."""
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp: a longer lag is creep."""
 CLEARED = 0.25
@@ -28,7 +30,7 @@ class RateDependence(Cause):
     record's typical rate.
     """
 
-    id = "rate_dependence"
+    id = RATE
     title = "rate dependence (twist that lags torque)"
     unit = "arcsec per N·m/s"
     positive = True

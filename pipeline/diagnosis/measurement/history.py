@@ -62,3 +62,9 @@ class History:
             self.memo[key] = [np.flatnonzero(self.unit == u) for u in np.unique(self.unit)]
         found: list[np.ndarray] = self.memo[key]
         return found
+
+    @property
+    def cycle_slices(self) -> list[np.ndarray]:
+        """Row indices of each cycle of each unit, in order."""
+        key = self.unit * (int(self.cycle.max()) + 1) + self.cycle
+        return [np.flatnonzero(key == k) for k in np.unique(key)]

@@ -68,6 +68,14 @@ def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
     return float(values[order][np.searchsorted(passed, share * passed[-1])])
 
 
+def cycle_rate(history: History, rows: np.ndarray) -> float:
+    """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
+    if len(rows) < 2 * FEWEST:
+        return 0.0
+    found = rates_of(history, rows)
+    return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
+
+
 def ramp_rate(history: History) -> float:
     """Typical torque per second while it moves beyond its noise [N·m/s]; 0 without time."""
     key = ("ramp_rate", 0.0)

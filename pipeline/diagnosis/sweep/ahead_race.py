@@ -52,16 +52,12 @@ SURE_NATS = 30.0
 """Nats of the step's place by which it needs no race without it to be sure, where it leaves nothing without
 a name: of 220 made-up records without
 such friction (`tests/hidden`, seed 90817) one has more than 12, a pair with a shifted reading: 13."""
-BETWEEN_ROWS = 0.5
-"""Of the torque between the rows next to a crossing: its place is not known better."""
 FAR = 3.0
 """Deviations of the crossing's place, from which what the loop's shape says is not taken: the deviation is
 half of what no row tells apart."""
 GUESS_LOG = 0.2
 """Of the first guess, which the step of the gap gives: on 14 records whose friction is known it was up to 9 %
 off. Where the shape of the loop says something farther away, other friction bends it."""
-PASSED_OVER = 3
-"""Rows on either side of it: the third nearest counts."""
 
 
 def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
@@ -171,25 +167,9 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     gap = fit.measured_rig().gap_arcsec
     left = fit.residual() + history.sign * gap / 2
     along = (way * history.torque_Nm + friction)[good]
-    found = crossing(
+    return crossing(
         along, (way * left)[good], gap, prepared.noise.std_arcsec, torque_noise_Nm(history)
     )
-    if found is None:
-        return None
-    between = BETWEEN_ROWS * _between_rows(along, found.offset_Nm)
-    return replace(found, std_Nm=max(found.std_Nm, between))
-
-
-def _between_rows(along_Nm: np.ndarray, place_Nm: float) -> float:
-    """Torque [N·m] between the rows next to a place, of all crossings together.
-
-    Cycles whose rows stand at other torques narrow it; rows that noise or a jump has moved are passed over.
-    """
-    below, above = along_Nm[along_Nm < place_Nm], along_Nm[along_Nm > place_Nm]
-    if min(len(below), len(above)) < PASSED_OVER:
-        return float(np.ptp(along_Nm))
-    nearest = np.partition(above, PASSED_OVER - 1)[PASSED_OVER - 1]
-    return float(nearest + np.partition(-below, PASSED_OVER - 1)[PASSED_OVER - 1])
 
 
 def _step_across(history: History) -> float:

@@ -10,10 +10,12 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
+from flexspline.pipeline.diagnosis.sweep.rate_blind import follows_rate
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.size_doubt import SizeDoubt
@@ -119,6 +121,7 @@ def _worth(
     weak: dict[str, Candidate] = {}
     present = best.named(evidence)
     inexact = {c for c in present if not known_causes()[c].exact}
+    friction = FRICTION in present or evidence.columns.ahead is not None
 
     def too_little(without: Candidate, cause: str) -> bool:
         if _stands_in(evidence, best, without):
@@ -130,6 +133,8 @@ def _worth(
     for cause in present:
         without = _without(evidence, best, _other_than(cause))
         nats[cause] = best.score - without.score
+        if cause == RATE and friction and not follows_rate(evidence, best):
+            weak[cause] = without
         if not too_little(without, cause):
             continue
         if without.named(evidence) - present and not _stands_in(evidence, best, without):

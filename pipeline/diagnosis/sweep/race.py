@@ -103,7 +103,8 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
     before: tuple[PreparedSweep, Search] | None = None
     for number in range(NOISE_ROUNDS):
         search = Search(with_tuned_shapes(_evidence(prepared), is_named))
-        best = search.run()
+        search.run()
+        best = search.exchanged()
         prepared = replace(prepared, columns=search.evidence.columns)
         left = fit_regressors(search.evidence, best.terms).residual()
         again = _with_noise(prepared, left, len(best.terms))

@@ -84,6 +84,18 @@ class Search:
             top = beam[0].score
         return self.top
 
+    def exchanged(self) -> Candidate:
+        """The best set found when each owner of the best one may give way to others.
+
+        A set grown term by term may hold a first guess that a later term makes needless.
+        """
+        while True:
+            best = self.top
+            owners = sorted(self._owners(best))
+            starts = [[i for i in best.terms if self._owner[i] != o] for o in owners]
+            if not starts or self.run(starts).score < best.score + WORTH:
+                return self.top
+
     @property
     def top(self) -> Candidate:
         """The best set found so far."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST, by_travel, rates_of
+from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
     `timed` : whether time was recorded. A level in which all cycles of a unit lie is none for that unit:
     its zero would not be known.
     """
-    cycles = _cycles(history)
+    cycles = history.cycle_slices
     found: list[Split] = []
     for kind, values in _values(history, cycles, timed):
         levels = _levels(np.log(values) if kind.by_ratio else values, kind.step)
@@ -106,12 +106,6 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
     return found
 
 
-def _cycles(history: History) -> list[np.ndarray]:
-    """Rows of each cycle of each unit."""
-    key = history.unit * (int(history.cycle.max()) + 1) + history.cycle
-    return [np.flatnonzero(key == k) for k in np.unique(key)]
-
-
 def _values(
     history: History, cycles: list[np.ndarray], timed: bool
 ) -> Iterator[tuple[_Kind, np.ndarray]]:
@@ -121,7 +115,7 @@ def _values(
     if (peaks > 0).all():
         yield AMPLITUDE, peaks
     if timed:
-        rates = np.array([_rate(history, rows) for rows in cycles])
+        rates = np.array([cycle_rate(history, rows) for rows in cycles])
         if (rates > 0).all():
             yield RATE, rates
     if temperature is not None:
@@ -132,16 +126,8 @@ def rate_range(history: History) -> tuple[float, float]:
     """The quickest and the slowest cycle's torque rate [N·m/s]; zeros where time or rows do not tell."""
     if history.time_s is None:
         return 0.0, 0.0
-    rates = [rate for rows in _cycles(history) if (rate := _rate(history, rows)) > 0]
+    rates = [rate for rows in history.cycle_slices if (rate := cycle_rate(history, rows)) > 0]
     return (max(rates), min(rates)) if rates else (0.0, 0.0)
-
-
-def _rate(history: History, rows: np.ndarray) -> float:
-    """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
-    if len(rows) < 2 * FEWEST:
-        return 0.0
-    found = rates_of(history, rows)
-    return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
 
 
 def _levels(values: np.ndarray, step: float) -> np.ndarray:

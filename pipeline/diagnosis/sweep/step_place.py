@@ -26,11 +26,22 @@ ROBUST = 4.0
 
 
 def zeros_of_cycles(history: History) -> list[np.ndarray]:
-    """Columns (n,): a zero for each cycle, as position errors and drift would else hide the step."""
-    key = history.unit * (int(history.cycle.max()) + 1) + history.cycle
-    if len(np.unique(key)) > MOST_ZEROS:
-        key = history.unit
-    return [(key == k).astype(float) for k in np.unique(key)]
+    """Columns (n,): a zero for each cycle, as position errors and drift would else hide the step.
+
+    And what a drift does within a cycle: where time is recorded, it and its root, counted in each unit.
+    """
+    cycles = history.cycle_slices
+    if len(cycles) > MOST_ZEROS:
+        cycles = history.unit_slices
+    every = np.arange(len(history))
+    zeros = [np.isin(every, rows).astype(float) for rows in cycles]
+    if history.time_s is None:
+        return zeros
+    passed = np.zeros(len(history))
+    for rows in history.unit_slices:
+        t = history.time_s[rows]
+        passed[rows] = (t - t[0]) / max(float(np.ptp(t)), 1e-12)
+    return [*zeros, passed, np.sqrt(passed)]
 
 
 def stiffness_of_positions(history: History) -> np.ndarray:

@@ -30,7 +30,11 @@ EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 UNSURE = 0.7
 """Of the variance (gap/2)²(1 − side²) of a row that lies on either side. Between 0.4 and 1 it hardly matters:
 of 60 made-up crossings (gap 72 arcsec, rows 0.033 N·m apart) the offset's error has an rms of 2.2 to 2.3 of
-its deviation, which is too small where rows are as sparse as that."""
+the likelihood's deviation, which is too small where rows are as sparse as that: BETWEEN_ROWS."""
+BETWEEN_ROWS = 0.5
+"""Of the torque between the rows next to a crossing: its place is not known better."""
+PASSED_OVER = 3
+"""Rows on either side of it: the third nearest counts."""
 SEEN = 2.0
 """Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
 FINE_STEPS = 81
@@ -110,7 +114,20 @@ def crossing(
     weight = np.exp(along - along.max())
     mean = float(weight @ fine / weight.sum())
     std = float(np.sqrt(weight @ (fine - mean) ** 2 / weight.sum() + (fine[1] - fine[0]) ** 2 / 12))
-    return Crossing(mean, std, float(along.max() - none))
+    between = BETWEEN_ROWS * _between_rows(torque_Nm, mean)
+    return Crossing(mean, max(std, between), float(along.max() - none))
+
+
+def _between_rows(torque_Nm: np.ndarray, place_Nm: float) -> float:
+    """Torque [N·m] between the rows next to a place, of all crossings together.
+
+    Cycles whose rows stand at other torques narrow it; rows that noise or a jump has moved are passed over.
+    """
+    below, above = torque_Nm[torque_Nm < place_Nm], torque_Nm[torque_Nm > place_Nm]
+    if min(len(below), len(above)) < PASSED_OVER:
+        return float(np.ptp(torque_Nm))
+    nearest = np.partition(above, PASSED_OVER - 1)[PASSED_OVER - 1]
+    return float(nearest + np.partition(-below, PASSED_OVER - 1)[PASSED_OVER - 1])
 
 
 def both_ways(torque_Nm: np.ndarray) -> bool:

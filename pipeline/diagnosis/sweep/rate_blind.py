@@ -1,0 +1,64 @@
+"""Whether a rate dependence found beside friction follows the rate.
+
+Friction of a form that no element has leaves a loop, and a rate dependence of a low exponent is one. Where
+the record's cycles differ in rate, the two can be told: the same regressor, computed as if all cycles had run
+at one rate, is a loop that knows no rate. If it explains the record as well, the rate has shown nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
+
+RATES_APART = 1.2
+"""Of the quickest to the slowest cycle: a twist in proportion to the rate then differs by a fifth."""
+FOLLOWS_NATS = 3.0
+"""By which the rate must be better than the loop that knows none; TO MEASURE."""
+
+
+def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
+    """Whether a set's rate dependence is better than the loop it would be at one rate.
+
+    True where the record has but one rate: nothing is then known against it.
+    """
+    history = evidence.columns.rig.history
+    steady = at_one_rate(history)
+    if steady is None:
+        return True
+    owners = best.owners(evidence)
+    columns = evidence.columns.all.copy()
+    for term in evidence.terms:
+        if term.owner == RATE and term.cause is not None:
+            columns[:, term.at] = term.cause.columns(term.shape, steady)
+    blind = gaussian_evidence(
+        replace(evidence.columns, all=columns), evidence.target, evidence.kept, evidence.noise
+    )
+    search = Search(blind, lambda term: term.owner in owners)
+    return best.score - search.run([best.terms]).score >= FOLLOWS_NATS
+
+
+def at_one_rate(history: History) -> History | None:
+    """The history as if each cycle had run at the median one's rate; None where rates do not differ."""
+    if history.time_s is None:
+        return None
+    cycles = history.cycle_slices
+    rates = np.array([cycle_rate(history, rows) for rows in cycles])
+    if not (rates > 0).any() or rates.max() < RATES_APART * rates[rates > 0].min():
+        return None
+    usual = float(np.median(rates[rates > 0]))
+    stretch = np.ones(len(history))
+    for rows, rate in zip(cycles, rates, strict=True):
+        if rate > 0:
+            stretch[rows] = rate / usual
+    time_s = history.time_s.copy()
+    for rows in history.unit_slices:
+        steps = np.diff(history.time_s[rows], prepend=history.time_s[rows[0]])
+        time_s[rows] = history.time_s[rows[0]] + np.cumsum(steps * stretch[rows])
+    return replace(history, time_s=time_s)
