@@ -12,6 +12,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 
+CREEP = "creep"
+"""This cause's id."""
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
 """Twist as log t (0) or as t^n, 0.3 being near Andrade's t^⅓; 0 cannot be refined, the others are."""
 PARTS = (300.0, 30.0, 5.0)
@@ -37,7 +39,7 @@ class Creep(Cause):
     give the logarithm of time, an exponent a power law; equal ends are a single Kelvin element.
     """
 
-    id = "creep"
+    id = CREEP
     title = "creep (twist that grows while torque is held)"
     unit = "%"
     positive = True

@@ -10,12 +10,10 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
-from flexspline.pipeline.diagnosis.sweep.rate_blind import follows_rate
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 from flexspline.pipeline.diagnosis.sweep.size_doubt import SizeDoubt
@@ -85,7 +83,7 @@ def identify(search: Search, beside: bool = False) -> Identification:
         nats, weak = _worth(evidence, best, beside)
         if not weak:
             break
-        best = weak[min(weak, key=lambda c: nats[c])]
+        best = _best_of_owners(evidence, weak[min(weak, key=lambda c: nats[c])])
     fit = fit_regressors(evidence, best.terms)
     ahead = {FRICTION} if evidence.columns.ahead else set()
     rms = owner_rms(fit, sorted(best.owners(evidence) | ahead))
@@ -121,7 +119,6 @@ def _worth(
     weak: dict[str, Candidate] = {}
     present = best.named(evidence)
     inexact = {c for c in present if not known_causes()[c].exact}
-    friction = FRICTION in present or evidence.columns.ahead is not None
 
     def too_little(without: Candidate, cause: str) -> bool:
         if _stands_in(evidence, best, without):
@@ -133,8 +130,6 @@ def _worth(
     for cause in present:
         without = _without(evidence, best, _other_than(cause))
         nats[cause] = best.score - without.score
-        if cause == RATE and friction and not follows_rate(evidence, best):
-            weak[cause] = without
         if not too_little(without, cause):
             continue
         if without.named(evidence) - present and not _stands_in(evidence, best, without):
@@ -231,6 +226,15 @@ def _other_than(cause: str) -> Callable[[Regressor], bool]:
 
 def _unnamed_or(causes: Collection[str]) -> Callable[[Regressor], bool]:
     return lambda term: term.cause is None or term.owner in causes
+
+
+def _best_of_owners(evidence: GaussianEvidence, known: Candidate) -> Candidate:
+    """The best set of the same owners: where others were let in, theirs had not the whole beam."""
+    owners = known.owners(evidence)
+    search = Search(evidence, owned_by(owners))
+    found = search.run([known.terms, ()], most=max(len(known.terms), 1))
+    same = found.owners(evidence) == owners and not _fits_noise(evidence, found)
+    return found if same and found.score > known.score else known
 
 
 def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:

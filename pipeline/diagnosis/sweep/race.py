@@ -14,7 +14,9 @@ from math import log
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.noise import (
     Noise,
     estimated,
@@ -31,6 +33,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification, identify
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.rate_blind import follows_rate
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import naming_rows
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
@@ -99,7 +102,11 @@ class ExplainedSweep:
 
 
 def run_race(prepared: PreparedSweep) -> ExplainedSweep:
-    """Race, with the noise estimated anew from what the best set leaves, and shapes tuned."""
+    """Race, with the noise estimated anew from what the best set leaves, and shapes tuned.
+
+    Once more without rate dependence, where beside friction it follows no rate.
+    """
+    begun = prepared
     before: tuple[PreparedSweep, Search] | None = None
     for number in range(NOISE_ROUNDS):
         search = Search(with_tuned_shapes(_evidence(prepared), is_named))
@@ -119,8 +126,19 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
             before = (prepared, search) if number > 0 and not fallen else None
             prepared = again
     identified = identify(search, beside=prepared.offset_Nm != 0.0)
+    if _has_both(identified) and not follows_rate(search.evidence, identified.best):
+        # nor creep in its place, where there was none beside it
+        in_vain = {RATE, CREEP} - (identified.best.named(search.evidence) - {RATE})
+        return run_race(replace(begun, columns=begun.columns.less(in_vain)))
     seen = _crossing(prepared, identified.fit)
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
+
+
+def _has_both(identified: Identification) -> bool:
+    """Whether rate dependence is found beside friction."""
+    evidence = identified.search.evidence
+    causes = identified.best.named(evidence)
+    return RATE in causes and (FRICTION in causes or evidence.columns.ahead is not None)
 
 
 def is_named(term: Regressor) -> bool:

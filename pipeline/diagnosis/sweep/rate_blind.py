@@ -24,7 +24,7 @@ FOLLOWS_NATS = 3.0
 
 
 def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
-    """Whether a set's rate dependence is better than the loop it would be at one rate.
+    """Whether a set's rate dependence explains the record better than the loop that it is at one rate.
 
     True where the record has but one rate: nothing is then known against it.
     """
@@ -40,8 +40,8 @@ def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
     blind = gaussian_evidence(
         replace(evidence.columns, all=columns), evidence.target, evidence.kept, evidence.noise
     )
-    search = Search(blind, lambda term: term.owner in owners)
-    return best.score - search.run([best.terms]).score >= FOLLOWS_NATS
+    loop = Search(blind, lambda term: term.owner in owners).run([best.terms])
+    return best.score - loop.score >= FOLLOWS_NATS
 
 
 def at_one_rate(history: History) -> History | None:

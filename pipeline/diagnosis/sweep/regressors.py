@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import log
@@ -84,7 +84,14 @@ class DesignMatrix:
 
     def of(self, causes: Collection[str]) -> DesignMatrix:
         """With the terms of these causes alone, for a fit that no other may enter."""
-        kept = [t for t in self.terms if t.cause is not None and t.cause.id in causes]
+        return self._only(lambda t: t.cause is not None and t.cause.id in causes)
+
+    def less(self, causes: Collection[str]) -> DesignMatrix:
+        """Without the terms of these causes."""
+        return self._only(lambda t: t.owner not in causes)
+
+    def _only(self, wanted: Callable[[Regressor], bool]) -> DesignMatrix:
+        kept = [t for t in self.terms if wanted(t)]
         ends = np.cumsum([0, *(t.at.stop - t.at.start for t in kept)]).tolist()
         return replace(
             self,
@@ -92,6 +99,7 @@ class DesignMatrix:
             terms=tuple(
                 replace(t, at=slice(a, b)) for t, (a, b) in zip(kept, pairwise(ends), strict=True)
             ),
+            tuned_from=None,
         )
 
 
