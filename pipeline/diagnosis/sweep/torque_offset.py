@@ -31,10 +31,8 @@ UNSURE = 0.7
 """Of the variance (gap/2)²(1 − side²) of a row that lies on either side. Between 0.4 and 1 it hardly matters:
 of 60 made-up crossings (gap 72 arcsec, rows 0.033 N·m apart) the offset's error has an rms of 2.2 to 2.3 of
 the likelihood's deviation, which is too small where rows are as sparse as that: BETWEEN_ROWS."""
-BETWEEN_ROWS = 0.5
-"""Of the torque between the rows next to a crossing: its place is not known better."""
-PASSED_OVER = 3
-"""Rows on either side of it: the third nearest counts."""
+BETWEEN_ROWS = 0.29
+"""Of the torque between the two rows next to a crossing, the deviation of a place anywhere between: 1/√12."""
 SEEN = 2.0
 """Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
 FINE_STEPS = 81
@@ -114,20 +112,20 @@ def crossing(
     weight = np.exp(along - along.max())
     mean = float(weight @ fine / weight.sum())
     std = float(np.sqrt(weight @ (fine - mean) ** 2 / weight.sum() + (fine[1] - fine[0]) ** 2 / 12))
-    between = BETWEEN_ROWS * _between_rows(torque_Nm, mean)
-    return Crossing(mean, max(std, between), float(along.max() - none))
+    between = BETWEEN_ROWS * between_rows(torque_Nm, mean)
+    return Crossing(mean, float(np.hypot(std, between)), float(along.max() - none))
 
 
-def _between_rows(torque_Nm: np.ndarray, place_Nm: float) -> float:
-    """Torque [N·m] between the rows next to a place, of all crossings together.
+def between_rows(torque_Nm: np.ndarray, place_Nm: float, nearest: int = 1) -> float:
+    """Torque [N·m] between the `nearest` rows on either side of a place, of all crossings together.
 
-    Cycles whose rows stand at other torques narrow it; rows that noise or a jump has moved are passed over.
+    Cycles whose rows stand at other torques narrow it.
     """
     below, above = torque_Nm[torque_Nm < place_Nm], torque_Nm[torque_Nm > place_Nm]
-    if min(len(below), len(above)) < PASSED_OVER:
+    if min(len(below), len(above)) < nearest:
         return float(np.ptp(torque_Nm))
-    nearest = np.partition(above, PASSED_OVER - 1)[PASSED_OVER - 1]
-    return float(nearest + np.partition(-below, PASSED_OVER - 1)[PASSED_OVER - 1])
+    after = np.partition(above, nearest - 1)[nearest - 1]
+    return float(after + np.partition(-below, nearest - 1)[nearest - 1])
 
 
 def both_ways(torque_Nm: np.ndarray) -> bool:

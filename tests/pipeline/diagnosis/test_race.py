@@ -131,6 +131,30 @@ def test_crossing_finds_an_offset_and_none() -> None:
         assert (seen.nats > 20) == (offset != 0)
 
 
+def test_a_crossing_between_rows_is_known_to_no_better_than_they_stand() -> None:
+    """Every cycle has the same torques, 0.2 N·m apart: any place between two of them fits as well."""
+    steps = np.linspace(-2, 2, 21)
+    torque = np.tile(np.concatenate([steps, steps[::-1]]), 4)
+    for offset in (0.12, 0.22, 0.31):
+        left = 30.0 * np.sign(torque - offset)
+        seen = crossing(torque, left, 60.0, 1.0, 0.001)
+        assert seen is not None
+        assert seen.std_Nm >= 0.2 / np.sqrt(12) * 0.99
+        assert abs(seen.offset_Nm - offset) < 2 * seen.std_Nm
+
+
+def test_an_owner_may_give_way_once_the_set_is_whole() -> None:
+    """From a wrong cause, kept because the set may not grow, to the true one."""
+    history = swept(cycles=2)
+    asymmetry = known_causes()["direction_asymmetry"]
+    angle = 3.0 * asymmetry.columns(asymmetry.shapes(Rig(PREDICTION, history))[0], history)[:, 0]
+    now = raced(history, angle + np.random.default_rng(2).normal(0, SIGMA, len(angle)))
+    wrong = next(i for i, t in enumerate(now.terms) if t.owner == "stiffness_hardening")
+    search = Search(now, lambda t: t.cause is not None)
+    search.run([[wrong]], most=1)
+    assert search.exchanged().owners(now) == {"direction_asymmetry"}
+
+
 def test_no_offset_from_torque_one_way() -> None:
     torque = np.linspace(0.0, 1.0, 300)
     assert crossing(torque, 30.0 * np.sign(torque), 60.0, 1.0, 0.01) is None

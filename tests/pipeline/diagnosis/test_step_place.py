@@ -46,3 +46,14 @@ def test_friction_ahead_is_seen_though_stiffness_differs_between_cycles() -> Non
     assert found is not None
     fine = MOST_FRICTION * LARGEST / COARSE / (FINE + 1)
     assert found.friction_Nm == pytest.approx(friction, abs=fine + LARGEST / 50)
+
+
+def test_a_shifted_reading_is_seen_though_the_zero_drifts() -> None:
+    """By forty gaps over the record, six within a cycle."""
+    offset = 0.16 * LARGEST
+    assert HISTORY.time_s is not None
+    drift = 40 * GAP * HISTORY.time_s / HISTORY.time_s[-1]
+    read = replace(HISTORY, torque_Nm=HISTORY.torque_Nm + offset)
+    found = first_offset(read, angle(HISTORY.torque_Nm) + drift, GAP, BAND)
+    spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
+    assert found == pytest.approx(offset, abs=spacing + LARGEST / 50)

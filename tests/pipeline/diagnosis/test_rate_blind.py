@@ -1,0 +1,91 @@
+"""A rate dependence beside friction must follow the rate: a loop that knows none is friction's own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from histories import PREDICTION, shape_of, sweep
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
+from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate, follows_rate
+from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.search import Search
+
+NOISE = 0.2  # arcsec
+STEADY = sweep(cycles=6, rows=120, hold=0)
+
+
+def at_rates(history: History, factors: tuple[float, ...]) -> History:
+    """The same torques, each cycle so many times quicker."""
+    assert history.time_s is not None
+    steps = np.diff(history.time_s, prepend=history.time_s[0])
+    return replace(history, time_s=np.cumsum(steps / np.array(factors)[history.cycle]))
+
+
+VARIED = at_rates(STEADY, (0.5, 2.0, 1.0, 0.6, 1.7, 1.0))
+
+
+def test_at_one_rate_each_cycle_runs_alike() -> None:
+    alike = at_one_rate(VARIED)
+    assert alike is not None
+    rates = [cycle_rate(alike, rows) for rows in alike.cycle_slices]
+    assert rates == pytest.approx([rates[0]] * 6, rel=1e-6)
+    assert np.array_equal(alike.torque_Nm, VARIED.torque_Nm)
+    assert (np.diff(alike.time_s) > 0).all()
+
+
+def test_of_cycles_at_one_rate_nothing_is_known() -> None:
+    assert at_one_rate(STEADY) is None
+    assert at_one_rate(replace(VARIED, time_s=None)) is None
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_only_a_twist_that_follows_the_rate_does(follows: bool) -> None:
+    """The same law once computed with the record's rates, once as if all cycles ran at one."""
+    known = {k: known_causes()[k] for k in ("friction_hysteresis", "rate_dependence")}
+    rate, friction = known["rate_dependence"], known["friction_hysteresis"]
+    blind = at_one_rate(VARIED)
+    assert blind is not None
+    lag = shape_of("rate_dependence", VARIED, exponent=1.0)
+    loop = shape_of("friction_hysteresis", VARIED, loaded=0)
+    angle = 3.0 * friction.columns(loop, VARIED)[:, 0]
+    twist = rate.columns(lag, VARIED if follows else blind)[:, 0]
+    angle = angle + 2.0 * twist / twist.std()
+    angle += np.random.default_rng(4).normal(0, NOISE, len(angle))
+    columns = design_matrix(Rig(PREDICTION, VARIED), known)
+    kept = np.abs(VARIED.torque_Nm) > 0.1
+    now = gaussian_evidence(columns, angle, kept, Noise(NOISE**2, 0.0, 0.5))
+    chosen = [
+        next(
+            i
+            for i, t in enumerate(columns.terms)
+            if t.owner == owner and dict(t.shape).items() >= shape.items()
+        )
+        for owner, shape in (("friction_hysteresis", loop), ("rate_dependence", lag))
+    ]
+    assert follows_rate(now, Search(now).candidate(chosen)) == follows
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_a_lag_beside_friction_is_named_only_where_it_follows_the_rate(follows: bool) -> None:
+    history = VARIED if follows else at_one_rate(VARIED)
+    assert history is not None
+    rate, friction = known_causes()["rate_dependence"], known_causes()["friction_hysteresis"]
+    twist = rate.columns(shape_of("rate_dependence", VARIED, exponent=0.6), history)[:, 0]
+    loop = friction.columns(shape_of("friction_hysteresis", VARIED, loaded=0), VARIED)[:, 0]
+    angle = PREDICTION.angle_arcsec(VARIED) + 3.0 * loop + twist / twist.std()
+    angle += np.random.default_rng(7).normal(0, NOISE, len(angle))
+    cycles, rows = (tuple(np.unique(VARIED.cycle) + 1.0),), np.arange(len(angle)) + 2
+    record = Sweep(Path("rig.csv"), VARIED, angle, ("",), cycles, rows, True)
+    named = {c.id for c in diagnose_sweep(record, PREDICTION)[0].causes}
+    assert named == {"friction_hysteresis", *(["rate_dependence"] if follows else [])}
