@@ -20,8 +20,8 @@ from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 RATES_APART = 1.2
 """Of the quickest to the slowest cycle: a twist in proportion to the rate then differs by a fifth."""
 FOLLOWS_NATS = 3.0
-"""By which the rate must be better than the loop that knows none: in made-up records false ones gain at most 1.4,
-true ones 52 and more."""
+"""By which the rate must be better than the loop that knows none: in made-up records false ones gain at most
+1.4, true ones 11 and more."""
 
 
 def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
