@@ -36,7 +36,7 @@ class RateDependence(Cause):
     positive = True
     tunable = ("lag_s", "exponent")
     shape_doubt = 0.027
-    """With 0.02 one and two deviations cover 58 and 84 % of 64 made-up records, most of them of several causes."""
+    """With 0.02 one and two deviations cover 58 and 84 % of 64 made-up records, mostly of several causes."""
     vary = "torque_rate"
     reveals = "the same sweep ten times slower and ten times faster"
 
