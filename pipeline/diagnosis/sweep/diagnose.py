@@ -9,7 +9,9 @@
 | evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |
 | evidence of any set of them | `evidence.py` |
 | race: search sets, tune shapes, estimate the noise again | `race.py`, `search.py`, `shape_tuning.py` |
-| identify causes and rivals | `identification.py`, rules in `../decision.py` |
+| identify causes | `identification.py`, `plausible_sets.py` |
+| and their rivals | `rivals.py`, rules in `../decision.py` |
+| once more, where a lag beside friction follows no rate | `rate_blind.py` |
 | the same with friction ahead of the teeth | `first_ahead.py`, `ahead_tuning.py`, `ahead_race.py` |
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -195,3 +195,8 @@ class Search:
 
 def _width(term: Regressor) -> int:
     return int(term.at.stop - term.at.start)
+
+
+def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
+    """Lets in the terms of these owners."""
+    return lambda term: term.owner in owners

@@ -16,8 +16,8 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.identification import penalised
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
+from flexspline.pipeline.diagnosis.sweep.rivals import penalised
 
 STEEL_ALUMINIUM = 12e-6
 """/K by which they expand differently."""

@@ -1,0 +1,87 @@
+"""Sets of terms that fit a misfit or the noise: no best set is one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
+from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
+
+DRIVEN = (
+    "friction_hysteresis",
+    "rate_dependence",
+    "creep",
+    "?direction",
+    "?torque_rate",
+    "?torque_amplitude",
+)
+"""Owners of terms with a memory of the torque."""
+OF_TORQUE_NOISE = 0.3
+"""Of what the torque's noise is in the angle: the noise drives a memory too, and leaves a trace of it up to
+so large. In made-up records true ones begin at 1.2; one from noise alone had 0.1."""
+TOGETHER = 3.0
+"""Times that many effects may be larger, each for itself, than what they are together."""
+
+
+def plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
+    """The best set in which effects do not nearly cancel, and none is the torque's noise through a memory.
+
+    Sets that do fit a misfit, or the noise.
+    """
+    for c in (best, *sorted(search.best.values(), key=lambda c: -c.score)):
+        if not fits_noise(evidence, c):
+            return c
+    return search.candidate(())
+
+
+def fits_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
+    """Whether a set's effects nearly cancel, or one is the torque's noise through a memory."""
+    owners = c.owners(evidence)
+    nuisance = any(o.startswith("?") for o in owners)
+    driven = sorted(owners & {*DRIVEN})
+    if not nuisance and not driven:
+        return False
+    fit = fit_regressors(evidence, c.terms)
+    if nuisance and _cancels(fit, owners):
+        return True
+    return bool(driven) and _is_torque_noise(fit, driven)
+
+
+def _is_torque_noise(fit: SweepFit, driven: Sequence[str]) -> bool:
+    """Whether the noise of the torque that drives a memory may have made what a term of it explains."""
+    evidence = fit.evidence
+    of_noise = fit.measured_rig().compliance * torque_noise_Nm(evidence.columns.rig.history)
+    return min(owner_rms(fit, driven).values()) < OF_TORQUE_NOISE * of_noise
+
+
+def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
+    """Whether a set with a nuisance term holds large effects that together are small, all or two of them.
+
+    A nuisance term is less what torque and its lags explain. Beside a cause that is not, the two may leave
+    those lags, which know the true torque better than its reading does.
+    """
+    parts = np.array([fit.added(o)[fit.evidence.kept] for o in owners])
+    parts -= parts.mean(axis=1, keepdims=True)
+    if (parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum():
+        return True
+    products = parts @ parts.T
+    own = np.add.outer(np.diag(products), np.diag(products))
+    nuisance = np.array([o.startswith("?") for o in owners])
+    pairs = np.triu(np.logical_or.outer(nuisance, nuisance), 1)
+    return bool((pairs & (own > TOGETHER**2 * (own + 2 * products))).any())
+
+
+def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
+    """Whether one cause's elements are large effects that together are small: that makes any curve."""
+    fit = fit_regressors(evidence, c.terms)
+    parts = np.array([
+        evidence.columns.all[evidence.kept][:, evidence.terms[i].at] @ amplitudes
+        for i, amplitudes in zip(c.terms, fit.posterior.amplitudes(evidence), strict=True)
+        if evidence.terms[i].owner == owner
+    ])  # fmt: skip
+    parts -= parts.mean(axis=1, keepdims=True)
+    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())

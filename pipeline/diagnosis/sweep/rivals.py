@@ -1,0 +1,67 @@
+"""Which other causes explain a record as well, in the place of one that is named."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import log
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.decision import is_rival
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
+from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
+
+MORE_OF_RIVAL = 3
+"""Terms that a set with a rival in a cause's place may have more than the best set: another law takes two or
+three elements for one."""
+
+
+def rivals_of(
+    evidence: GaussianEvidence, best: Candidate, cause: str
+) -> tuple[tuple[str, ...], Candidate | None]:
+    """Ids of other causes that, in the place of this one, explain the record as well.
+
+    Or in the place of several: of all that another cause may be made of.
+    """
+
+    def without(owners: Collection[str]) -> tuple[int, ...]:
+        return tuple(i for i in best.terms if evidence.terms[i].owner not in owners)
+
+    present = {evidence.terms[i].owner for i in best.terms}
+    others = {t.cause.id for t in evidence.terms if t.cause} - present
+    if evidence.columns.ahead:
+        others -= {FRICTION}
+    mine = penalised(evidence, best.terms)
+    found: list[tuple[float, str, Candidate]] = []
+    for other in sorted(others):
+        allowed = {other, *(p for p in present - {cause} if not p.startswith("?"))}
+        parts = known_causes()[other].made_of
+        starts = [without({cause})]
+        if cause in parts <= present:
+            starts.append(without(parts))
+        search = Search(evidence, owned_by(allowed))
+        rival = search.run(starts, most=len(best.terms) + MORE_OF_RIVAL)
+        if other not in rival.named(evidence) or cancels_itself(evidence, rival, other):
+            continue
+        elements = fit_regressors(evidence, rival.terms).elements()[other]
+        if not known_causes()[other].plausible(elements):
+            continue
+        gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
+        if is_rival(gap, mine - penalised(evidence, rival.terms)):
+            found.append((gap, other, rival))
+    found.sort(key=lambda f: f[0])
+    return tuple(f[1] for f in found), (found[0][2] if found else None)
+
+
+def penalised(evidence: GaussianEvidence, terms: tuple[int, ...]) -> float:
+    """Log likelihood less ½ log n for each amplitude.
+
+    The calibration counts by its stated uncertainty, which is known as the rows are: an explanation that
+    needs a compliance or a gap far beyond it does not explain the record as well.
+    """
+    fit = fit_regressors(evidence, terms).posterior
+    count = len(fit.mean) - fit.base_count
+    off = fit.mean[: fit.base_count] / evidence.columns.base_prior
+    return -(fit.chi2 + float(off @ off)) / 2 - count * log(max(evidence.rows, 2)) / 2
