@@ -27,7 +27,7 @@ class SensorDrift(Cause):
     title = "drift of the angle reading"
     unit = "arcsec/h"
     tunable = ("exponent", "settling_s")
-    shape_doubt = 0.03
+    shape_doubt = 0.024
     """With 0.02 one and two deviations cover 65 and 85 % of 20 made-up records, most of them pairs."""
     vary = "time_s"
     needs_time = True

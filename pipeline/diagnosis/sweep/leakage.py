@@ -10,9 +10,9 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 MISFIT = 2.0
 """Rms that the best shape leaves of a law, over the doubt of its size: 1.4 of a rate's, 2 of a creep's."""
 
-HIDDEN = 10.0
+HIDDEN = 6.0
 """Length, in deviations of the noise, of the longest misfit that residual tests may pass: a smooth one adds
-its square, 100, to the chi² of some twenty bins of torque, 20 ± 6 by noise alone."""
+its square, 36, to the chi² of some twenty bins of torque, 20 ± 6 by noise alone."""
 
 
 def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
