@@ -206,6 +206,10 @@ def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | Non
     ratio = min(ratios, key=lambda r: abs(np.log(r)))
     column = specimens.read_as.column("stiffness")
     unit = likely_unit(ratio, column, tuple(STIFFNESS), STIFFNESS)
-    ask = f"is it in {unit}, not {symbol(column.unit)}" if column and unit else "is the unit right"
+    ask = (
+        f"is it in {symbol(unit)}, not {symbol(column.unit)}"
+        if column and unit
+        else "is the unit right"
+    )
     head = column.head if column else "the stiffness"
     return f"{head} is {times(ratio)} the simulated one: {ask}?"

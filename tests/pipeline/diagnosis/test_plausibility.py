@@ -110,8 +110,8 @@ def test_end_points(unit: str, factor: float, needle: str, tmp_path: Path) -> No
 
 @pytest.mark.parametrize(
     ("unit", "part", "factor", "needle"),
-    [("Nm_per_rad", "flexspline", 1e-3, "in kNm_per_rad, not Nm_per_rad"), 
-     ("Nm_per_arcmin", "shaft", 1, "in Nm_per_rad"),
+    [("Nm_per_rad", "flexspline", 1e-3, "in kNm/rad, not Nm/rad"), 
+     ("Nm_per_arcmin", "shaft", 1, "in Nm/rad"),
      ("Nm_per_rad", "series", 1, ""), ("Nm_per_rad", "flexspline", 20, "")],
 )  # fmt: skip
 def test_specimens(unit: str, part: str, factor: float, needle: str, tmp_path: Path) -> None:
