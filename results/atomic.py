@@ -48,7 +48,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
             # mkstemp's 0600 would hide it from the user's colleagues
             os.chmod(made[folder / name], 0o666 & ~UMASK)
         for path in made:  # before the first is moved: an answer is not half replaced
-            _refuse_fixed(path)
+            refuse_fixed(path)
         with _not_stopped():
             for path, part in made.items():
                 with _named(path):
@@ -68,8 +68,13 @@ def _named(path: Path) -> Iterator[None]:
         raise OSError(fault.errno, fault.strerror, str(path)) from None
 
 
-def _refuse_fixed(path: Path) -> None:
-    """What `os.replace` cannot replace: a folder, or another user's file in a sticky folder."""
+def refuse_fixed(path: Path) -> None:
+    """Refuse what `os.replace` cannot replace: a folder, or another user's file in a sticky folder.
+
+    Raises
+    ------
+    OSError : with the path's name.
+    """
     try:
         there = path.lstat()
     except FileNotFoundError:

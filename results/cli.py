@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from flexspline.results.diagnosis.command import register as register_diagnosis
+from flexspline.results.file_names import GEAR, ONE_RECORD, RUN, of_export
 from flexspline.results.job import (
     RESUMES,
     Job,
@@ -75,7 +76,7 @@ def run(
         from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
         measured = read_model_file(model) if model is not None else None
-        job = begin(design, out)
+        job = begin(design, out, RUN)
         if measured is not None:
             from flexspline.results.diagnosis.model_notes import model_warnings
 
@@ -119,7 +120,7 @@ def run(
 def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """K_b and K_e with error bounds only."""
     with answered(design, RESUMES):
-        job = begin(design, out)
+        job = begin(design, out, ONE_RECORD)
         from flexspline.pipeline.analysis import stiffnesses
 
         found = stiffnesses(job.context)
@@ -137,7 +138,7 @@ def backlash(
 ) -> None:
     """The four-term backlash sum."""
     with answered(design, RESUMES):
-        job = begin(design, out)
+        job = begin(design, out, ONE_RECORD)
         with kept(job, json):
             record = _backlash_record(
                 job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
@@ -174,7 +175,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
 def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
     """The whole gear, wave generator locked: torque-angle curve, K1, K2, K3, lost motion."""
     with answered(design, RESUMES):
-        job = begin(design, out)
+        job = begin(design, out, GEAR)
         from flexspline.pipeline.analysis import stiffnesses
         from flexspline.pipeline.gear import gear_curve
         from flexspline.results.gear import gear_record, write_gear
@@ -213,7 +214,7 @@ def export(
         from flexspline.results.mesh_files import chosen_formats
 
         chosen = chosen_formats(formats or ())
-        job = begin(design, out)
+        job = begin(design, out, of_export(chosen, deck))
         from flexspline.results.export import write_exports
         from flexspline.results.records import as_json, heading
 

@@ -17,8 +17,9 @@ from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBackla
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
-from flexspline.results.figures.gear import CURVE, LOADS, write_gear_angle, write_gear_loads
+from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
 from flexspline.results.figures.torque_angle import drawn_branch, write_torque_angle
+from flexspline.results.file_names import CURVE, ELLIPSE, LOADS
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.mesh_picture import write_mesh_picture
 from flexspline.results.renders.stress_picture import (
@@ -28,7 +29,6 @@ from flexspline.results.renders.stress_picture import (
 from flexspline.results.renders.webp import write_webp
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-ELLIPSE = "wave_generator"
 DRAWING = 8
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 TURNING = 2

@@ -13,13 +13,10 @@ from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.atomic import write_together
-from flexspline.results.figures.gear import CURVE, LOADS, write_gear_angle, write_gear_loads
+from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
+from flexspline.results.file_names import CURVE, GEAR_CSV, GEAR_RECORD, LOADS
 from flexspline.results.records import as_json, gear_figures, heading
 from flexspline.results.warned import shortfalls
-
-RECORD = "gear.json"
-"""The folder may hold the result.json of a run of the same design."""
-CSV = "torque_angle.csv"
 
 
 def gear_record(
@@ -48,11 +45,11 @@ def write_gear(folder: Path, curve: GearCurve, record: dict[str, Any]) -> list[P
     writer.writerow(("torque_Nm", "angle_arcsec"))
     for torque, angle in zip(curve.torque_Nm, curve.angle_arcsec, strict=True):
         writer.writerow((f"{torque:.9g}", f"{angle:.9g}"))
-    made = {CSV: text.getvalue().encode()}
+    made = {GEAR_CSV: text.getvalue().encode()}
     with tempfile.TemporaryDirectory(prefix="flexspline-gear-") as scratch:
         for name, draw in ((CURVE, write_gear_angle), (LOADS, write_gear_loads)):
             picture = Path(scratch) / f"{name}.png"
             draw(picture, curve)
             made[picture.name] = picture.read_bytes()
-    made[RECORD] = (as_json(record) + "\n").encode()
+    made[GEAR_RECORD] = (as_json(record) + "\n").encode()
     return write_together(folder, made)

@@ -88,8 +88,8 @@ class Job:
         return time.monotonic() - self.began
 
 
-def begin(path: Path, out: Path | None) -> Job:
-    """Load the design, say its warnings, open the cache."""
+def begin(path: Path, out: Path | None, files: Iterable[str]) -> Job:
+    """Load the design, say its warnings, open the cache; `files`: names of those that are written."""
     from flexspline.geometry.load import design_from, read_raw, tables_from
     from flexspline.geometry.sanity import warnings
     from flexspline.results.output_folder import folder_of
@@ -97,7 +97,7 @@ def begin(path: Path, out: Path | None) -> Job:
     began = time.monotonic()
     raw = read_raw(path)
     design = design_from(tables_from(raw, path))
-    folder = folder_of(path, out)
+    folder = folder_of(path, out, files)
     for line in warnings(design):
         tell(f"warning: {line}")
     from flexspline.pipeline.analysis import analysis_context

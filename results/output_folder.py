@@ -5,12 +5,13 @@ from __future__ import annotations
 import errno
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.temporary_files import discard
+from flexspline.results.atomic import refuse_fixed
 from flexspline.results.folder_lock import hold, locked
 from flexspline.results.job import tell
 
@@ -18,15 +19,16 @@ FULL = (errno.ENOSPC, errno.EDQUOT)
 """A disk without room is no wrong word of the command line."""
 
 
-def folder_of(path: Path, out: Path | None, shared: bool = False) -> Path:
-    """Where files go: `--out`, or NAME.out beside the design; what a killed command left there goes.
+def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool = False) -> Path:
+    """Where `files` go: `--out`, or NAME.out beside the design; what a killed command left there goes.
 
     It is the command's own until that ends (`folder_lock`); `shared`: with others that share it. Nothing is
     left in it: a folder that was not there goes again at the command's end, if it is empty.
 
     Raises
     ------
-    DesignError : it cannot be made, or not be written to, or another command writes there.
+    DesignError : it cannot be made, or not be written to, or another command writes there, or what stands in
+        the place of one of the files cannot be replaced.
     OSError : the disk is full.
     """
     folder = out if out is not None else path.parent / f"{path.stem}.out"
@@ -46,6 +48,12 @@ def folder_of(path: Path, out: Path | None, shared: bool = False) -> Path:
         )
         raise DesignError("--out", str(folder), reason)
     discard(folder, tell)
+    for name in files:
+        try:
+            refuse_fixed(folder / name)
+        except OSError as fault:
+            reason = f"its {name} {fault.strerror}; name another folder"
+            raise DesignError("--out", str(folder), reason) from None
     return folder
 
 

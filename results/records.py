@@ -13,6 +13,7 @@ from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.atomic import write_bytes
+from flexspline.results.file_names import RESULT
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -208,10 +209,6 @@ def as_json(record: Record) -> str:
     Names of files are written as UTF-8 has them, whatever the locale.
     """
     return readable(json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False))
-
-
-RESULT = "result.json"
-"""Of `run`, `stiffness` and `backlash`."""
 
 
 def write_record(folder: Path, record: Record, name: str = RESULT) -> None:

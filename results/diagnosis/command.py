@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from flexspline.results.file_names import PREDICTION, of_diagnosis
 from flexspline.results.job import answered, begin, tell
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
@@ -89,8 +90,9 @@ def diagnose(
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
     with answered(design, "; a diagnosis begins again from its start"):
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
+        from flexspline.results.figures.diagnosis.captions import CAPTIONS
 
-        job = begin(design, out)
+        job = begin(design, out, of_diagnosis(CAPTIONS))
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
         if against == GEAR:
             from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
@@ -120,6 +122,6 @@ def predict(
         from flexspline.results.diagnosis.prediction import predict_and_write
         from flexspline.results.output_folder import folder_of
 
-        gear, folder = load_design(design), folder_of(design, out)
+        gear, folder = load_design(design), folder_of(design, out, (PREDICTION,))
         said = predict_and_write(gear, model, torque, folder, json, tell, counts_per_turn)
         show(said, json)

@@ -13,17 +13,14 @@ from flexspline.pipeline.diagnosis.model.model_file import Provenance
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_together
-from flexspline.results.diagnosis.record import EXTENDED_MODEL, Record
+from flexspline.results.diagnosis.record import Record
 from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.figures.diagnosis.draw import draw_figures
+from flexspline.results.file_names import DIAGNOSIS, EXTENDED_MODEL, of_diagnosis
 from flexspline.results.records import as_json
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
 from flexspline.results.report.diagnosis import diagnosis_document
-
-NAME = "diagnosis"
-"""Of the record and the reports: the folder may hold `report.pdf` of a run of the same design."""
-DIAGNOSIS = f"{NAME}.json"
 
 
 def write_diagnosis(
@@ -38,16 +35,16 @@ def write_diagnosis(
     Nothing is written before all of it is computed; a failure leaves what was there. What an earlier
     diagnosis wrote there and this one has not is taken away.
     """
-    made: dict[str, bytes] = {DIAGNOSIS: (as_json(record) + "\n").encode()}
+    made: dict[str, bytes] = {f"{DIAGNOSIS}.json": (as_json(record) + "\n").encode()}
     if diagnosis.model is not None:
         made[EXTENDED_MODEL] = _model(diagnosis, used).encode()
     with tempfile.TemporaryDirectory(prefix="flexspline-diagnosis-") as scratch:
         figures = draw_figures(diagnosis, Path(scratch))
         made |= {f.path.name: f.path.read_bytes() for f in figures}
         document = diagnosis_document(diagnosis, figures, used, attached)
-        made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=NAME)
+        made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=DIAGNOSIS)
     written = write_together(folder, made)
-    for name in {EXTENDED_MODEL, *(f"{figure}.png" for figure in CAPTIONS)} - set(made):
+    for name in set(of_diagnosis(CAPTIONS)) - set(made):
         (folder / name).unlink(missing_ok=True)
     return written
 

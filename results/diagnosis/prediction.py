@@ -16,9 +16,9 @@ from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.model_notes import model_warnings
+from flexspline.results.file_names import PREDICTION
 from flexspline.results.records import as_json
 
-PREDICTION = "prediction.csv"
 COLUMN, STD_COLUMN = "angle_predicted_arcsec", "angle_std_arcsec"
 
 

@@ -11,9 +11,9 @@ from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary, verdict_heading
+from flexspline.results.file_names import EXTENDED_MODEL
 from flexspline.results.records import heading
 
-EXTENDED_MODEL = "extended_model.toml"
 Record = dict[str, Any]
 
 

@@ -11,9 +11,6 @@ from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
 
-CURVE, LOADS = "gear_torque_angle", "gear_loads"
-"""Names of the pictures."""
-
 
 def write_gear_angle(path: Path, curve: GearCurve) -> None:
     """θ(T) with K1, K2 and K3, the chords between the torques that are marked."""

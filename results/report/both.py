@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from flexspline.results.file_names import REPORT
 from flexspline.results.report.document import Document
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.pdf import pdf_of
-
-REPORT = "report"
-"""Name of the files of a run and of a study."""
 
 
 def reports_of(

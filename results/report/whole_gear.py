@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
-from flexspline.results.figures.gear import CURVE, LOADS
+from flexspline.results.file_names import CURVE, LOADS
 from flexspline.results.gear_terms import term_names
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity

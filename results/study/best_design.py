@@ -11,10 +11,9 @@ from flexspline.pipeline.stress_limits import PART_OF, Peak, TabledPeak, limits_
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
+from flexspline.results.file_names import BEST_DESIGN
 from flexspline.results.study.labels import at_border
 from flexspline.results.study.record import SHOWN
-
-BEST = "best.toml"
 
 
 def write_best_design(folder: Path, result: StudyResult) -> Path | None:
@@ -24,7 +23,7 @@ def write_best_design(folder: Path, result: StudyResult) -> Path | None:
     row = result.pareto[0]
     name = f"{result.study.design.name}, design {row.slot} of {result.study.name}"
     design = result.design_of(row).model_copy(update={"name": name})
-    path = folder / BEST
+    path = folder / BEST_DESIGN
     write_bytes(path, design_text(design).encode())
     return path
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from flexspline.pipeline.study.best import BestField
 from flexspline.results.atomic import write_bytes
+from flexspline.results.file_names import BEST_STRESS
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 
-PICTURE = "best_stress.png"
 VIEW = "best_stress"
 
 
@@ -35,7 +35,7 @@ def draw_best_stress(folder: Path, best: BestField | None) -> BestStress:
     """
     if best is None:
         return BestStress()
-    path = folder / PICTURE
+    path = folder / BEST_STRESS
     picture: Path | None = None
     with DrawingProcess() as process:
         try:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from flexspline.results.file_names import SENSITIVITY, STUDY
 from flexspline.results.job import RESUMES, answered, tell
 from flexspline.results.options import DesignFile, Json, Out
 from flexspline.results.streams import show
@@ -53,7 +54,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             Attachment(file.name, raw, "Study file"),
             Attachment(base.name, read_raw(base), "Design file"),
         )
-        folder = folder_of(file, out, shared=True)
+        folder = folder_of(file, out, STUDY, shared=True)
         run = asked.file.run
         size = source_of(asked).size  # refuse before anything is written
         if run.scheduler and not any(folder.iterdir()):
@@ -102,7 +103,7 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
         from flexspline.results.records import as_json
         from flexspline.results.study.sensitivity import lines, record, write_sensitivity
 
-        gear, folder = load_design(design), folder_of(design, out)
+        gear, folder = load_design(design), folder_of(design, out, (SENSITIVITY,))
         slopes = sensitivities(gear, tell)
         said = record(gear, slopes)
         write_sensitivity(folder, said)

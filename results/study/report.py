@@ -8,6 +8,7 @@ from pathlib import Path
 
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_together
+from flexspline.results.file_names import BEST_STRESS
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
 from flexspline.results.report.document import (
@@ -24,7 +25,7 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, alarm, bold, plain, worded
-from flexspline.results.study.best_stress import PICTURE, VIEW, BestStress
+from flexspline.results.study.best_stress import VIEW, BestStress
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
@@ -46,7 +47,7 @@ METHODS = {
     "tolerance": "Scatter of uncertainty and tolerances through the whole chain by Saltelli's scheme.",
 }
 WIDTHS = {
-    "pareto.png": 75, "best.png": 78, PICTURE: 75, "convergence.png": 75, "parallel.png": 88,
+    "pareto.png": 75, "best.png": 78, BEST_STRESS: 75, "convergence.png": 75, "parallel.png": 88,
 }  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
@@ -55,7 +56,7 @@ CAPTIONS = {
     "constraint allows.",
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
-    PICTURE: "Design {first} on the wave generator, by the solid model.",
+    BEST_STRESS: "Design {first} on the wave generator, by the solid model.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
 }
@@ -102,7 +103,7 @@ def study_document(
         *((Paragraph(f"No distribution: {result.unscattered}."),) if result.unscattered else ()),
         *chain.from_iterable(scatter_section(s) for s in result.scatter),
         *(_picture(n, result) for n in pictures),
-        *(_not_drawn(missing, result) if missing and PICTURE not in pictures else ()),
+        *(_not_drawn(missing, result) if missing and BEST_STRESS not in pictures else ()),
         *_failures(result),
         Heading("Scope and limits"),
         Bullets(tuple(map(worded, notes(result, of_best)))),
@@ -119,14 +120,14 @@ def study_document(
 
 
 def _picture(name: str, result: StudyResult) -> Block:
-    first = result.pareto[0].slot if name == PICTURE else ""
+    first = result.pareto[0].slot if name == BEST_STRESS else ""
     caption = CAPTIONS.get(name, CAPTIONS["tolerance.png"]).format(first=first)
-    view = VIEW if name == PICTURE else ""
+    view = VIEW if name == BEST_STRESS else ""
     return Pictures((Picture(Path(name).stem, caption, WIDTHS.get(name, 100), view),))
 
 
 def _not_drawn(reason: str, result: StudyResult) -> Iterable[Block]:
-    caption = CAPTIONS[PICTURE].format(first=result.pareto[0].slot)
+    caption = CAPTIONS[BEST_STRESS].format(first=result.pareto[0].slot)
     yield Callout("amber", text=bold("Not drawn: ") + plain(f"{reason}."), items=(caption,))
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from flexspline.geometry.design import Design
 from flexspline.pipeline.study.sensitivity import Slope
 from flexspline.results.atomic import write_bytes
+from flexspline.results.file_names import SENSITIVITY
 from flexspline.results.records import as_json, heading
 
 K_OF = {"flexspline": "K_b_Nm_per_rad", "shaft": "K_e_Nm_per_rad"}
@@ -38,7 +39,7 @@ def _entry(s: Slope) -> dict[str, Any]:
 
 def write_sensitivity(folder: Path, said: dict[str, Any]) -> None:
     """`sensitivity.json`, whole or not at all."""
-    write_bytes(folder / "sensitivity.json", (as_json(said) + "\n").encode())
+    write_bytes(folder / SENSITIVITY, (as_json(said) + "\n").encode())
 
 
 def lines(slopes: Sequence[Slope]) -> list[str]:

@@ -23,7 +23,7 @@ from pathlib import Path
 from flexspline.results.folder_lock import held_until_the_end
 from flexspline.results.output_folder import folder_of
 with held_until_the_end():
-    folder_of(Path("design.toml"), Path(sys.argv[1]), shared=sys.argv[2] == "shared")
+    folder_of(Path("design.toml"), Path(sys.argv[1]), (), shared=sys.argv[2] == "shared")
     print("mine", flush=True)
     sys.stdin.read()
 """
@@ -74,7 +74,7 @@ def test_studies_share_a_folder_and_nobody_else_does(tmp_path: Path) -> None:
     out = tmp_path / "out"
     with holder(out, "shared"):
         with held_until_the_end():
-            assert folder_of(tmp_path / "study.toml", out, shared=True) == out
+            assert folder_of(tmp_path / "study.toml", out, (), shared=True) == out
         assert backlash(out)[0] == 2
 
 

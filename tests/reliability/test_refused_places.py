@@ -11,6 +11,8 @@ from typer.testing import CliRunner
 
 from flexspline.results.atomic import write_together
 from flexspline.results.cli import app
+from flexspline.results.figures.diagnosis.captions import CAPTIONS
+from flexspline.results.file_names import ONE_RECORD, RUN, of_diagnosis
 
 CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 
@@ -63,3 +65,53 @@ def test_a_full_disk_is_named_by_the_folder(
     assert done.exit_code == 1
     assert f"{out / 'result.json'}: No space left on device" in done.stderr
     assert str(CUP) not in done.stderr
+
+
+STUDY_FILE = CUP.parent / "studies" / "grid.toml"
+SWEEP_FILE = CUP.parent / "measured" / "xb1-40-sweep.csv"
+GIVEN = ("--Kb", 31313, "--Ke", 43339)
+NO_MODEL = "no-such-model.toml"
+IN_THE_WAY = {
+    "report.html": ("run", CUP), "gear_loads.png": ("run", CUP), "wave_generator.png": ("run", CUP),
+    "result.json": ("stiffness", CUP), "gear.json": ("gear", CUP),
+    "shaft_torsion.inp": ("export", CUP, "--deck"), "flexspline.msh": ("export", CUP, "--format", "msh"),
+    "diagnosis.pdf": ("diagnose", CUP, SWEEP_FILE, *GIVEN),
+    "causes.png": ("diagnose", CUP, SWEEP_FILE, *GIVEN),
+    "prediction.csv": ("predict", CUP, SWEEP_FILE, "--model", NO_MODEL),
+    "best.toml": ("study", STUDY_FILE), "study.db": ("study", STUDY_FILE),
+    "sensitivity.json": ("sensitivity", CUP),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", IN_THE_WAY)
+def test_a_folder_in_a_file_s_place_is_found_before_the_work(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).mkdir()
+    words = (*IN_THE_WAY[name], "--out", tmp_path)
+    done = CliRunner().invoke(app, [str(w) for w in words])
+    assert done.exit_code == 2
+    (line,) = done.stderr.splitlines()  # no line of progress: nothing had begun
+    assert "--out" in line
+    assert f"{name} is a folder" in line
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+
+
+def test_what_a_run_writes_is_looked_at_before(finished_cup) -> None:
+    assert {p.name for p in finished_cup.folder.iterdir()} <= set(RUN)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        (("backlash", CUP, *GIVEN), ONE_RECORD),
+        (("diagnose", CUP, SWEEP_FILE, *GIVEN), of_diagnosis(CAPTIONS)),
+    ],
+    ids=["backlash", "diagnose"],
+)
+def test_what_a_command_writes_is_looked_at_before(
+    words: tuple[object, ...], names: tuple[str, ...], tmp_path: Path
+) -> None:
+    done = CliRunner().invoke(app, [str(w) for w in (*words, "--out", tmp_path)])
+    assert done.exit_code == 0
+    written = {p.name for p in tmp_path.iterdir()}
+    assert written
+    assert written <= set(names)

@@ -20,6 +20,7 @@ from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.geometry.template import design_text
 from flexspline.pipeline.temporary_files import MARK
+from flexspline.results.file_names import of_export
 
 LIMIT, TOLERANCE = "material.flexspline.fatigue_limit_MPa", "solver.tolerance_pct"
 ROOT = Path(__file__).parents[2]
@@ -122,6 +123,7 @@ def test_export_writes_cad_and_fields(finished_cup, tmp_path: Path) -> None:
     decks = {"flexspline_torsion.inp", "shaft_torsion.inp"}
     assert names[:4] == ["flexspline.step", "flexspline.stl", "shaft.step", "shaft.stl"]
     assert set(names[4:]) == fields | asked | decks
+    assert set(names) == set(of_export(("msh", "vtu"), deck=True))
     # CAD is written before anything is solved, and each later file before the next is solved
     written = [(tmp_path / name).stat().st_mtime_ns for name in names]
     assert written == sorted(written)

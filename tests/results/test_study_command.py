@@ -13,6 +13,7 @@ from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
+from flexspline.results.file_names import STUDY as STUDY_FILES
 
 DESIGN = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
 STUDY = """
@@ -76,6 +77,7 @@ def test_a_grid_on_one_and_on_two_processes(
     assert sum("ring_thickness_mm" in r["reason"] for r in rows) == 2
     for name in said["files"]:
         assert Path(name).stat().st_size > 0
+    assert {p.name for p in (tmp_path / "1").iterdir()} <= set(STUDY_FILES)
     assert "best.toml" in {Path(name).name for name in said["files"]}
     text = "".join(p.extract_text() for p in PdfReader(tmp_path / "1" / "report.pdf").pages)
     assert "4 of 6 designs were built and solved" in text

@@ -1,0 +1,56 @@
+"""Names of the files that each command writes; what is in their way is found before the work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+PARTS = ("flexspline", "shaft")
+RESULT = "result.json"
+"""Of `run`, `stiffness` and `backlash`."""
+REPORT = "report"
+"""Name of the reports of a run and of a study."""
+CURVE, LOADS = "gear_torque_angle", "gear_loads"
+"""Pictures of the whole gear."""
+ELLIPSE = "wave_generator"
+GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
+"""The folder may hold the result.json of a run of the same design."""
+DIAGNOSIS = "diagnosis"
+"""Of the record and the reports: the folder may hold `report.pdf` of a run of the same design."""
+EXTENDED_MODEL = "extended_model.toml"
+PREDICTION = "prediction.csv"
+BEST_DESIGN, BEST_STRESS = "best.toml", "best_stress.png"
+SENSITIVITY = "sensitivity.json"
+
+
+def _pictures(*names: str) -> tuple[str, ...]:
+    return tuple(f"{name}.png" for name in names)
+
+
+def _reports(name: str) -> tuple[str, ...]:
+    return f"{name}.pdf", f"{name}.html"
+
+
+ONE_RECORD = (RESULT,)
+RUN = (
+    RESULT, *_reports(REPORT),
+    *_pictures(*(f"{part}_{what}" for part in PARTS for what in ("mesh", "torque")), ELLIPSE),
+    *_pictures("backlash_budget", "torque_angle", "convergence", CURVE, LOADS),
+)  # fmt: skip
+GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
+STUDY = (
+    "study.db", "study.csv", "study.parquet", BEST_DESIGN, BEST_STRESS, *_reports(REPORT),
+    *_pictures("pareto", "best", "parallel", "convergence", "tolerance"),
+)  # fmt: skip
+
+
+def of_diagnosis(figures: Iterable[str]) -> tuple[str, ...]:
+    """`figures`: names of all that a diagnosis may have."""
+    record = f"{DIAGNOSIS}.json"
+    return record, EXTENDED_MODEL, *_reports(DIAGNOSIS), *_pictures(*figures)
+
+
+def of_export(formats: Iterable[str], deck: bool) -> tuple[str, ...]:
+    """Of `export` with these `--format`s, and with or without `--deck`."""
+    endings = [".step", ".stl", "_torque.vtu", *(f".{suffix}" for suffix in formats)]
+    endings += ["_torsion.inp"] * deck
+    return (*(part + ending for part in PARTS for ending in endings), f"{ELLIPSE}.vtu")
