@@ -76,6 +76,8 @@ def _unknown(location: Location, kind: str | None) -> str:
             if key in theirs:
                 own = [k for k in known if k not in theirs]
                 return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
+    if not table and key == "design":
+        return "names a design: the file is a study, which `flexspline study` takes"
     # a key may be 3000 letters long, and difflib's time grows with their square
     near = get_close_matches(key[:200], known, n=1)
     if near:

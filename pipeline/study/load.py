@@ -19,6 +19,12 @@ from flexspline.pipeline.study.study import Study, StudyError
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
+OF_DESIGN = ("name", "flexspline")
+"""Keys that every design file has, and no study."""
+NO_STUDY = (
+    'is a key of a design; a study names its design file in design = "FILE" and says what to vary'
+)
+
 
 def load_study(path: Path) -> Study:
     """Read, validate and check a study file and its design.
@@ -58,6 +64,8 @@ def _said(fault: ErrorDetails) -> StudyError:
     key = ".".join(f'"{p}"' if "." in str(p) else str(p) for p in where)
     if fault["type"] == "extra_forbidden":
         known = KEYS.get(pattern(where[:-1]), ())
+        if where[-1] in OF_DESIGN and len(where) == 1:
+            return StudyError(key, fault["input"], NO_STUDY)
         near = get_close_matches(str(where[-1])[:200], known, n=1, cutoff=0.6)
         hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
         return StudyError(key, fault["input"], f"unknown key; {hint}")
