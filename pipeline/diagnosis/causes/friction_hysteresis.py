@@ -78,8 +78,8 @@ class FrictionHysteresis(Cause):
     unit = "arcsec"
     positive = True
     tunable = ("threshold_Nm", "exponent", "reach", "growth", POWER)
-    shape_doubt = 0.013
-    """With 0.015 one and two deviations cover 79 and 91 % of 112 made-up records."""
+    shape_doubt = 0.008
+    """Of 112 made-up records one and two deviations cover 75 and 90 %."""
     vary = "torque_rate"
     reveals = "repeat the loop ten times slower; hysteresis from friction does not change, lag does"
     searched_apart = ({AHEAD: 30.0, "deadband_Nm": 0.0},)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, pi, sqrt
+from math import hypot
 
 import numpy as np
 
@@ -134,8 +134,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     std = {}
     for cause in identified.named:
         values = np.array([m[cause] for m in each])
-        # the deviation of a normal law of this mean distance: one set far off does not make it as wide
-        spread = sqrt(pi / 2) * float(weight @ np.abs(values - best[cause]))
+        # their mean distance: one set far off does not make it as wide
+        spread = float(weight @ np.abs(values - best[cause]))
         std[cause] = hypot(doubt.std[cause], spread)
     return best, std
 
