@@ -10,10 +10,6 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 MISFIT = 2.0
 """Rms that the best shape leaves of a law, over the doubt of its size: 1.4 of a rate's, 2 of a creep's."""
 
-HIDDEN = 6.0
-"""Length, in deviations of the noise, of the longest misfit that residual tests may pass: a smooth one adds
-its square, 36, to the chi² of some twenty bins of torque, 20 ± 6 by noise alone."""
-
 
 def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     """Deviation of each cause's magnitude, in its unit, by the others' shapes.
@@ -21,8 +17,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     A gear's law lies between the shapes that are tried. Each other shape of a cause, of the size found, is
     fitted by the set as it is: the set leaves d of it, and other causes take up e. A law that differs from
     the best shape in this direction, by the share of its rms that the doubt of its shape is, moves them by
-    e·doubt·rms/|d|, by e at the most, and by no more than a misfit that the tests would not see does. Of all
-    directions this is the root mean square.
+    e·doubt·rms/|d|, by e at the most. Of all directions this is the root mean square.
 
     Parameters: slopes, of each magnitude for each amplitude (`SweepFit.magnitude_slopes`).
     """
@@ -51,7 +46,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
             continue
         taken = inverse @ (model.T @ tried)
         left = np.linalg.norm(tried - model @ taken, axis=0)
-        doubt = min(HIDDEN, MISFIT * known_causes()[cause].shape_doubt * size)
+        doubt = MISFIT * known_causes()[cause].shape_doubt * size
         moved = (taken * scale[:, None])[~mine] * np.minimum(1.0, doubt / np.maximum(left, 1e-12))
         for other in found:
             if other != cause:
