@@ -23,7 +23,7 @@ from checkout import INSTALLED
 from cad_kernel import why_no_cad
 from finished_run import FinishedRun, finished_run
 from opengl import why_no_pictures
-from shell import ONE_THREAD
+from shell import FEW_PAGE_FAULTS, ONE_THREAD
 from validation_page import TOPICS, Row, has_case, markdown
 
 from flexspline.geometry.kernel import CadKernelError
@@ -62,7 +62,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     A page is written by the process that ran the tests: one, whatever `-n` says. Three workers keep two
     cores busy, as tests of a server or a page wait for it. They take a thread each: those of the linear
     algebra libraries would wait for each other in a loop that keeps a core busy. A run of the example cup on
-    a loaded machine, processor time: 52 s with two, 43 s with one.
+    a loaded machine, processor time: 52 s with two, 43 s with one. And they keep compiled modules, whatever
+    the environment says: of this checkout each of hundreds of processes would compile all that it imports.
     """
     if not config.pluginmanager.hasplugin("xdist") or hasattr(config, "workerinput"):
         return
@@ -72,8 +73,9 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     elif option.numprocesses is None and config.args_source is config.ArgsSource.TESTPATHS:
         option.numprocesses, option.dist = 3, "loadfile"
         option.loadscopereorder = False  # `SLOWEST` says the order
-        for name, count in ONE_THREAD.items():  # which the workers inherit
-            os.environ.setdefault(name, count)
+        for name, value in (ONE_THREAD | FEW_PAGE_FAULTS).items():  # which the workers inherit
+            os.environ.setdefault(name, value)
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_report_header() -> str | None:

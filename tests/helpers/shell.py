@@ -9,6 +9,15 @@ from pathlib import Path
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 """Environment of a process whose linear algebra takes one thread."""
+FEW_PAGE_FAULTS = {
+    "MALLOC_TOP_PAD_": str(64 << 20),
+    "MALLOC_TRIM_THRESHOLD_": str(256 << 20),
+    "MALLOC_MMAP_THRESHOLD_": str(32 << 20),
+    "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
+}
+"""Environment of a process that keeps the memory it frees, in large pages; C libraries but glibc read none
+of it. Stiffness of four parts without holes, test_swept.py: 19 000 page faults in place of 270 000, 12.7 s of
+processor time in place of 14.2."""
 
 
 def environment(
