@@ -86,7 +86,7 @@ def with_friction_ahead(prepared: PreparedSweep) -> ExplainedSweep | None:
     nats = guess.nats
     if not _seen(found):
         return None
-    if nats < SURE_NATS or found.identified.unnamed_rms > 0:
+    if nats < SURE_NATS or found.identified.unnamed(()):
         plain = with_torque_offset(run_race(prepared))
         nats = gained(found, plain)
         if nats < AHEAD_NATS:

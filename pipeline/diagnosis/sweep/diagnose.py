@@ -97,11 +97,12 @@ def diagnose_sweep(
             for test in (jumps_of, stuck_of, scatter_along_travel)
         )
     )
+    told = {name for c in causes for name in (c.id, *c.alternatives)}
     decision = decided(
         causes,
-        unexplained_of(identified, tests, jumps),
+        unexplained_of(identified, tests, jumps, told),
         named_rms=hypot(*(c.rms_arcsec for c in causes)),
-        unnamed_rms=hypot(identified.unnamed_rms, jumps.rms_arcsec if jumps else 0.0),
+        unnamed_rms=hypot(identified.unnamed_rms(told), jumps.rms_arcsec if jumps else 0.0),
         structure=any(t.p_value < SURE for t in tests),
     )
     broken = broken_limit(sweep, explained, decision.causes)

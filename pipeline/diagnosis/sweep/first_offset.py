@@ -12,11 +12,12 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     nats_over,
+    rows_judged,
     step_misfit,
     stiffness_of_positions,
     zeros_of_cycles,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, SEEN, both_ways
 
 FIRST_STEPS = 81
 """Places tried: odd, so that 0 is one; 0.9 % of the largest torque apart, a quarter of the band (3.5 %)."""
@@ -30,7 +31,8 @@ def first_offset(
     """The guess [N·m]; 0 where there is none to see.
 
     The angle is fitted by smooth functions of torque and direction, a stiffness of each position's and one
-    step of free height; the step's place is the guess, if it is clearly better there than at zero.
+    step of free height; the step's place is the guess, if it is clearly better there than at zero, and if the
+    functions leave less than the step: what they miss of a loop without a step is better at some place too.
     """
     largest = float(np.abs(history.torque_Nm).max())
     if not both_ways(history.torque_Nm):
@@ -52,6 +54,9 @@ def first_offset(
     at_zero = misfit(0.0)
     best = int(np.argmin(table))
     if not np.isfinite(table[best]) or table[best] <= 0:
+        return 0.0
+    left_arcsec = np.sqrt(table[best] / rows_judged(len(x)))
+    if gap_arcsec < SEEN * left_arcsec:
         return 0.0
     nats = nats_over(at_zero, table[best], len(x))
     if abs(places[best]) < band_Nm / 2 or nats < FIRST_NATS:

@@ -166,18 +166,6 @@ def fit_regressors(evidence: GaussianEvidence, terms: Sequence[int]) -> SweepFit
     return SweepFit(evidence, posterior_of(evidence, terms))
 
 
-def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
-    """Rms [arcsec] of what each owner adds over the kept rows, each unit's mean removed."""
-    kept, unit = fit.evidence.kept, fit.rig.history.unit
-    found = {}
-    for owner in owners:
-        added = fit.added(owner)[kept]
-        for u in np.unique(unit[kept]):
-            added[unit[kept] == u] -= added[unit[kept] == u].mean()
-        found[owner] = float(np.sqrt(np.mean(added**2)))
-    return found
-
-
 def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float) -> ExtendedModel:
     """The fitted model, with the elements of the named causes."""
     mean, k, p = fit.posterior.mean, fit.units, fit.rig.prediction

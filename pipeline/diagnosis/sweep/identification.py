@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms, rms_together
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import fits_noise, plausible
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.rivals import rivals_of
@@ -53,10 +52,13 @@ class Identification:
     rival_sets: dict[str, Candidate]
     evidence_nats: dict[str, float]
 
-    @property
-    def unnamed_rms(self) -> float:
-        """Of all nuisance terms and minor causes in the best set [arcsec]."""
-        return float(np.sqrt(sum(r**2 for o, r in self.rms.items() if o not in self.named)))
+    def unnamed(self, told: Collection[str]) -> tuple[str, ...]:
+        """Owners in the best set that are none of the causes `told`, as found or as rivals."""
+        return tuple(sorted(o for o in self.rms if o not in {*self.named, *told}))
+
+    def unnamed_rms(self, told: Collection[str]) -> float:
+        """Of what they add together [arcsec]: what one takes and another brings back is not there."""
+        return rms_together(self.fit, self.unnamed(told))
 
 
 def identify(search: Search, beside: bool = False) -> Identification:

@@ -8,7 +8,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, owner_rms
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 DRIVEN = (
@@ -25,6 +26,9 @@ OF_TORQUE_NOISE = 0.7
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
 TOGETHER = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
+UNNAMED_TOGETHER = 2.0
+"""The same of two nuisance terms: three quarters of their power is then gone. Nothing says that either is
+there, and what a lock lets go and a drift brings back at once has not moved."""
 
 
 def plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Candidate:
@@ -72,7 +76,8 @@ def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
     own = np.add.outer(np.diag(products), np.diag(products))
     nuisance = np.array([o.startswith("?") for o in owners])
     pairs = np.triu(np.logical_or.outer(nuisance, nuisance), 1)
-    return bool((pairs & (own > TOGETHER**2 * (own + 2 * products))).any())
+    most = np.where(np.logical_and.outer(nuisance, nuisance), UNNAMED_TOGETHER, TOGETHER)
+    return bool((pairs & (own > most**2 * (own + 2 * products))).any())
 
 
 def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:

@@ -89,5 +89,9 @@ def step_misfit(
 
 def nats_over(at_zero: float, best: float, rows: int) -> float:
     """What a step elsewhere gains over one at zero torque, of `rows` rows of a record."""
-    counted = rows / max(1, rows // MOST_FIRST_ROWS)
-    return counted / 2 * float(np.log(at_zero / best)) / DEPENDENT
+    return rows_judged(rows) / 2 * float(np.log(at_zero / best)) / DEPENDENT
+
+
+def rows_judged(rows: int) -> float:
+    """How many of a record's `rows` a first guess looks at, about."""
+    return rows / max(1, rows // MOST_FIRST_ROWS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import Unexplained
@@ -17,16 +17,23 @@ JUMPING = "jumps with the torque's motion; something sticks and breaks away"
 
 
 def unexplained_of(
-    identified: Identification, tests: Sequence[ChannelTest], jumps: Jumps | None = None
+    identified: Identification,
+    tests: Sequence[ChannelTest],
+    jumps: Jumps | None = None,
+    told: Collection[str] = (),
 ) -> tuple[Unexplained, ...]:
-    """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant."""
+    """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
+
+    `told` : causes that are said to be possible, as found or as rivals.
+    """
     found = []
     regressors = [identified.search.evidence.terms[i] for i in identified.best.terms]
-    for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
+    for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
+        rms = identified.rms[owner]
         if owner.startswith("?"):
             what = "; ".join(sorted({r.what for r in regressors if r.owner == owner}))
             found.append(Unexplained(owner[1:], rms, NUISANCE_P, what))
-        elif owner not in identified.named:
+        else:
             trace = f"a trace like {known_causes()[owner].title}"
             found.append(Unexplained("torque_Nm", rms, NUISANCE_P, trace))
     if jumps is not None:

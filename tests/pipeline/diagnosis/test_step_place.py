@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from histories import LARGEST, sweep
 
+from flexspline.pipeline.diagnosis.causes.micro_slip import POWER, micro_slips
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE, FINE, first_ahead
 from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST as MOST_FRICTION
@@ -37,6 +38,17 @@ def test_a_shifted_reading_is_seen_though_stiffness_differs_between_cycles(offse
     spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
     # places tried are so far apart, and rows as far as 2 N·m in 50
     assert found == pytest.approx(offset * LARGEST, abs=spacing + LARGEST / 50)
+
+
+@pytest.mark.parametrize("twist_arcsec", [2000.0, 4000.0])
+def test_a_wide_rounded_loop_without_a_step_shows_no_shifted_reading(twist_arcsec: float) -> None:
+    """Micro-slip by a power that no curve of the guess follows leaves less at one place than at another."""
+    steady = replace(WHOLE, torque_Nm=WHOLE.torque_Nm * np.where(WHOLE.cycle == 0, 1.0, 0.75))
+    slip = micro_slips(
+        [{POWER: 3.2, "held": 1, "largest_torque_Nm": LARGEST, "deadband_Nm": 0.0}], steady
+    )
+    twist = 400.0 * steady.torque_Nm + twist_arcsec * slip[0][:, 0]
+    assert first_offset(steady, twist, GAP, BAND) == 0.0
 
 
 def test_friction_ahead_is_seen_though_stiffness_differs_between_cycles() -> None:

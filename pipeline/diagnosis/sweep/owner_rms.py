@@ -1,0 +1,23 @@
+"""How much each owner of a fitted set adds to the angle, alone and with others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+
+
+def owner_rms(fit: SweepFit, owners: Sequence[str]) -> dict[str, float]:
+    """Rms [arcsec] of what each owner adds."""
+    return {owner: rms_together(fit, (owner,)) for owner in owners}
+
+
+def rms_together(fit: SweepFit, owners: Sequence[str]) -> float:
+    """Rms [arcsec] of what owners add together over the kept rows, each unit's mean removed."""
+    kept, unit = fit.evidence.kept, fit.rig.history.unit
+    added = sum((fit.added(o) for o in owners), np.zeros(len(kept)))[kept]
+    for u in np.unique(unit[kept]):
+        added[unit[kept] == u] -= added[unit[kept] == u].mean()
+    return float(np.sqrt(np.mean(added**2)))
