@@ -7,10 +7,11 @@ import json
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
+from pathlib import Path
 from typing import Any
 
 from aiohttp import web
+from kept import once
 
 from flexspline.geometry.design import Design
 from flexspline.results.studio.guard import Guard
@@ -22,13 +23,11 @@ Hold = Callable[[str, dict[str, Any]], bool]
 LOOK_S = 0.02
 
 
-@cache
-def _answer(question: str, text: str) -> Any:
-    return answer(question, json.loads(text))
-
-
 class HeldWorker:
-    """Answers as a worker does, in a thread; `studio.hold(question, tables)` true keeps it waiting."""
+    """Answers as a worker does, in a thread; `studio.hold(question, tables)` true keeps it waiting.
+
+    What an earlier test of this run of the suite asked is not computed again.
+    """
 
     def __init__(self, studio: HeldStudio) -> None:
         self.studio = studio
@@ -40,14 +39,17 @@ class HeldWorker:
     async def ask(self, question: str, tables: dict[str, Any]) -> Any:
         while self.studio.hold(question, tables):
             await asyncio.sleep(LOOK_S)
-        found = await asyncio.to_thread(_answer, question, json.dumps(tables, sort_keys=True))
-        return dict(found) if isinstance(found, dict) else found
+        asked = f"{question} {json.dumps(tables, sort_keys=True)}"
+        return await asyncio.to_thread(
+            once, self.studio.suite, asked, lambda: answer(question, tables)
+        )
 
 
 class HeldStudio:
-    """Its address, and which answers are held: none at first."""
+    """Its address, and which answers are held: none at first; `suite`: where they are kept."""
 
-    def __init__(self) -> None:
+    def __init__(self, suite: Path) -> None:
+        self.suite = suite
         self.hold: Hold = lambda question, tables: False
         self.guard = Guard("127.0.0.1")
         self.port = 0
@@ -58,9 +60,9 @@ class HeldStudio:
 
 
 @contextmanager
-def held_studio(design: Design) -> Iterator[HeldStudio]:
+def held_studio(design: Design, suite: Path) -> Iterator[HeldStudio]:
     """Serve in a thread of this process."""
-    studio = HeldStudio()
+    studio = HeldStudio(suite)
     loop, ready = asyncio.new_event_loop(), threading.Event()
     ended = asyncio.Event()
     workers: Any = Workers(*(HeldWorker(studio) for _ in range(3)))  # type: ignore[arg-type]

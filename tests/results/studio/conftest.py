@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -62,11 +63,11 @@ def page(opened: Callable[..., Page]) -> Page:
 
 
 @pytest.fixture(scope="module")
-def held(studio_browser: Browser) -> Iterator[HeldStudio]:
-    """A studio in this process whose answers a test can hold back. None is computed twice in a process:
+def held(studio_browser: Browser, suite_folder: Path) -> Iterator[HeldStudio]:
+    """A studio in this process whose answers a test can hold back. None is computed twice in a suite:
     tests that need no figure of their own take walls of 0.41 and 0.45 mm."""
     cup = without_holes(design_from(tomllib.loads(template("cup"))))
-    with held_studio(with_values(cup, {"solver.tolerance_pct": 5.0})) as studio:
+    with held_studio(with_values(cup, {"solver.tolerance_pct": 5.0}), suite_folder) as studio:
         yield studio
 
 
