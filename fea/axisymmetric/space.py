@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
 from scipy.sparse.linalg import SuperLU, splu
-from skfem import Basis, BilinearForm, ElementTriP2, MeshTri, MeshTri2
+from skfem import Basis, BilinearForm, ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
+from flexspline.fea.entities import CurvedTriangles, Triangles
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
     middles = straight_edges.p[:, straight_edges.facets].mean(axis=1)
     middles[:, facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment).T
     named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
-    quadratic = MeshTri2(np.hstack([straight_edges.p, middles]), straight_edges.t)
+    quadratic = CurvedTriangles(np.hstack([straight_edges.p, middles]), straight_edges.t)
     quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
     basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
     jacobian = basis.mapping.detDF(basis.X)
@@ -109,14 +110,14 @@ def straight(
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
     """A `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
-    mesh = MeshTri(np.ascontiguousarray(vertices.T), old.mesh.t)
+    mesh = Triangles(np.ascontiguousarray(vertices.T), old.mesh.t)
     basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
     return Space(basis, space.rim, space.numbers)
 
 
 def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
     triangles = np.sort(mesh.triangles, axis=1)
-    return MeshTri(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
+    return Triangles(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
 
 
 def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
