@@ -73,7 +73,8 @@ def part_stiffness(model: PartModel) -> Stiffness:
     """K by the design's `solver.model`: axisymmetric where the part allows it, else solid.
 
     A flexspline with bolt holes lies between two bodies of revolution: the solid model's K is held
-    within them, or, with `solver.model = "solid"`, only checked against them.
+    within them, or, with `solver.model = "solid"`, only checked against them. Nobody waits for fTetWild where
+    the two meet the tolerance, unless `solver.mesher` names it: then the answer is theirs.
 
     Raises
     ------
@@ -104,25 +105,14 @@ def _revolved_stiffness(model: PartModel) -> Stiffness:
 def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = enclosure_if_any(model, _revolved_stiffness)
     if enclosure is not None and may_answer(model):
-        return answered_within(
-            enclosure, lambda: _within_enclosure(model, enclosure), tolerance_of(model)
-        )
+        tolerance = tolerance_of(model)
+        if enclosure.half_width <= tolerance and model.mesher == "auto" and _by_fTetWild(model):
+            return enclosure
+        return answered_within(enclosure, lambda: twisted_part(model).stiffness, tolerance)
     solid = twisted_part(model).stiffness
     if enclosure is not None:
         check_against(solid, enclosure)
     return solid
-
-
-def _within_enclosure(model: PartModel, enclosure: Stiffness) -> Stiffness:
-    """The solid model's K; nobody waits for fTetWild where the enclosure meets the tolerance.
-
-    Raises
-    ------
-    SolidError : it takes longer than ENCLOSED_SECONDS. As `twisted_part`.
-    """
-    if enclosure.half_width <= tolerance_of(model) and _by_fTetWild(model):
-        PartMeshes(model).meshed(replace(model.first_spec, time_limit_s=ENCLOSED_SECONDS))
-    return twisted_part(model).stiffness
 
 
 def _by_fTetWild(model: PartModel) -> bool:

@@ -19,7 +19,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline import part_meshes, part_stiffness
+from flexspline.pipeline import part_meshes, part_stiffness, parts
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
@@ -139,13 +139,32 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     found = part_stiffness.part_stiffness(cup)
     assert found.guaranteed
     assert not found.shortfall
-    assert found.model == "axisymmetric"  # no mesh was made in that time
+    assert found.model == "solid"  # as `solver.mesher` asks for it
     solid = part_stiffness.twisted_part(cup).stiffness
     first, second = asked
     assert second.grading == first.grading.scaled(part_stiffness.ENCLOSED_COARSER)
     assert second.time_limit_s > first.time_limit_s
     assert part_stiffness.rim_mesh(cup).mesh.elements == solid.levels[0].elements
     assert len(asked) == len([first, second])
+
+
+def test_nobody_waits_for_fTetWild_where_an_enclosure_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """K_b of a cup that cannot be swept: two bodies of revolution meet the tolerance, and answer."""
+
+    def not_asked_for(*_: object) -> None:
+        raise AssertionError("a mesh, or its CAD")
+
+    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress())
+    cup = context.part("flexspline")
+    monkeypatch.setattr(parts, "can_be_swept", lambda part: False)
+    monkeypatch.setattr(part_meshes, "mesh_surface", not_asked_for)
+    monkeypatch.setattr(part_meshes, "surface_to_mesh", not_asked_for)
+    found = part_stiffness.part_stiffness(cup)
+    assert found.guaranteed
+    assert found.model == "axisymmetric"
+    assert found.half_width <= DESIGN.solver.tolerance_pct / 100
 
 
 def test_a_mesh_that_would_be_too_large_is_counted_not_made() -> None:
