@@ -175,9 +175,16 @@ def test_a_bent_symmetry_plane_is_refused(shaft) -> None:
 
 
 def test_a_wide_keyway_keeps_its_planes() -> None:
-    """Unrolled, the two triangles of the slot's floor leave its plane: 0.6 % of the volume."""
-    keyed = load_design(EXAMPLE.parent / "keyed-shaft.toml")
-    part = keyed.changed({"shaft.keyway.width_mm": 8.0, "shaft.keyway.depth_mm": 4.0}).part("shaft")
+    """Unrolled, the two triangles of the slot's floor leave its plane: 0.6 % of this short shaft's volume."""
+    flange = {"length_mm": 4.0, "outer_diameter_mm": 20.0, "inner_diameter_mm": 6.0}
+    keyed = load_design(EXAMPLE.parent / "keyed-shaft.toml").changed(
+        {
+            "shaft.segment": [flange, flange | {"length_mm": 14.0, "outer_diameter_mm": 16.0}],
+            "shaft.grip_length_mm": 12.0,
+            "shaft.keyway": {"width_mm": 8.0, "depth_mm": 4.0, "length_mm": 10.0},
+        }
+    )
+    part = keyed.part("shaft")
     slot = part.keyway
     assert slot is not None
     spec = first_spec(part).scaled(3.0)
