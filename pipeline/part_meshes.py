@@ -33,6 +33,10 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 COARSER, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
+LAYERED_FIRST = 20_000
+"""Elements of a first mesh in layers, where a coarser one has fewer; the next ones follow the error. A shaft
+of two segments whose slot goes beyond the axis had 85 730, a minute and a half: 21 853 with edges four times
+as long."""
 ANOTHER = 0.8
 """Edges of the second try where a sweep fails a check: elements beside a keyway may be bent too far in one
 mesh and not in the next, and fTetWild takes minutes where a sweep takes a second."""
@@ -100,12 +104,33 @@ class PartMeshes:
         if ("layered", spec) in self._failed:
             return None
         stated = model.context.design.solver.edge_length_mm is not None
-        coarser = spec if stated else spec.scaled(LAYERED_COARSER)
         try:
-            return self._of_sweep(layered_mesh(model.part, model.sector.degrees, coarser))
+            if stated:
+                return self._of_sweep(layered_mesh(model.part, model.sector.degrees, spec))
+            return self._of_sweep(self._coarsened_layers(spec.scaled(LAYERED_COARSER)))
         except (MeshQualityError, MeshingError, TooManyElementsError):
             self._failed.add(("layered", spec))
             return None
+
+    def _coarsened_layers(self, spec: MeshSpec) -> LayeredMesh:
+        """To a specification, or to a coarser one where it has more than LAYERED_FIRST elements by that.
+
+        Raises
+        ------
+        MeshQualityError, MeshingError, TooManyElementsError : as `layered_mesh`.
+        """
+        part, degrees = self.model.part, self.model.sector.degrees
+        before = spec
+        for _ in range(COARSENINGS):
+            try:
+                return layered_mesh(part, degrees, spec, LAYERED_FIRST)
+            except TooManyElementsError:
+                spec, before = spec.scaled(LAYERED_COARSER), spec
+            except (MeshQualityError, MeshingError):
+                if spec == before:
+                    raise
+                return layered_mesh(part, degrees, before)
+        return layered_mesh(part, degrees, spec)
 
     def _of_sweep(self, mesh: TetMesh) -> MeshedPart:
         model = self.model

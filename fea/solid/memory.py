@@ -15,10 +15,11 @@ from flexspline.fea.solid.direct import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]
-DIRECT_BELOW = {True: 80_000, False: 50_000}
-"""Unknowns up to which factors are the faster way or as fast, with and without MKL: of a shaft with 82 000
-they took 3.1 s of the processor and 0.45 GB, iteration 2.4 s and 0.1 GB; with 190 000 16.0 s and 1.8 GB
-against 6.0 s and 0.35 GB."""
+DIRECT_BELOW = {True: 180_000, False: 50_000}
+"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors and of
+iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3 and 6.1, 193 000
+11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5, 166 000 3.4 and
+58. Factors of 190 000 on another part took 16 s and 1.8 GB, iteration 6 s and 0.35 GB."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
 """The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 in cups of one
 layer, 75 to 80 in shafts), its factors are small, and its flat elements take many steps (a cup with a wall of
