@@ -145,7 +145,8 @@ def test_refused_beforehand_with_numbers(quarter: Model, monkeypatch: pytest.Mon
         (20_000, 16, True, "direct"),
         (1_000_000, 16, True, "iterative"),
         (1_000_000, 64, False, "direct"),  # no interpolation to iterate with
-        (100_000, 16, True, "iterative"),
+        (150_000, 16, True, "direct"),
+        (200_000, 16, True, "iterative"),
         (60_000, 0.2, True, "iterative"),  # factors would be quicker, but do not fit
     ],
 )
