@@ -161,7 +161,8 @@ def test_way_by_unknowns_and_memory(
 def test_a_part_that_is_mostly_surface_is_factorised(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "available_bytes", lambda: 16 * 2**30)
     monkeypatch.setattr(memory, "pardiso", lambda: object)
-    assert memory.choose_solver(100_000, 65 * 100_000, True) == "direct"
+    assert memory.choose_solver(250_000, 65 * 250_000, True) == "direct"
+    assert memory.choose_solver(250_000, 80 * 250_000, True) == "iterative"
 
 
 def test_factors_take_over_from_an_iteration_that_is_slow(
