@@ -1,8 +1,8 @@
 """scikit-fem's meshes with their edges and facets numbered by one sort of integers.
 
-`Mesh.build_entities` sorts columns of corner numbers as records, and each mesh, copy and basis asks for it: a
-third of the time in which a mesh of 37 000 tetrahedra is made. One integer for each column gives the same
-numbers, in the same order, in a tenth of the time.
+`Mesh.build_entities` sorts columns of corner numbers as records, and each mesh, copy and basis asks for it
+(48 times for four meshes of one shaft). One integer for each column gives the same numbers, in the same
+order, in a quarter of the time.
 """
 
 from __future__ import annotations

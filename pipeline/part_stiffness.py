@@ -32,10 +32,11 @@ two minutes on a disc with small holes (10.7 mm across, holes of 0.74 mm), one o
 LAYERED_TIMES, LAYERED_LEAST = 2.0, 1.5
 """Elements of the next mesh of a shaft in layers over those of the last, and at least."""
 LAYERED_ELEMENTS, LAYERED_LAST = 36_000, 18_000
-"""Of such a mesh at most: its solution takes 8 s of the processor and 1.2 GB; and the number beyond which
-none follows. A first mesh is followed by a second whatever its size: one alone cannot tell its own error. A
-third one of 37 000 to 53 000 elements took 20 to 38 s of the 34 to 54 of three random shafts, none met its
-tolerance by it, and of two K was known no better (± 1.5 and 1.9 %, 1.4 and 1.5 %; 0.7 and 0.4 %)."""
+"""Of such a mesh at most: its solution takes 3 to 5 s of the processor, the whole command 1.4 GB; and the
+number beyond which none follows. A first mesh is followed by a second whatever its size: one alone cannot
+tell its own error. A third one of 37 000 to 53 000 elements took 20 to 38 s of the 34 to 54 of three random
+shafts, none met its tolerance by it, and of two K was known no better (± 1.5 and 1.9 %, 1.4 and 1.5 %; 0.7
+and 0.4 %)."""
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""

@@ -114,6 +114,24 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     assert not any("fTetWild" in line for line in said)
 
 
+@pytest.mark.parametrize("stated", [False, True])
+def test_a_first_mesh_in_layers_is_made_coarser_too(
+    stated: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = DESIGN.changed({"solver.edge_length_mm": 2.0}) if stated else DESIGN
+    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    meshes = PartMeshes(context.part("shaft"))
+    usual = meshes.layered(meshes.model.first_spec)
+    assert usual is not None
+    monkeypatch.setattr(part_meshes, "LAYERED_FIRST", usual.mesh.elements - 1)
+    coarser = meshes.layered(meshes.model.first_spec)
+    assert coarser is not None
+    if stated:  # the user says how long edges are
+        assert coarser.mesh.elements == usual.mesh.elements
+    else:
+        assert coarser.mesh.elements < usual.mesh.elements
+
+
 def test_fTetWild_has_little_time_where_an_enclosure_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
