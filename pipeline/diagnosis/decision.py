@@ -97,7 +97,8 @@ def decided(
     found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
     left = tuple(unexplained)
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
-        return Decision("unknown", found, left)
+        # beside what has no name a mere suspicion is none
+        return Decision("unknown", tuple(c for c in found if is_any(c)), left)
     if not found:
         return Decision("unknown", (), left) if structure else Decision("consistent")
     open_ = not sure or any(c.alternatives for c in found)

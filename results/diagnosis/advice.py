@@ -42,6 +42,8 @@ def why(after: NextMeasurement, kind: MeasurementKind) -> str:
 
 def _of_sweep(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
+        if after.doing:
+            return after.doing
         where = f" ({after.where})" if after.where else ""
         return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
     cause = known_causes()[after.causes[0]]

@@ -68,13 +68,14 @@ TIPS_MM, TIPS_KN = 2.44, (9.9, -10.7)
 """Where the four later loops turn, read off the same plot."""
 
 
-def joint(folder: Path, rows: int) -> Diagnosis:
-    """What the program says of the joint's first rows, on an arm of 100 mm."""
+def joint(folder: Path, rows: int, row_s: float | None = None) -> Diagnosis:
+    """What the program says of the joint's first rows, on an arm of 100 mm; with a clock, if one is given."""
     made = folder / "sweep.csv"
     with made.open("w", encoding="utf-8") as out:
-        out.write("torque_Nm,angle_mrad\n")
-        for force, way in zip(FORCE_KN[:rows], WAY_MM[:rows], strict=True):
-            out.write(f"{force * NM_PER_KN:.1f},{way / ARM_MM * 1000:.2f}\n")
+        out.write(f"{'time_s,' if row_s else ''}torque_Nm,angle_mrad\n")
+        for row, (force, way) in enumerate(zip(FORCE_KN[:rows], WAY_MM[:rows], strict=True)):
+            clock = f"{row * row_s:.3f}," if row_s else ""
+            out.write(f"{clock}{force * NM_PER_KN:.1f},{way / ARM_MM * 1000:.2f}\n")
     return diagnose_file(load_design(CUP), made, 80_000.0, 90_000.0)
 
 
@@ -128,6 +129,15 @@ def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     assert found.calibration.compliance.value == pytest.approx(by_hand, rel=0.05)
 
 
+@pytest.mark.parametrize("rows", [LAST_REVERSAL, len(JOINT)])
+def test_a_clock_does_not_tell_what_one_speed_cannot(tmp_path: Path, rows: int) -> None:
+    """A row each 0.1 s: whatever the loop is taken for, the other may have made it."""
+    found = joint(tmp_path, rows, row_s=0.1)
+    assert found.verdict == "ambiguous"
+    assert {"friction_hysteresis", "rate_dependence"} <= named_or_alternative(found)
+    assert all(c.alternatives for c in found.causes)
+
+
 def test_a_strain_wave_gear_that_sticks_gives_no_verdict(tmp_path: Path) -> None:
     """Three staircases that only rise: whether a step is friction, play or spring they cannot say."""
     rows = rows_of(HERE / "pravin-strain-wave-lever.csv")
@@ -143,6 +153,10 @@ def test_a_strain_wave_gear_that_sticks_gives_no_verdict(tmp_path: Path) -> None
     assert found.causes == ()
     assert found.outcome.next_measurement is not None
     assert found.outcome.next_measurement.vary == "torque_Nm"
+    # five jumps of 0.36 to 0.94°, at 8 to 18 N·m: no noise of a reading that steps by 0.005°
+    assert "leaps 5 times" in found.outcome.too_little
+    assert "at 8 to 18 N·m" in found.outcome.too_little
+    assert "noise" not in found.outcome.too_little
 
 
 def test_the_strain_wave_gear_s_way_is_mostly_jumps() -> None:

@@ -17,7 +17,7 @@
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
-| verdict; physical limits | `../decision.py`; `limits.py` |
+| verdict; physical limits | `../decision.py`; `limits.py`, `backward.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """
@@ -38,6 +38,8 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
+from flexspline.pipeline.diagnosis.sweep.backward import NEXT as BACKWARD_NEXT
+from flexspline.pipeline.diagnosis.sweep.backward import backward_of
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
@@ -108,6 +110,10 @@ def diagnose_sweep(
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
+    # causes that explain all leave no loop to run backwards
+    backward = backward_of(prepared, explained) if decision.unexplained else None
+    if backward is not None:  # whatever else was found is what the race made of it
+        decision = Decision("unknown", (), (backward.said,))
     ids = [c.id for c in decision.causes]
     gain = gain_of(explained, ids)
     outcome = DiagnosisOutcome(
@@ -115,7 +121,7 @@ def diagnose_sweep(
         decision.causes,
         decision.unexplained,
         gain,
-        next_measurement(explained, decision),
+        BACKWARD_NEXT if backward else next_measurement(explained, decision),
         gains_at_levels=gains_at_levels(explained, ids) if ids else (),
     )
     written = written_model(explained, sweep, ids, gain)

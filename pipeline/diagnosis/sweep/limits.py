@@ -7,6 +7,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.plausibility import slope_beyond, slope_words
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+from flexspline.pipeline.diagnosis.sweep.leaps import leaps_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.size import simulated_twist_arcsec, sweep_size
 from flexspline.pipeline.diagnosis.sweep.slip import OUTER, slip_of
@@ -50,12 +51,15 @@ def broken_limit(
 
 
 def drowned(explained: ExplainedSweep) -> str:
-    """Why the noise hides everything, "" where it does not: one reading's is above the whole twist."""
+    """Why noise, or what passes for it, hides everything; "" where one reading's is below the whole twist."""
     prepared = explained.prepared
     noise = explained.identified.search.evidence.noise.std_arcsec
     twist = simulated_twist_arcsec(prepared.rig.history.torque_Nm, prepared.prediction)
     if noise <= twist:
         return ""
+    leaps = leaps_of(prepared.sweep.history, prepared.sweep.angle_arcsec)
+    if leaps is not None:
+        return f"{leaps.said}; the simulated twist is {twist:.0f} arcsec"
     return f"the noise of one reading, {noise:.3g} arcsec, exceeds the simulated twist, {twist:.3g} arcsec"
 
 

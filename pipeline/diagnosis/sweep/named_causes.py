@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, loop_tells
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
@@ -35,14 +36,14 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     evidence = identified.search.evidence
     sets = [(c.named(evidence), c.score) for c in identified.search.best.values()]
     magnitude, std = magnitudes(identified)
-    timeless = explained.prepared.sweep.history.time_s is None
+    timed = explained.prepared.sweep.history.time_s is not None
+    told = loop_tells(evidence, identified.best, timed)
     ahead = explained.ahead
     found = []
     for c in identified.named:
         rivals = identified.rivals[c]
-        if timeless and c in (FRICTION, "rate_dependence"):
-            other = {FRICTION: "rate_dependence"}.get(c, FRICTION)
-            rivals = tuple(dict.fromkeys((*rivals, other)))
+        if c in LOOPS and not told and not (c == FRICTION and timed and ahead):
+            rivals = tuple(dict.fromkeys((*rivals, LOOPS[c])))
         if c == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
             rivals = tuple(dict.fromkeys((*rivals, SERIES)))
         chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
@@ -121,6 +122,7 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
             c.terms: c
             for c in (*identified.search.tried, identified.best)
             if c.named(evidence) == names
+            and c.score <= identified.best.score  # others were refused
         }.values(),
         key=lambda c: -c.score,
     )[:MOST_SHAPES]

@@ -3,6 +3,10 @@
 Friction of a form that no element has leaves a loop, and a rate dependence of a low exponent is one. Where
 the record's cycles differ in rate, the two can be told: the same regressor, computed as if all cycles had run
 at one rate, is a loop that knows no rate. If it explains the record as well, the rate has shown nothing.
+
+Where all cycles run at one rate, only the form of the loop is left to tell the two apart. Friction whose
+thresholds are spread in any way makes any loop whose branches bend one way and whose angle turns with the
+torque, so the form tells only where one of the two has it by itself.
 """
 
 from __future__ import annotations
@@ -11,8 +15,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
@@ -22,6 +28,27 @@ RATES_APART = 1.2
 FOLLOWS_NATS = 3.0
 """By which the rate must be better than the loop that knows none: in made-up records false ones gain at most
 1.4, true ones 11 and more."""
+
+LOOPS = {FRICTION: RATE, RATE: FRICTION}
+"""Causes that open a loop, each with the other that does."""
+UNNAMED_LOOPS = ("?direction", "?torque_rate", "?torque_amplitude")
+"""Owners of terms that open or bend a loop and have no name."""
+
+
+def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool:
+    """Whether a record can tell whose a loop is, friction's or the rate's.
+
+    By cycles that differ in rate, or that hold the torque, over which a lag goes on and friction does not; at
+    one rate by the form, where one of the two is enough. Never where time was not recorded (`timed`).
+    """
+    if not timed:
+        return False
+    history = evidence.columns.rig.history
+    if at_one_rate(history) is not None or len(holds(history)) >= len(history.cycle_slices):
+        return True
+    owners = best.owners(evidence)
+    rubs = FRICTION in owners or evidence.columns.ahead is not None
+    return not (rubs and RATE in owners) and owners.isdisjoint(UNNAMED_LOOPS)
 
 
 def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:

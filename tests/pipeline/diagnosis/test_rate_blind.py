@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
-from histories import PREDICTION, shape_of, sweep
+from histories import LARGEST, PREDICTION, shape_of, sweep
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
@@ -88,6 +88,62 @@ def test_a_lag_beside_friction_is_found() -> None:
     record = Sweep(Path("rig.csv"), VARIED, angle, ("",), cycles, rows, True)
     named = {c.id for c in diagnose_sweep(record, PREDICTION)[0].causes}
     assert named == {"friction_hysteresis", "rate_dependence"}
+
+
+TURN = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+SINE = replace(
+    sweep(cycles=5, rows=400, hold=0),
+    torque_Nm=np.tile(LARGEST * np.sin(TURN), 5),
+    temperature_C=None,
+    input_angle_deg=None,
+)
+"""One rate, one amplitude, 2000 s a cycle."""
+LAG_S = 120.0
+"""Of a Kelvin element with a fifth of the twist: its loop of 2.6 arcsec is as wide as the friction's of 3."""
+
+
+def lagging(history: History) -> np.ndarray:
+    """(n,) twist of a Kelvin element, θ' = (c·T − θ)/τ, less what it has without lag, by small steps."""
+    assert history.time_s is not None
+    out, state = np.zeros(len(history)), 0.0
+    for i in range(1, len(history)):
+        step = (history.time_s[i] - history.time_s[i - 1]) / LAG_S
+        state += (1 - np.exp(-step)) * (2.0 * history.torque_Nm[i] - state)
+        out[i] = state - 2.0 * history.torque_Nm[i]
+    return out
+
+
+def rubbing(history: History) -> np.ndarray:
+    """(n,) a Coulomb element's loop, 3 arcsec wide, that slips within 0.1 N·m of a turn."""
+    state, out = 0.0, np.zeros(len(history))
+    for i, step in enumerate(np.diff(history.torque_Nm, prepend=0.0)):
+        state = min(max(state + step / 0.1, -1.0), 1.0)
+        out[i] = -1.5 * state
+    return out
+
+
+def of_sine(added: np.ndarray) -> dict[str, tuple[str, ...]]:
+    """Causes found and their rivals in a sine sweep that reads these angles [arcsec] beside the simulated."""
+    angle = PREDICTION.angle_arcsec(SINE) + added
+    angle = angle + np.random.default_rng(11).normal(0, NOISE, len(angle))
+    cycles, rows = (tuple(np.unique(SINE.cycle) + 1.0),), np.arange(len(angle)) + 2
+    record = Sweep(Path("rig.csv"), SINE, angle, ("",), cycles, rows, True)
+    return {c.id: c.alternatives for c in diagnose_sweep(record, PREDICTION)[0].causes}
+
+
+def test_at_one_rate_a_loop_that_one_of_the_two_makes_has_its_name() -> None:
+    """A lag's loop of a sine is an ellipse; Coulomb friction's is a parallelogram."""
+    assert of_sine(lagging(SINE)) == {"rate_dependence": ()}
+    assert of_sine(rubbing(SINE)) == {"friction_hysteresis": ()}
+
+
+def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:
+    """Friction whose thresholds are spread in some way has this loop by itself."""
+    found = of_sine(lagging(SINE) + rubbing(SINE))
+    assert found == {
+        "rate_dependence": ("friction_hysteresis",),
+        "friction_hysteresis": ("rate_dependence",),
+    }
 
 
 def test_a_loop_that_no_element_of_friction_has_is_no_lag() -> None:

@@ -1,0 +1,56 @@
+"""Whether an angle leaps: from one row to the next by many times what it moves in most, and with the torque.
+
+In a record of few rows, each a step of the torque, nothing else tells this from noise, which goes either way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+FAR = 10.0
+"""Times the median move between two rows: of normal noise one move in 70 billion goes so far."""
+FEWEST = 3
+"""Leaps, all with the torque: one may be a touch of the rig; spikes go there and back."""
+
+
+@dataclass(frozen=True)
+class Leaps:
+    """How many, the smallest and largest, the torques between which they come, the usual move."""
+
+    count: int
+    sizes_arcsec: tuple[float, float]
+    torques_Nm: tuple[float, float]
+    usual_arcsec: float
+
+    @property
+    def said(self) -> str:
+        """As a reason for which a record says nothing."""
+        (least, most), (low, high) = self.sizes_arcsec, self.torques_Nm
+        where = f"{low:.3g} to {high:.3g}".replace("-", "−")
+        return (
+            f"the angle leaps {self.count} times with the torque, by {least:.0f} to {most:.0f} arcsec at "
+            f"{where} N·m, and moves by {self.usual_arcsec:.2g} arcsec from row to row else: "
+            "something sticks and breaks away"
+        )
+
+
+def leaps_of(history: History, angle_arcsec: np.ndarray) -> Leaps | None:
+    """The leaps of an angle (n,); None where it does not leap, or not with the torque."""
+    moves, torques = [], []
+    for rows in history.unit_slices:
+        step = np.diff(history.torque_Nm[rows])
+        moves.append(np.diff(angle_arcsec[rows]) * np.sign(step))
+        torques.append(history.torque_Nm[rows[1:]])
+    move, torque = np.concatenate(moves), np.concatenate(torques)
+    usual = float(np.median(np.abs(move))) if len(move) else 0.0
+    far = np.abs(move) > FAR * usual
+    if usual == 0 or far.sum() < FEWEST or (move[far] < 0).any():
+        return None
+    size, at = move[far], torque[far]
+    return Leaps(
+        len(size), (float(size.min()), float(size.max())), (float(at.min()), float(at.max())), usual
+    )
