@@ -120,10 +120,6 @@ class SweepFit:
                 slope[c][j] = (value - at_mean[c]) / step[j]
         return slope
 
-    def magnitude_stds(self, slopes: dict[str, np.ndarray]) -> dict[str, float]:
-        """Their standard deviations by the posterior, to first order."""
-        return {c: float(np.sqrt(s @ self.posterior.covariance @ s)) for c, s in slopes.items()}
-
     def added(self, owner: str) -> np.ndarray:
         """(n,) angle [arcsec] that all terms of an owner add, and what friction ahead of the teeth does."""
         history, ahead = self.rig.history, self.evidence.columns.ahead

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,13 +41,7 @@ def tuned(evidence: GaussianEvidence, chosen: Sequence[int]) -> Tuned:
     blocks = [evidence.x[:, t.at] for t in terms]
     first = value = _value(evidence, blocks)
     for _ in range(STEPS):
-        keys = [
-            (j, k)
-            for j, t in enumerate(terms)
-            if t.cause
-            for k in t.cause.tunable
-            if shapes[j].get(k, 0.0) > 0
-        ]
+        keys = tunable(terms, shapes)
         if not keys:
             break
         step = _step(evidence, terms, shapes, blocks, keys)
@@ -92,6 +86,19 @@ def _value(evidence: GaussianEvidence, blocks: list[np.ndarray]) -> float:
     return float(right @ np.linalg.solve(matrix, right) / 2 - np.linalg.slogdet(matrix)[1] / 2)
 
 
+def tunable(
+    terms: Sequence[Regressor], shapes: Sequence[Mapping[str, float]]
+) -> list[tuple[int, str]]:
+    """The shape parameters that are fitted: each as its term's place and its name."""
+    return [
+        (j, k)
+        for j, t in enumerate(terms)
+        if t.cause
+        for k in t.cause.tunable
+        if shapes[j].get(k, 0.0) > 0
+    ]
+
+
 def _step(
     evidence: GaussianEvidence, terms: list[Regressor], shapes: list[dict[str, float]],
     blocks: list[np.ndarray], keys: list[tuple[int, str]],
@@ -101,13 +108,24 @@ def _step(
     x = np.hstack([evidence.base, *blocks])
     prior = np.concatenate([evidence.columns.base_prior**-2, np.ones(x.shape[1] - b)])
     amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
+    whole, prior = with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
+    found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
+    return np.clip(found[-len(keys) :], -LONGEST, LONGEST)
+
+
+def with_shapes(
+    evidence: GaussianEvidence, terms: Sequence[Regressor], shapes: Sequence[Shape],
+    blocks: Sequence[np.ndarray], keys: Sequence[tuple[int, str]], amplitude: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Columns (r, p) of base, terms and the log of each parameter; inverse variances (p,) of their priors.
+
+    `blocks` : the terms' whitened columns, scaled to unit prior, and `amplitude` (k,) of them all.
+    """
     ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
     slopes = []
     for j, key in keys:
         nearby = {**shapes[j], key: shapes[j][key] * np.exp(DIFFERENCE)}
         change = (_block(evidence, terms[j], nearby) - blocks[j]) / DIFFERENCE
         slopes.append(change @ amplitude[ends[j] : ends[j + 1]])
-    whole = np.column_stack([x, *slopes])
-    prior = np.concatenate([prior, np.full(len(keys), STEP_STD**-2)])
-    found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
-    return np.clip(found[-len(keys) :], -LONGEST, LONGEST)
+    prior = [evidence.columns.base_prior**-2, np.ones(ends[-1]), np.full(len(keys), STEP_STD**-2)]
+    return np.column_stack([evidence.base, *blocks, *slopes]), np.concatenate(prior)

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import is_beyond_none
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leakage import leaked
+from flexspline.pipeline.diagnosis.sweep.shape_posterior import magnitude_stds
 
 CANCELLED_DOUBT = 0.003
 """Of what cancels between a cause's elements: two lags of opposite sign may stand for a delay. Of nine
@@ -20,8 +21,8 @@ made-up records with one, two deviations hold the truth in five without this, on
 class SizeDoubt:
     """Magnitudes of a fit's causes by id, and the standard deviation of each but for other sets of shapes.
 
-    It holds the posterior's, the doubt of the shape itself, what cancels between a cause's elements, and what
-    the misfit of other causes' shapes adds.
+    It holds the posterior's of amplitudes and shapes together, the doubt that a law has any of these shapes,
+    what cancels between a cause's elements, and what the misfit of other causes' shapes adds.
     """
 
     fit: SweepFit
@@ -32,7 +33,7 @@ class SizeDoubt:
     def of(cls, fit: SweepFit) -> SizeDoubt:
         """Of all causes of a fit."""
         magnitude, slopes = fit.magnitudes(), fit.magnitude_slopes()
-        own, of_others = fit.magnitude_stds(slopes), leaked(fit, slopes)
+        own, of_others = magnitude_stds(fit, slopes), leaked(fit, slopes)
         std = {
             c: hypot(
                 own[c],
