@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,9 @@ from hidden.gear import Gear, Rig, draw_gear, draw_rig
 from hidden.noise import Noise, draw_noise
 from hidden.program import Plan, draw_program
 from hidden.record import Unit, as_csv, measure
+
+AGAIN = 1
+"""Beside a case's seed: of the noise of its second measurement."""
 
 
 class Bench:
@@ -44,11 +48,21 @@ class Bench:
         return frozenset() if fixed else frozenset({"kinematic_error", "position_stiffness"})
 
     def case(self, kind: str, hidden: tuple[Hidden, ...], units: list[Unit], **more) -> Case:
+        """The case of what was measured; where a cause is hidden, measured again with other noise."""
+        writing = deepcopy(self.rng)  # the same header, clock and order of columns
         said = "; ".join([*(h.law for h in hidden), self.program.said, self.noise.said])
         order = sorted(range(len(hidden)), key=lambda k: -float(np.std(units[0].effects[k])))
         truth = tuple((hidden[k].cause, hidden[k].magnitude) for k in order)
+        csv = as_csv(units, self.rng)
+        again = ""
+        if kind in ("single", "pair", "triple"):
+            noise = np.random.default_rng([*more["seed"], AGAIN])
+            repeated = [
+                measure(self.rig, g, self.program, hidden, self.noise, noise) for g in self.gears
+            ]
+            again = as_csv(repeated, writing)
         return Case(
-            kind=kind, csv=as_csv(units, self.rng), design=self.rig.toml,
+            kind=kind, csv=csv, again=again, design=self.rig.toml,
             K_b=self.rig.K_b, K_e=self.rig.K_e,
             truth=() if kind == "foreign" else truth,
             said=f"{len(units)} units, {said}" if len(units) > 1 else said,

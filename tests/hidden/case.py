@@ -19,6 +19,7 @@ class Case:
     Attributes
     ----------
     csv, design : text of the two files. K_b, K_e : N·m/rad.
+    again : the csv that the same gears and programme give with other noise; "" where no cause is hidden.
     truth : (id, magnitude in the unit of docs/contract.md), largest effect first; empty where none is named.
     standing : noise units beyond calibration and mimicry, one per hidden effect.
     decidable : all of them are at least 6.
@@ -48,6 +49,7 @@ class Case:
     foreign: str = ""
     absorbed: float = 0.0
     unsized: frozenset[str] = frozenset()
+    again: str = field(default="", repr=False)
 
     @property
     def rows(self) -> int:

@@ -48,6 +48,7 @@ class Mark:
     seconds : per 3,000 rows where there are more.
     gain : share of the error above the noise removed; oracle : what the true form would remove.
     levels : the same of each amplitude, rate and temperature held out as a whole.
+    again : shares of the rows of a second measurement within one and two stated deviations.
     """
 
     kind: str
@@ -71,6 +72,7 @@ class Mark:
     fault: str = ""
     near: bool = False
     levels: tuple[LevelGain, ...] = ()
+    again: tuple[float, float] | None = None
 
 
 def mark(case: Case, diagnose: Diagnose) -> Mark:
@@ -109,7 +111,8 @@ def mark(case: Case, diagnose: Diagnose) -> Mark:
         for one in said.get("gain_at_levels", [])
         if (shares := _shares(case, one)) is not None
     )
-    return replace(marked, gain=gain, oracle=best, levels=levels)
+    again = None if (off := said.get("again")) is None else (np.mean(off <= 1), np.mean(off <= 2))
+    return replace(marked, gain=gain, oracle=best, levels=levels, again=again)
 
 
 def _right(case: Case, verdict: str, exact: bool, mentioned: set[str]) -> bool:
