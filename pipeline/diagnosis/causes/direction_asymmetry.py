@@ -28,7 +28,7 @@ class DirectionAsymmetry(Cause):
     unit = "%"
     tunable = ("exponent", "rounding_Nm")
     shape_doubt = 0.02
-    """Of 52 made-up records one and two deviations cover 75 and 96 %."""
+    """One and two deviations cover 75 and 96 % of 28 sizes."""
     reveals = "the same sweep with the gear turned round on the rig, to exclude the torque cell"
 
     def shapes(self, rig: Rig) -> list[Shape]:

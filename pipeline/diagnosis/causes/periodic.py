@@ -24,8 +24,8 @@ class PeriodicShapes:
 
     exact: ClassVar[bool] = True
     passes_none: ClassVar[bool] = False
-    shape_doubt: ClassVar[float] = 0.003
-    """Of 27 made-up records one and two deviations cover 81 and 100 %."""
+    shape_doubt: ClassVar[float] = 0.002
+    """One and two deviations cover 67 and 100 % of 12 sizes."""
     vary: ClassVar[str] = "input_angle_deg"
     shows_over: ClassVar[str] = "input_angle_deg"
 

@@ -20,7 +20,7 @@ class SeriesCompliance(Cause):
     unit = "%"
     exact = True
     shape_doubt = 0.0007
-    """Of 41 made-up records one and two deviations cover 83 and 95 %."""
+    """One and two deviations cover 59 and 90 % of 29 sizes."""
     vary = "input_angle_deg"
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 
