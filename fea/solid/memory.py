@@ -7,7 +7,7 @@ million unknowns, in docs/decisions.md.
 from __future__ import annotations
 
 import os
-from math import inf
+from math import inf, sqrt
 from pathlib import Path
 from typing import Literal
 
@@ -24,8 +24,10 @@ THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
 """The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 in cups of one
 layer, 75 to 80 in shafts), its factors are small, and its flat elements take many steps (a cup with a wall of
 1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which were not enough)."""
-PATIENCE = 150
-"""Steps of an iteration with up to THIN_BELOW unknowns: they take as long as factors of 150 000 and more."""
+STEPS_PER_ROOT = 0.16
+"""Steps of an iteration that take as long as factors, per √unknowns: 37 and 60 for 53 000 and 145 000 unknowns
+of two shafts, 45 for 216 000 of a thin cup (factors in single precision with their own steps 0.95, 4.3 and 4.3 s
+of the processor)."""
 ENTRY_BYTES = 38.0
 """Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
 FACTOR_BYTES = 72.0
@@ -87,11 +89,11 @@ def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
     raise MemoryShortError(unknowns, min(factors, steps), there)
 
 
-def steps_before_factors(unknowns: int, entries: int) -> int | None:
-    """Steps after which factors are the better way, None where they are not or do not fit."""
+def steps_of_factors(unknowns: int, entries: int) -> float:
+    """Steps of an iteration that cost as much as factors; inf where those do not fit, or are never used."""
     if unknowns > THIN_BELOW or direct_bytes(unknowns, entries) > available_bytes():
-        return None
-    return PATIENCE
+        return inf
+    return STEPS_PER_ROOT * sqrt(unknowns)
 
 
 def available_bytes() -> float:
