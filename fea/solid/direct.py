@@ -1,7 +1,7 @@
 """Sparse factorisation of symmetric positive definite matrices: Pardiso, or SuperLU where MKL is not.
 
-A large system's factors are in single precision, half the memory and half the time, and precondition conjugate
-gradients in double.
+A large system's factors are in single precision, half the memory and half the time, and precondition
+conjugate gradients in double.
 """
 
 from __future__ import annotations

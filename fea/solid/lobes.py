@@ -19,6 +19,7 @@ from flexspline.fea.axisymmetric.torsion import bulk
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
+from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cases import lobes
 from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.model import Model
@@ -131,8 +132,9 @@ class _SolidLobes:
     estimate: ScaledEstimate
 
     def solve(self, mesh: TetMesh) -> None:
-        solved = lobes(Model.of(mesh, self.material), self.supported)
-        error = energy_error(mesh, solved.displacement, self.material)
+        with alone(mesh.elements):
+            solved = lobes(Model.of(mesh, self.material), self.supported)
+            error = energy_error(mesh, solved.displacement, self.material)
         self.estimate.add(level_of(solved), error.relative)
         self.progress(
             f"{mesh.elements} elements, {self.symmetry} of the part, K ± {self.estimate.relative:.2%}"

@@ -82,7 +82,9 @@ def solve(
         except IterationError:
             if worth == inf:
                 raise
-            how = "direct"  # from here on the error no longer holds what the iteration had in memory
+            how = (
+                "direct"  # from here on the error no longer holds what the iteration had in memory
+            )
     if how == "direct":
         u[free] = direct(inner, right)
     off = inner @ u[free] - right
