@@ -10,7 +10,7 @@ import ctypes
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -108,7 +108,7 @@ def _upper(matrix: csr_matrix, to: type) -> tuple[np.ndarray, np.ndarray, np.nda
 def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
     """K⁻¹ as a function of the right-hand side (N,), for as long as the context lasts.
 
-    `single`: in single precision, where MKL is.
+    `single`: in single precision, where MKL is and that finds K positive definite.
 
     Raises
     ------
@@ -117,7 +117,12 @@ def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
     if pardiso() is None:
         yield _superlu(matrix)
         return
-    factors = _Factors(matrix, single)
+    try:
+        factors = _Factors(matrix, single)
+    except SolveError:
+        if not single:
+            raise
+        factors = _Factors(matrix, single=False)
     try:
         yield factors.solve
     finally:
@@ -135,17 +140,14 @@ def direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     SolveError : as `factorised`.
     """
     if pardiso() is not None and matrix.shape[0] >= SINGLE_FROM and right.any():
-        try:
+        with suppress(SolveError):
             return _by_single(matrix, right)
-        except SolveError:
-            pass
     with factorised(matrix) as back:
         return back(right)
 
 
 def _by_single(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     """As `direct`; raises IterationError where FACTORED_STEPS are not enough."""
-
     x = np.zeros_like(right)
     with factorised(matrix, single=True) as back:
         for _ in range(FACTORED_ROUNDS):

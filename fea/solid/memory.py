@@ -17,8 +17,8 @@ from flexspline.fea.solid.errors import MemoryShortError
 SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 180_000, False: 50_000}
 """Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors in
-double and of iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3 and
-6.1, 193 000 11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5,
+double and of iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3
+and 6.1, 193 000 11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5,
 166 000 3.4 and 58. Factors in single precision take 0.6 of that: 3.5 for 152 000 of a thick hat, and 22 to 34
 steps of an iteration 3.7 to 5.0 for 196 000 to 255 000 of others."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
