@@ -30,8 +30,9 @@ from flexspline.fea.types import Elastic, Stiffness, TetMesh
 
 STEP = 0.37
 """Of √(t/R), about the axis, for 0.5 %: 3.0° on a wall of a fiftieth of the radius. The error of quadratic
-elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six first
-meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 13 and 15 s of the processor."""
+elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six
+first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 15 and 11 s of the
+processor."""
 MERIDIAN_SHARE = 0.25
 """Of the tolerance: what the harmonics' estimate of the meridian's error may be. The usual scale of 2 makes
 half of the tolerance of it; the steps take about half as much."""
