@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.errors import MeshQualityError, NoBetterMeshError, SolidError
+from flexspline.fea.solid.errors import MeshQualityError, SolidError
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
@@ -47,10 +47,6 @@ ENCLOSED_SECONDS, ENCLOSED_COARSER = 10.0, 4.0
 """Of fTetWild, where bodies of revolution give K within the tolerance and the mesh gives the fields only;
 and how many times as long the edges are after that. A tall cup with one large hole took 284 s and 106 000
 elements, another 100 s and 35 000 with the longer edges: where K alone is asked for, there are none."""
-
-TETWILD_FIRST, TETWILD_AT_ONCE = 0.015, 0.005
-"""Relative bounds ± of K, at the best, of a first mesh by fTetWild that does not meet the tolerance, and the
-the best; MEASURED"""
 
 
 class OtherKindError(FlexsplineError):
@@ -114,12 +110,8 @@ def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = enclosure_if_any(model, _revolved_stiffness)
     if enclosure is not None and may_answer(model):
         tolerance = tolerance_of(model)
-        if model.mesher == "auto" and _by_fTetWild(model):
-            if enclosure.half_width <= tolerance:
-                return enclosure
-            if enclosure.half_width <= TETWILD_FIRST and tolerance < TETWILD_AT_ONCE:
-                why = NoBetterMeshError(TETWILD_FIRST, enclosure.half_width)
-                return replace(enclosure, shortfall=f"{enclosure.shortfall}, and {why}")
+        if enclosure.half_width <= tolerance and model.mesher == "auto" and _by_fTetWild(model):
+            return enclosure
         return answered_within(enclosure, lambda: twisted_part(model).stiffness, tolerance)
     solid = twisted_part(model).stiffness
     if enclosure is not None:
