@@ -13,6 +13,11 @@ from flexspline.pipeline.parts import PartModel
 SHARE = 0.3
 """Of the tolerance: what the bounds of each body may take of it. The rest is left to what the holes take off
 K, ± 0.06 % on xb1-40, and both bodies still take 0.2 to 0.6 s a load case."""
+FIRST, FAR = 0.1, 3.0
+"""Distance of each body's own bounds at first [% of K], where SHARE asks for less; and the enclosure's
+half-width over the tolerance beyond which it stays so: most of it is what the holes take off. Lobes, lift-off
+and free rim of a hat with sixteen holes, 0.1 % asked: ± 0.30, 0.75 and 1.46 % in 7.0 s of the processor,
+± 0.32, 0.78 and 1.48 % in 4.9."""
 TOO_FAR = "the part without holes and the part with the ring of its holes cut out differ by more"
 
 Solve = Callable[[PartModel], Stiffness]
@@ -36,21 +41,30 @@ def tolerance_of(model: PartModel) -> float:
 def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
-    Where half of it is more than the tolerance, `shortfall` says why.
+    Where half of it is more than the tolerance, `shortfall` says why; where it is FAR more, the bodies are
+    solved no finer than to FIRST.
 
     Raises
     ------
     NestingError
     ComputationError : of `solve`.
     """
-    design = model.context.design
-    finer = {"tolerance_pct": SHARE * design.solver.tolerance_pct, "model": "auto"}
-    solver = design.solver.model_copy(update=finer)
-    context = replace(model.context, design=design.model_copy(update={"solver": solver}))
-    found = enclosed(model.part, lambda body: solve(replace(model, context=context, part=body)))
+    finest_pct = SHARE * model.context.design.solver.tolerance_pct
+    found = _enclosed_to(model, solve, max(FIRST, finest_pct))
+    if finest_pct < FIRST and found.half_width <= FAR * tolerance_of(model):
+        found = _enclosed_to(model, solve, finest_pct)
     if found.half_width <= tolerance_of(model):
         return replace(found, shortfall="")
     return replace(found, shortfall=found.shortfall or TOO_FAR)
+
+
+def _enclosed_to(model: PartModel, solve: Solve, tolerance_pct: float) -> Stiffness:
+    """`enclosed`, with each body solved to its own tolerance."""
+    design = model.context.design
+    asked = {"tolerance_pct": tolerance_pct, "model": "auto"}
+    solver = design.solver.model_copy(update=asked)
+    context = replace(model.context, design=design.model_copy(update={"solver": solver}))
+    return enclosed(model.part, lambda body: solve(replace(model, context=context, part=body)))
 
 
 def enclosure_if_any(model: PartModel, solve: Solve) -> Stiffness | None:

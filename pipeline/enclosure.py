@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from flexspline.fea.solid.errors import NoBetterMeshError
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
@@ -131,7 +132,8 @@ def answered_within(
         solid = solve()
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
-        why = f"{enclosure.shortfall}, and the solid model failed: {fault}"
+        failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "
+        why = f"{enclosure.shortfall}, and {failed}{fault}"
         return replace(enclosure, shortfall="" if met else why)
     return held_within(solid, enclosure, tolerance)
 

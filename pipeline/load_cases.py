@@ -40,13 +40,14 @@ RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
 class LoadCase:
     """How one load case of the rim is solved, and what it is called while it is.
 
-    `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part.
+    `solid` is None where no solid model is: bodies of revolution answer, or two that enclose the part. It
+    takes the part and, as `known`, the relative half-width of the bounds that these give.
     `fast` is for studies and the live page: of a part, to a relative tolerance, nothing written to the cache.
     """
 
     title: str
     revolved: Callable[[PartModel], Stiffness]
-    solid: Callable[[PartModel], Stiffness] | None
+    solid: Callable[..., Stiffness] | None
     fast: Callable[[Part, float], Stiffness]
 
 
@@ -111,7 +112,8 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     tolerance = tolerance_of(flexspline)
     if enclosure.half_width <= tolerance:
         return enclosure
-    return answered_within(enclosure, partial(asked.solid, flexspline), tolerance)
+    solve = partial(asked.solid, flexspline, known=enclosure.half_width)
+    return answered_within(enclosure, solve, tolerance)
 
 
 def _of_case(

@@ -7,6 +7,7 @@ from math import dist, hypot, radians
 from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
+from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cases import ellipse
 from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.model import Model
@@ -122,13 +123,14 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
     with progress.stage("wave generator"):
         whole = unfolded(meshed.mesh, sector.degrees)
         progress.note(f"  {len(whole.cells)} elements, {sector.label} of the part")
-        return stress_field(
-            whole,
-            ellipse(Model.of(whole, flexspline.material), w0).displacement,
-            flexspline.material,
-            f"wave generator, w0 = {w0:g} mm",
-            sharp_edges(flexspline, meshed),
-        )
+        with alone(whole.elements):
+            return stress_field(
+                whole,
+                ellipse(Model.of(whole, flexspline.material), w0).displacement,
+                flexspline.material,
+                f"wave generator, w0 = {w0:g} mm",
+                sharp_edges(flexspline, meshed),
+            )
 
 
 def sharp_edges(model: PartModel, meshed: MeshedPart) -> SharpEdges:

@@ -51,14 +51,16 @@ class Condensed:
         A pair of forces F at φ_j and φ_j + π is (F/π)(1 + 2 Σ cos n(φ − φ_j)) N/rad; the last harmonic counts
         once, as in a discrete Fourier series.
         """
-        turned = self.tangential[port]
-        total = np.zeros((len(port), len(port)))
-        for i, part in enumerate(self.harmonics):
-            n = 2 * i
-            times = (1 if n in (0, self.last) else 2) / pi
-            phase = np.exp(-1j * n * angle) * np.where(turned, 1j, 1)
-            around = phase.real[:, None] * phase.real + phase.imag[:, None] * phase.imag
-            total += times * part[np.ix_(port, port)] * around
+        n = np.arange(0, self.last + 1, 2)
+        times = np.where((n == 0) | (n == self.last), 1, 2) / pi
+        phase = np.exp(-1j * n[:, None] * angle) * np.where(self.tangential[port], 1j, 1)
+        around = np.stack([phase.real, phase.imag], axis=1)  # (h, 2, k)
+        points = [np.flatnonzero(port == p) for p in range(len(self.tangential))]
+        of_port = [around[:, :, here].reshape(2 * len(n), -1) for here in points]
+        weights = np.repeat(times[:, None, None] * self.harmonics, 2, axis=0)
+        total = np.empty((len(port), len(port)))
+        for p, q in np.ndindex(weights.shape[1:]):
+            total[np.ix_(points[p], points[q])] = (of_port[p].T * weights[:, p, q]) @ of_port[q]
         return total
 
 

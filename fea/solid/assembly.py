@@ -68,8 +68,10 @@ def stiffness_matrix(space: SolidSpace, material: Elastic, frames: NodeFrames) -
         blocks[i, j] = material.lam * d[i, j] + material.mu * d[j, i]
     for i in range(3):
         blocks[i, i] += trace
+    del d, trace  # each of these is as large as the matrix
     _turn(blocks, frames, row, column)
     data = np.ascontiguousarray(blocks.transpose(2, 0, 1))
+    del blocks
     starts = np.searchsorted(row, np.arange(n + 1))
     return bsr_matrix((data, column, starts), shape=(3 * n, 3 * n)).tocsr()
 

@@ -46,6 +46,16 @@ class TooManyElementsError(SolidError):
         )
 
 
+class NoBetterMeshError(SolidError):
+    """No mesh that can be had is expected to tell K better than ± `known`, which is there already."""
+
+    def __init__(self, expected: float, known: float) -> None:
+        self.expected, self.known = expected, known
+        super().__init__(
+            f"of solid meshes bounds of ± {expected:.2g} or wider were expected, and ± {known:.2g} is known"
+        )
+
+
 class IterationError(SolveError):
     """The iteration stopped short: `steps` taken, the error's energy `left`, the one `wanted` [N·mm]."""
 

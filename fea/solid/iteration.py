@@ -4,21 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf, log
 
 import numpy as np
 
 from flexspline.fea.solid.errors import SolveError
 
 Operator = Callable[[np.ndarray], np.ndarray]
+RATE_STEPS, RATE_AGAIN = 40, 10
+"""Steps after which the rate of convergence is looked at first, and again: 22 to 49 are a usual iteration,
+and what the error's rough parts take off the residual is gone by then."""
 
 
 @dataclass(frozen=True)
 class Iterated:
-    """x (N,), steps taken, and the range of M K's eigenvalues as seen."""
+    """x (N,), steps taken, the range of M K's eigenvalues as seen, and whether more steps are needed."""
 
     x: np.ndarray
     steps: int
     spectrum: tuple[float, float]
+    early: bool
 
 
 def conjugate_gradients(
@@ -27,10 +32,13 @@ def conjugate_gradients(
     right: np.ndarray,
     most: int,
     allowed: Callable[[np.ndarray], float] = lambda x: 0.0,
+    worth: float = inf,
 ) -> Iterated:
     """At most `most` steps for K x = f from x = 0, until the error's energy is below `allowed` at that x.
 
-    That energy, (x − x*)·K(x − x*), is at most r·M r over the smallest eigenvalue of M K, which the steps see
+    It ends early where, by the rate of its later half, more than `worth` further steps would be needed.
+
+    The energy, (x − x*)·K(x − x*), is at most r·M r over the smallest eigenvalue of M K, which the steps see
     from above: the caller checks the answer, and how many steps it took.
 
     The steps' lengths are the coefficients of Lanczos' tridiagonal matrix of M K, whose eigenvalues lie
@@ -45,7 +53,9 @@ def conjugate_gradients(
     p, rz = z.copy(), float(r @ z)
     lengths: list[float] = []
     turns: list[float] = []
-    while len(lengths) < most and not _within(allowed(x), rz, lengths, turns):
+    seen = [rz]
+    met = False
+    while not met and len(lengths) < most:
         q = apply(p)
         stiffness = float(p @ q)
         if not (stiffness > 0 and rz > 0):
@@ -61,12 +71,29 @@ def conjugate_gradients(
         turns.append(rz / before)
         p *= turns[-1]
         p += z
-    return Iterated(x, len(lengths), _spectrum(lengths, turns))
+        seen.append(rz)
+        limit = allowed(x)
+        met = _within(limit, rz, lengths, turns)
+        if not met and _steps_left(limit, seen, lengths, turns) > worth:
+            break
+    return Iterated(x, len(lengths), _spectrum(lengths, turns), not met)
 
 
 def _within(allowed: float, rz: float, lengths: list[float], turns: list[float]) -> bool:
     """Whether the error's energy is; eigenvalues, which M keeps below 1, are looked at when it may be."""
-    return bool(lengths) and rz <= allowed and rz <= allowed * _spectrum(lengths, turns)[0]
+    return rz <= allowed and rz <= allowed * _spectrum(lengths, turns)[0]
+
+
+def _steps_left(
+    allowed: float, seen: list[float], lengths: list[float], turns: list[float]
+) -> float:
+    """By the rate at which r·M r, as `seen`, fell in the later half of the steps; 0 while too early."""
+    steps = len(lengths)
+    if steps < RATE_STEPS or steps % RATE_AGAIN or not allowed > 0:
+        return 0.0
+    rate = log(seen[steps // 2] / seen[-1]) / (steps - steps // 2)
+    left = log(seen[-1] / (allowed * min(1.0, _spectrum(lengths, turns)[0])))
+    return left / rate if rate > 0 else inf
 
 
 def _spectrum(lengths: list[float], turns: list[float]) -> tuple[float, float]:

@@ -7,7 +7,7 @@ million unknowns, in docs/decisions.md.
 from __future__ import annotations
 
 import os
-from math import inf
+from math import inf, sqrt
 from pathlib import Path
 from typing import Literal
 
@@ -16,20 +16,24 @@ from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]
 DIRECT_BELOW = {True: 180_000, False: 50_000}
-"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors and of
-iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3 and 6.1, 193 000
-11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5, 166 000 3.4 and
-58. Factors of 190 000 on another part took 16 s and 1.8 GB, iteration 6 s and 0.35 GB."""
+"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors in
+double and of iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3
+and 6.1, 193 000 11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5,
+166 000 3.4 and 58. Factors in single precision take 0.6 of that: 3.5 for 152 000 of a thick hat, and 22 to 34
+steps of an iteration 3.7 to 5.0 for 196 000 to 255 000 of others."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
 """The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 in cups of one
 layer, 75 to 80 in shafts), its factors are small, and its flat elements take many steps (a cup with a wall of
 1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which were not enough)."""
-PATIENCE = 150
-"""Steps of an iteration with up to THIN_BELOW unknowns: they take as long as factors of 150 000 and more."""
+STEPS_PER_ROOT = 0.16
+"""Steps of an iteration that take as long as factors, per √unknowns: 37 and 60 for 53 000 and 145 000
+unknowns of two shafts, 45 for 216 000 of a thin cup (factors in single precision with their own steps 0.95,
+4.3 and 4.3 s of the processor)."""
 ENTRY_BYTES = 38.0
 """Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
 FACTOR_BYTES = 72.0
-"""Per unknowns^(4/3): the factors, 26 000 to 600 000 unknowns within 15 %."""
+"""Per unknowns^(4/3): the factors in double, 26 000 to 600 000 unknowns within 15 %; half in single
+precision, where double may have to follow."""
 LU_FACTORS = 2.0
 """SuperLU keeps both triangles."""
 ITERATION_ENTRY_BYTES = 24.0
@@ -87,11 +91,11 @@ def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
     raise MemoryShortError(unknowns, min(factors, steps), there)
 
 
-def steps_before_factors(unknowns: int, entries: int) -> int | None:
-    """Steps after which factors are the better way, None where they are not or do not fit."""
+def steps_of_factors(unknowns: int, entries: int) -> float:
+    """Steps of an iteration that cost as much as factors; inf where those do not fit, or are never used."""
     if unknowns > THIN_BELOW or direct_bytes(unknowns, entries) > available_bytes():
-        return None
-    return PATIENCE
+        return inf
+    return STEPS_PER_ROOT * sqrt(unknowns)
 
 
 def available_bytes() -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -11,7 +12,7 @@ from skfem import condense
 
 from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import IterationError, SolveError
-from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_before_factors
+from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_of_factors
 from flexspline.fea.solid.twolevel import iterate
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
@@ -75,14 +76,16 @@ def solve(
             # u·Ku of x and the lift, by K x = f on the free unknowns
             return iteration_energy * abs(of_lift + 2 * float(x @ load[free]) - float(x @ right))
 
-        patience = None if by else steps_before_factors(len(free), inner.nnz)
+        worth = inf if by else steps_of_factors(len(free), inner.nnz)
         try:
-            u[free], error_energy = iterate(inner, right, free, corners(), allowed, patience)
+            u[free], error_energy = iterate(inner, right, free, corners(), allowed, worth)
         except IterationError:
-            if patience is None:
+            if worth == inf:
                 raise
-            how, u[free] = "direct", direct(inner, right)
-    else:
+            how = (
+                "direct"  # from here on the error no longer holds what the iteration had in memory
+            )
+    if how == "direct":
         u[free] = direct(inner, right)
     off = inner @ u[free] - right
     residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)

@@ -19,6 +19,7 @@ import numpy as np
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
+from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cases import Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
@@ -105,8 +106,9 @@ class _SolidTorsion:
         self.meshes: list[TetMesh] = []
 
     def solve(self, mesh: TetMesh) -> None:
-        solved = torsion(Model.of(mesh, self._material), self._driven)
-        error = energy_error(mesh, solved.displacement, self._material)
+        with alone(mesh.elements):
+            solved = torsion(Model.of(mesh, self._material), self._driven)
+            error = energy_error(mesh, solved.displacement, self._material)
         self.solved, self._errors = solved, error.error
         self.meshes.append(mesh)
         self.estimate.add(level_of(solved), error.relative)

@@ -9,6 +9,7 @@ Phys. 188, 2003). Measured steps and memory: docs/decisions.md.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, dia_matrix, diags
@@ -51,7 +52,7 @@ def iterate(
     free: np.ndarray,
     corners: csr_matrix,
     allowed: Callable[[np.ndarray], float],
-    most_steps: int | None = None,
+    worth: float = inf,
 ) -> tuple[np.ndarray, float]:
     """Solve K u = f on the free unknowns.
 
@@ -61,6 +62,7 @@ def iterate(
     free : (N,) their numbers, 3·node + component, rising.
     corners : `corner_interpolation` of the whole mesh.
     allowed : of u (N,), what (u − u*)·K(u − u*) may be [N·mm].
+    worth : further steps that are worth while; where its rate tells of more, the iteration ends.
 
     Returns
     -------
@@ -68,7 +70,7 @@ def iterate(
 
     Raises
     ------
-    IterationError : it is more than `allowed` after `most_steps`, MOST_STEPS when absent.
+    IterationError : it is more than `allowed` after MOST_STEPS, or where it ended early.
     SolveError : K is not positive definite, or there is no memory for the corners' factors.
     """
     if not right.any():
@@ -85,20 +87,21 @@ def iterate(
     )
     p, up = p.astype(np.float32), up.astype(np.float32)
     smooth = _Smoother(single, free // 3)
-    with factorised(coarse) as exact:
+    with factorised(coarse, single=True) as exact:
 
         def precondition(residual: np.ndarray) -> np.ndarray:
             r = residual.astype(np.float32)
             x = smooth(r)
-            x += p @ exact((up @ (r - single @ x)).astype(np.float64)).astype(np.float32)
+            x += p @ exact(up @ (r - single @ x)).astype(np.float32)
             return (x + smooth(r - single @ x)).astype(np.float64)
 
-        most_steps = most_steps or MOST_STEPS
-        found = conjugate_gradients(matrix.__matmul__, precondition, right, most_steps, allowed)
+        found = conjugate_gradients(
+            matrix.__matmul__, precondition, right, MOST_STEPS, allowed, worth
+        )
         # the recurrence drifts from the true residual by rounding: the energy is of the true one
         r = right - matrix @ found.x
         left, most = float(r @ precondition(r)) / found.spectrum[0], allowed(found.x)
-        if found.steps == most_steps and left > most:
+        if found.early and left > most:
             raise IterationError(found.steps, left, most)
         return found.x, left
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexspline.fea.solid import memory, twolevel
+from flexspline.fea.solid import iteration, memory, twolevel
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.cases import Solved, ellipse, lobes, torsion
 from flexspline.fea.solid.defaults import first_spec
@@ -170,10 +170,25 @@ def test_factors_take_over_from_an_iteration_that_is_slow(
 ) -> None:
     monkeypatch.setattr(memory, "DIRECT_BELOW", {True: 0, False: 0})
     monkeypatch.setattr(memory, "THIN_ENTRIES", 0.0)
-    monkeypatch.setattr(memory, "PATIENCE", 3)
+    monkeypatch.setattr(iteration, "RATE_STEPS", 10)
+    steps = []
+
+    def spy(*given):
+        steps.append(conjugate_gradients(*given).steps)
+        return conjugate_gradients(*given)
+
+    monkeypatch.setattr(twolevel, "conjugate_gradients", spy)
+    monkeypatch.setattr(memory, "STEPS_PER_ROOT", 1.0)
+    assert torsion(quarter, "mesh").solver == "iterative"  # √unknowns are some 280 steps
+    whole = steps[-1]
+    monkeypatch.setattr(memory, "STEPS_PER_ROOT", 0.01)
     found = torsion(quarter, "mesh")
     assert found.solver == "direct"
-    assert found.K_energy == torsion(replace(quarter, solve_by="direct"), "mesh").K_energy
+    # at the first look, for it promises more than three steps
+    assert steps[-1] == 10 < whole - 3
+    # as far as threads that add in another order agree
+    by_factors = torsion(replace(quarter, solve_by="direct"), "mesh")
+    assert found.K_energy == pytest.approx(by_factors.K_energy, rel=1e-12)
 
 
 def test_memory_of_a_container_counts_idle_file_pages_as_free(tmp_path: Path) -> None:

@@ -7,14 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, part_stiffness
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.enclosed_part import TOO_FAR
-from flexspline.pipeline.enclosure import NestingError
+from flexspline.pipeline.enclosed_part import FIRST, SHARE, TOO_FAR, enclosure_of
+from flexspline.pipeline.enclosure import NestingError, enclosed
 from flexspline.pipeline.load_cases import RIM_CASES, rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -139,3 +141,26 @@ def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypat
     monkeypatch.setattr(part_stiffness, "solid_stiffness", off)
     with pytest.raises(NestingError, match="the solid model"):
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
+
+
+@pytest.mark.parametrize(("design", "times"), [(WIDE, 1), (CUP, 2)])
+def test_bodies_that_are_far_apart_are_not_solved_finely(
+    design: Design, times: int, tmp_path: Path
+) -> None:
+    """At 0.1 %: what the holes take off K stays, however well each body is known."""
+    asked: list[float] = []
+
+    def solve(body: PartModel) -> Stiffness:
+        asked.append(body.context.design.solver.tolerance_pct)
+        return part_stiffness._revolved_stiffness(body)
+
+    part = model(design.changed({"solver.tolerance_pct": 0.1}), tmp_path)
+    found = enclosure_of(part, solve)
+    bodies = 2
+    assert asked == [*[FIRST] * bodies, *[pytest.approx(SHARE * 0.1)] * bodies][: times * bodies]
+    fine = enclosed(part.part, lambda body: torsional_stiffness(
+        body.meridian, part.material, body.driven, 1e-5))  # fmt: skip
+    # each end is off by its body's own bounds at most
+    assert found.half_width < fine.half_width + FIRST / 100
+    assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + 1e-5)
+    assert (found.shortfall == TOO_FAR) is (times == 1)
