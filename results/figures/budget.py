@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
@@ -134,7 +134,7 @@ def _waterfall(axes: Axes, rows: Sequence[Row], backlash: Backlash) -> None:
     _figures(axes, rows)
     axes.grid(axis="x")
     # matplotlib before 3.11 writes the power of ten of such an axis at the right end, as high as the label
-    side = "left" if high >= POWER_OF_TEN else "center"
+    side: Literal["left", "center"] = "left" if high >= POWER_OF_TEN else "center"
     axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}", loc=side)
 
 
