@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from math import pi
 
-from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from flexspline.fea.types import Elastic
@@ -34,6 +33,7 @@ def point_contact(
 
 def _ellipticity(apart: float) -> float:
     """a/b of the contact ellipse from the difference of curvatures over their sum."""
+    from scipy.optimize import brentq  # a tenth of what `flexspline.pipeline.analysis` imports
 
     def excess(k: float) -> float:
         m = 1 - k**-2

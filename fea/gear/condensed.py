@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 from math import pi
 
 import numpy as np
@@ -51,16 +52,19 @@ class Condensed:
         A pair of forces F at φ_j and φ_j + π is (F/π)(1 + 2 Σ cos n(φ − φ_j)) N/rad; the last harmonic counts
         once, as in a discrete Fourier series.
         """
-        n = np.arange(0, self.last + 1, 2)
+        n = 2.0 * np.arange(len(self.harmonics))
         times = np.where((n == 0) | (n == self.last), 1, 2) / pi
         phase = np.exp(-1j * n[:, None] * angle) * np.where(self.tangential[port], 1j, 1)
-        around = np.stack([phase.real, phase.imag], axis=1)  # (h, 2, k)
-        points = [np.flatnonzero(port == p) for p in range(len(self.tangential))]
-        of_port = [around[:, :, here].reshape(2 * len(n), -1) for here in points]
-        weights = np.repeat(times[:, None, None] * self.harmonics, 2, axis=0)
-        total = np.empty((len(port), len(port)))
-        for p, q in np.ndindex(weights.shape[1:]):
-            total[np.ix_(points[p], points[q])] = (of_port[p].T * weights[:, p, q]) @ of_port[q]
+        waves = np.concatenate([phase.real, phase.imag])
+        total = np.zeros((len(port), len(port)))
+        at = {int(one): np.flatnonzero(port == one) for one in np.unique(port)}
+        # a product of matrices for each pair of ports: a tenth of the time of a sum over harmonics
+        for (i, rows), (j, columns) in combinations_with_replacement(at.items(), 2):
+            weighted = np.tile(times * self.harmonics[:, i, j], 2)[:, None] * waves[:, columns]
+            block = waves[:, rows].T @ weighted
+            total[np.ix_(rows, columns)] = block if i != j else (block + block.T) / 2
+            if i != j:
+                total[np.ix_(columns, rows)] = block.T
         return total
 
 

@@ -156,11 +156,11 @@ class GearModel:
 
     def _of_rim(self) -> np.ndarray:
         flanks, moved = self.flanks.stop, self.rim_compliance
-        gap = np.zeros((self.balls.stop, len(moved)))  # per displacement
-        gap[:flanks, :flanks] = self.gap_per_pitch_point
-        j = np.arange(flanks, len(moved))
-        gap[j, j] = 1
-        return gap @ moved @ gap.T
+        half = np.concatenate([self._at_flanks(moved[:flanks]), moved[flanks:]]).T
+        found = np.zeros((self.balls.stop, self.balls.stop))
+        seat = len(moved)
+        found[:seat, :seat] = np.concatenate([self._at_flanks(half[:flanks]), half[flanks:]])
+        return found
 
     def _of_teeth(self) -> np.ndarray:
         k, flanks = self.balls.stop, self.flanks.stop
@@ -169,9 +169,15 @@ class GearModel:
         face = np.tile(self.rim.face, 2 * len(self.tooth_angles))
         found[i, i] = self.pair / self.teeth_per_station / face
         if self.spline:
-            gap = self.gap_per_pitch_point
-            found[:flanks, :flanks] += gap @ self.spline.compliance(*self.pitch_points) @ gap.T
+            half = self._at_flanks(self.spline.compliance(*self.pitch_points)).T
+            found[:flanks, :flanks] += self._at_flanks(half)
         return found
+
+    def _at_flanks(self, moved: np.ndarray) -> np.ndarray:
+        """`gap_per_pitch_point` @ moved; by rows, as all but two in each of its rows are 0."""
+        s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)
+        radial, tangential = np.split(moved, 2)
+        return np.concatenate([-s * radial - c * tangential, c * tangential - s * radial])
 
     @cached_property
     def pitch_points(self) -> tuple[np.ndarray, np.ndarray]:

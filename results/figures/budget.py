@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
@@ -27,6 +27,8 @@ LETTERS = 20
 """Of a row's name on one line."""
 VALUES, SHARES = 1.31, 1.36
 """Where the figures' column ends and the shares' begins, in widths of the waterfall."""
+POWER_OF_TEN = 1e6
+"""arcsec: from there on matplotlib writes multiples of a power (`axes.formatter.limits`)."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,9 @@ def _waterfall(axes: Axes, rows: Sequence[Row], backlash: Backlash) -> None:
     axes.locator_params(axis="x", nbins=4)
     _figures(axes, rows)
     axes.grid(axis="x")
-    axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}")
+    # matplotlib before 3.11 writes the power of ten of such an axis at the right end, as high as the label
+    side: Literal["left", "center"] = "left" if high >= POWER_OF_TEN else "center"
+    axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}", loc=side)
 
 
 def _figures(axes: Axes, rows: Sequence[Row]) -> None:

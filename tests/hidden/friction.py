@@ -74,7 +74,7 @@ def maxwell_slip(rng: np.random.Generator) -> tuple[Respond, str]:
 def preisach(rng: np.random.Generator) -> tuple[Respond, str]:
     """Relays with thresholds spread about the diagonal; the balance is their mean less their state."""
     shape, wide, spread = rng.uniform(1.5, 4), rng.uniform(0.04, 0.16), rng.uniform(0.25, 0.5)
-    place = qmc.Sobol(2, rng=rng).random(2048)  # even: a random draw would make ripples of its own
+    place = qmc.Sobol(2, seed=rng).random(2048)  # even: a random draw would make ripples of its own
     half = stats.gamma(shape, scale=wide / shape).ppf(place[:, 0])
     centre = stats.norm(0, spread).ppf(place[:, 1])
     inside = (centre + half < 0.98) & (centre - half > -0.98)

@@ -28,10 +28,16 @@ def model(design: Design, folder: Path) -> PartModel:
     return AnalysisContext(design, Cache(folder, CACHED_TYPES), Progress()).part("flexspline")
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of the solves of all these tests, each made once; which of them answers is kept nowhere."""
+    return tmp_path_factory.mktemp("solves")
+
+
 @pytest.fixture
-def part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PartModel:
+def part(folder: Path, monkeypatch: pytest.MonkeyPatch) -> PartModel:
     """The example cup; its solid model says SOLID_MPa."""
-    cup = model(CUP, tmp_path)
+    cup = model(CUP, folder)
     whole = under_test.ellipse_peak(replace(cup, part=cup.part.without_holes()))
     asked: dict[str, Any] = {"mesh": None, "load_case": "", "displacement": None, "mises": None}
     field = SolidField(**asked, peak=replace(whole, mises_MPa=SOLID_MPa))
@@ -56,8 +62,8 @@ def test_stress_at_the_holes_leaves_it_to_the_solid_model(part, monkeypatch) -> 
     assert under_test.ellipse_peak(part).mises_MPa == SOLID_MPa
 
 
-def test_the_solid_model_by_name_answers_itself(part: PartModel, tmp_path: Path) -> None:
-    by_name = model(CUP.changed({"solver.model": "solid"}), tmp_path)
+def test_the_solid_model_by_name_answers_itself(part: PartModel, folder: Path) -> None:
+    by_name = model(CUP.changed({"solver.model": "solid"}), folder)
     assert under_test.ellipse_peak(by_name).mises_MPa == SOLID_MPa
 
 

@@ -1,4 +1,4 @@
-"""A design where a study is asked, and the other way round: the line says which file it is."""
+"""A file of another kind than the command asks for: the line says which file it is."""
 
 from __future__ import annotations
 
@@ -26,3 +26,16 @@ def test_a_design_is_no_study(tmp_path: Path) -> None:
     assert done.exit_code == 2
     assert 'a study names its design file in design = "FILE"' in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_design_is_no_record(tmp_path: Path) -> None:
+    narrow = tmp_path / "narrow.toml"  # one cell in each line: a column, as a CSV file
+    narrow.write_text("[flexspline]\nlength_mm = 30.0\n", encoding="utf-8")
+    for given, what in ((CUP, "a design file"), (narrow, "a design file"), (STUDY, "a TOML file")):
+        out = tmp_path / "out"
+        words = ["diagnose", str(CUP), str(given), "--Kb", "31329", "--Ke", "43339"]
+        done = CliRunner().invoke(app, [*words, "--out", str(out)])
+        assert done.exit_code == 2
+        expected = f"{given}: is {what}; a measured record (CSV or .xlsx) is expected"
+        assert done.stderr == f"flexspline: {expected}\n"
+        assert not out.exists()

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.geometry.errors import DesignFileError
+from flexspline.geometry.load import read_toml
 from flexspline.geometry.ranges import SMALLEST_NUMBER
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
@@ -57,7 +59,25 @@ def read_table(path: Path, counts_per_turn: float | None = None) -> MeasuredTabl
     ------
     MeasurementError : anything that cannot be read without guessing.
     """
-    return table_of(read_grid(path), counts_per_turn)
+    try:
+        table = table_of(read_grid(path), counts_per_turn)
+    except MeasurementError as fault:
+        raise _toml_instead(path) or fault from None
+    if not table.read_as.columns and (other := _toml_instead(path)) is not None:
+        raise other
+    return table
+
+
+def _toml_instead(path: Path) -> MeasurementError | None:
+    """The refusal of a design or another TOML file that was given in place of a record; None of others."""
+    try:
+        tables = read_toml(path)
+    except DesignFileError:  # no TOML, which a record is not
+        return None
+    if not tables:  # empty, or comments alone
+        return None
+    what = "a design file" if "flexspline" in tables else "a TOML file"
+    return MeasurementError(path, None, f"is {what}; a measured record (CSV or .xlsx) is expected")
 
 
 def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:

@@ -34,8 +34,8 @@ def test_withdrawal_is_what_opens_both_gaps(model: GearModel) -> None:
     plain = np.array(mesh.gaps(model.tooth_angles, still, still)).ravel()
     relieved = contacts.free[: 2 * teeth] - plain
     yields = model.pair / model.teeth_per_station * forces[: 2 * teeth]
-    gaps = contacts.gaps(forces, held.at.rotation)[: 2 * teeth]
-    front, back = (gaps - relieved - yields).reshape(2, teeth)
+    gaps = contacts.free + held.at.rotation * contacts.turning + contacts.compliance @ forces
+    front, back = (gaps[: 2 * teeth] - relieved - yields).reshape(2, teeth)
     y = (front + back - mesh.clearance) / (2 * sin(mesh.pressure_angle))
     # the circular spline takes part in the gaps as in the withdrawal
     found = engagement.withdrawal(held.at)

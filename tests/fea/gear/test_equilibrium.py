@@ -40,6 +40,19 @@ def test_everything_rigid_turns_through_the_free_angle() -> None:
     assert one - other == pytest.approx((front.min() + back.min()) / arm, rel=1e-6)
 
 
+def test_from_a_known_state_comes_what_comes_from_none(model: GearModel) -> None:
+    """Two methods, one equilibrium: near, far off, and the other way."""
+    known = model.at_torque(8.0)
+    for torque in (8.0, 7.5, 1.0, 0.05, 40.0, -3.0):
+        plain, beside = model.at_torque(torque), model.at_torque(torque, known)
+        # the interior point leaves forces times gaps of 1e-11 of the largest
+        assert beside.rotation == pytest.approx(plain.rotation, rel=1e-6)
+        largest = plain.forces.max()
+        assert beside.forces == pytest.approx(plain.forces, abs=1e-4 * largest)
+        on = plain.forces > 1e-3 * largest
+        assert (beside.forces[on] > 0).all()
+
+
 def test_a_torque_without_teeth_is_refused() -> None:
     nothing = Contacts(np.array([-0.1]), np.eye(1), np.zeros(1), np.zeros(1))
     with pytest.raises(EquilibriumError, match="no tooth"):
