@@ -21,10 +21,20 @@ FEWEST_SWEEP_ROWS = 4
 
 @dataclass(frozen=True)
 class Averaging:
-    """How a long record was made shorter: rows in the file, and rows that went into means."""
+    """How a long record was made shorter: rows in the file, rows that went into means, and how these scatter.
+
+    within : mean over the rows averaged of da², da·dT and dT², the distances of angle [arcsec] and torque
+        [N·m] from their means.
+    """
 
     rows_read: int
     rows_averaged: int
+    within: tuple[float, float, float]
+
+    def variance_within(self, compliance: float) -> float:
+        """[arcsec²] of a row's angle about its mean's, torque as read taken off; arcsec per N·m."""
+        angle, both, torque = self.within
+        return max(angle - 2 * compliance * both + compliance**2 * torque, 0.0)
 
 
 @dataclass(frozen=True)

@@ -91,12 +91,20 @@ def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Swee
         return None if values is None else mean(values)
 
     h = sweep.history
+    torque, angle = mean(h.torque_Nm), mean(sweep.angle_arcsec)
+    rows, sizes = np.concatenate(groups), [len(g) for g in groups]
+    off_torque = h.torque_Nm[rows] - np.repeat(torque, sizes)
+    off = sweep.angle_arcsec[rows] - np.repeat(angle, sizes)
+    within = [
+        float(a @ b) / len(rows)
+        for a, b in ((off, off), (off, off_torque), (off_torque, off_torque))
+    ]
     history = History(
-        mean(h.torque_Nm), h.unit[first], h.cycle[first],
+        torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), maybe(h.temperature_C),
         None if h.input_angle_deg is None else h.input_angle_deg[first],
     )  # fmt: skip
     return replace(
-        sweep, history=history, angle_arcsec=mean(sweep.angle_arcsec), line=sweep.line[first],
-        averaging=Averaging(len(sweep), sum(map(len, groups))),
+        sweep, history=history, angle_arcsec=angle, line=sweep.line[first],
+        averaging=Averaging(len(sweep), len(rows), (within[0], within[1], within[2])),
     )  # fmt: skip

@@ -43,8 +43,11 @@ def written_model(
     model = model_of(fit, sweep, list(named), explained.offset_Nm)
     noise = explained.identified.fit.residual_as_read()[explained.prepared.kept]
     floor = float(np.sqrt(np.mean(noise**2)))
+    of_row = max(floor, gain.rmse_after) if gain else floor
+    if (averaging := explained.prepared.sweep.averaging) is not None:  # so far it is of means
+        of_row = float(np.sqrt(of_row**2 + averaging.variance_within(model.compliance)))
     doubt = Doubt(
-        max(floor, gain.rmse_after) if gain else floor,
+        of_row,
         torque_noise_Nm(sweep.history),
         _covariance(fit, model, explained.ahead),
         span_of(sweep.history),
