@@ -68,7 +68,7 @@ def solid_lobes(flexspline: PartModel, supported: bool, known: float = inf) -> S
                 SOLID_SECONDS,
             )
 
-    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported}
+    inputs: dict[str, Any] = {**flexspline.torsion_key, "supported": supported, "known": known}
     return context.cache.get("lobes", inputs, make, is_lasting)[0]
 
 

@@ -97,6 +97,8 @@ def _among_contacts(
     on, forces, rotation = start.loaded, start.forces, start.rotation
     for _ in range(MOST_CHANGES):
         i = np.flatnonzero(on)
+        if not len(i):  # all of them pulled
+            return None
         force, turning, hertz = forces[i], at.turning[i], at.hertz[i]
         ball = hertz > 0
         matrix = at.compliance[np.ix_(i, i)]

@@ -52,7 +52,7 @@ class NoBetterMeshError(SolidError):
     def __init__(self, expected: float, known: float) -> None:
         self.expected, self.known = expected, known
         super().__init__(
-            f"of solid meshes bounds of ± {expected:.2g} or wider were expected, and ± {known:.2g} is known"
+            f"of solid meshes bounds of ± {expected:.2%} or wider were expected, and ± {known:.2%} is known"
         )
 
 

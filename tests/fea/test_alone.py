@@ -43,3 +43,13 @@ def test_a_model_that_fails_lets_the_next_one_in() -> None:
 
     Thread(target=work, daemon=True).start()
     assert entered.wait(LATE_S)
+
+
+def test_a_thread_may_enter_twice() -> None:
+    def work() -> None:
+        with alone(LARGE), alone(LARGE):
+            entered.set()
+
+    entered = Event()
+    Thread(target=work, daemon=True).start()
+    assert entered.wait(LATE_S)

@@ -90,15 +90,16 @@ def _ways(places: list[int], rows: int, most: int) -> list[tuple[int, int]]:
 def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
     """Time [s] where the straight ways before and after row i meet, between its neighbours.
 
-    The row's own where the ways are too short to have a slope beyond the torque's noise.
+    The row's own where the ways are too short to have a slope beyond the torque's noise, or have one time by
+    a clock that counts whole seconds.
     """
     if way < WAY or i < way or i + way >= len(time_s):
         return float(time_s[i])
     t = time_s - time_s[i]
-    (a, b), (c, d) = (
-        np.polyfit(t[rows], torque_Nm[rows], 1)
-        for rows in (slice(i - way, i), slice(i + 1, i + way + 1))
-    )
+    ways = slice(i - way, i), slice(i + 1, i + way + 1)
+    if any(np.ptp(t[rows]) == 0 for rows in ways):
+        return float(time_s[i])
+    (a, b), (c, d) = (np.polyfit(t[rows], torque_Nm[rows], 1) for rows in ways)
     if a == c:
         return float(time_s[i])
     return float(time_s[i] + np.clip((d - b) / (a - c), t[i - 1], t[i + 1]))

@@ -1,27 +1,29 @@
 """Whether a record's loops run backwards: the angle leads the torque, and the gear would give energy.
 
 Friction, creep and lag take energy: at one torque the angle is larger while torque falls than while it rises.
-Where it is smaller in every loop, no gear did it: the torque reading lags the angle reading.
+Where it is smaller in every loop, no gear did it: the torque reading lags the angle reading. What a late
+reading opens grows with the rate and friction's loop does not, so the quickest loops may run backwards alone.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement, Unexplained
-from flexspline.pipeline.diagnosis.sweep.plausible_sets import DRIVEN
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate
 
 FEWEST_LOOPS = 2
 """What happens once may be a jolt."""
-ALIKE = 0.9
-"""Of the loads that must run backwards: noise may turn a few."""
+ALIKE, CONTRARY = 0.9, 2.0
+"""Of the loads that must not run forwards, by so many standard deviations each: noise may turn a few."""
 FEWEST_ROWS = 8
 """Of a load, on one side of the gap: four each way."""
 OPEN = 0.1
@@ -29,13 +31,23 @@ OPEN = 0.1
 SURE = 4.0
 """Standard deviations below none, on either side of the gap, as a drift widens a loop on one side and narrows
 it on the other. By chance one record in a billion has that."""
+QUICK = 1.25
+"""Times a load's own rate that the quickest must not exceed, where the quickest are looked at alone."""
 DIFFERENT = 0.3
 """Of the loads' differences in width that a delay may leave: it then makes nine tenths of their power."""
-LONGEST, DIGITS = 0.25, 1e-4
-"""Of the quickest load, half of a ramp: a reading later than that is of another way; and how well it is
-sought."""
-OF_TEMPERATURE = "?temperature_C"
-"""Owner of the terms without a name that follow the temperature."""
+FILTER = 0.1
+"""Of a filter's time constant, by which the delay that makes its loops alike may miss it: 0.45 of 0.5 s in
+sweeps that hold at their ends."""
+LONGEST, TRIED = 0.25, 51
+"""Of the quickest load, half of a ramp: a reading later than that is of another way; and the delays tried,
+the best of them refined."""
+SLOW = {"thermal_clearance", "wear", "sensor_drift", "?temperature_C"}
+"""Owners of terms that follow the time within a load; that of the temperature's has no name."""
+ABSENT = {
+    "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
+    "input_angle_deg": "a wave generator that turns with the load (its angle)",
+}
+"""What an honest gear or rig may do that gives such loops, by the channel that would show it."""
 NEXT = NextMeasurement(
     "torque_rate",
     "find_structure",
@@ -48,13 +60,19 @@ NEXT = NextMeasurement(
 class BackwardLoop:
     """Loops run backwards: by how much the angle is lower while torque falls, in the mean [arcsec].
 
-    `delay_s` : by which a late torque reading explains it at all rates, with its standard deviation; None
-    where the rates do not differ, or where that does not explain it.
+    Attributes
+    ----------
+    loops : so many. rate_Nm_per_s : of the quickest, where only those do; else None.
+    delay_s : by which a late torque reading explains how loops differ with their rate, with its standard
+        deviation; None where the rates do not differ, or where that does not explain it. unrecorded : what
+        else may look like it, in words, where its channel is missing.
     """
 
     width_arcsec: float
     loops: int
+    rate_Nm_per_s: float | None
     delay_s: tuple[float, float] | None
+    unrecorded: tuple[str, ...] = ()
 
     @property
     def said(self) -> Unexplained:
@@ -63,12 +81,17 @@ class BackwardLoop:
         if self.delay_s is not None:
             delay, std = self.delay_s
             late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
+        which = "the loops run" if self.rate_Nm_per_s is None else (
+            f"the quickest loops, at {self.rate_Nm_per_s:.3g} N·m/s, run"
+        )  # fmt: skip
         what = (
-            f"the loops run backwards: in the mean of {self.loops} the angle is {self.width_arcsec:.3g} "
+            f"{which} backwards: in the mean of {self.loops} the angle is {self.width_arcsec:.3g} "
             "arcsec lower while torque falls than while it rises, so that the gear would give energy, which "
             f"none does; most likely the torque reading lags the angle reading, {late}, or the two are not "
             "read at one instant"
         )
+        if self.unrecorded:
+            what += f". Not recorded, and able to look like it: {' and '.join(self.unrecorded)}"
         return Unexplained("torque_rate", self.width_arcsec / 2, 0.0, what, limit=True)
 
 
@@ -76,15 +99,12 @@ def backward_of(prepared: PreparedSweep, explained: ExplainedSweep) -> BackwardL
     """What the loops of a record say; None where they take energy.
 
     `prepared` : before the race, with the noise that local polynomials leave: what the race leaves holds what
-    no cause could make of such loops. What it found that opens no loop by itself, but a gap that shrinks or a
-    gear that stiffens while the torque is on, is taken off.
+    no cause could make of such loops. Of what it found only that is taken off which changes while a load
+    lasts, as a gap that shrinks; a law of the torque opens no loop.
     """
-    fit = explained.identified.fit
-    others = [o for o in explained.identified.rms if o == OF_TEMPERATURE or o[0] != "?"]
     angle = prepared.sweep.angle_arcsec.copy()
-    for owner in others:
-        if owner not in DRIVEN:
-            angle -= fit.added(owner)
+    for owner in SLOW & {*explained.identified.rms}:
+        angle -= explained.identified.fit.added(owner)
     history = prepared.sweep.history.shifted(explained.prepared.offset_Nm)
     return backward_loop(history, angle, prepared.band_Nm, prepared.noise)
 
@@ -94,6 +114,23 @@ def backward_loop(
 ) -> BackwardLoop | None:
     """The same of an angle (n,); the gap is crossed within ± `band_Nm`, whose rows decide nothing."""
     loads = _loads(history, band_Nm)
+    rates = _rates(history, loads)
+    found, quickest = _backward(history, angle_arcsec, loads, noise), None
+    if found is None and rates is not None:
+        quick = [own for own, rate in zip(loads, rates, strict=True) if rate * QUICK > rates.max()]
+        found, quickest = _backward(history, angle_arcsec, quick, noise), float(rates.max())
+    if found is None:
+        return None
+    unrecorded = tuple(
+        said for channel, said in ABSENT.items() if getattr(history, channel) is None
+    )
+    return BackwardLoop(*found, quickest, _delay_s(history, angle_arcsec, band_Nm), unrecorded)
+
+
+def _backward(
+    history: History, angle_arcsec: np.ndarray, loads: list[np.ndarray], noise: Noise
+) -> tuple[float, int] | None:
+    """By how much these loads run backwards [arcsec], and how many loops; None where they do not surely."""
     side = np.array([history.sign[rows[0]] for rows in loads])
     loops = int(min((side > 0).sum(), (side < 0).sum()))
     if loops < FEWEST_LOOPS:
@@ -101,15 +138,23 @@ def backward_loop(
     width = _widths(history, angle_arcsec, loads)
     # of the difference of two means over half of the rows each
     variance = np.array([4 * noise.slow_power / len(rows) for rows in loads])
-    if np.mean(width < 0) < ALIKE:
+    if np.mean(width < CONTRARY * np.sqrt(variance)) < ALIKE:
         return None
     for own in (side > 0, side < 0):
         if width[own].mean() + SURE * np.sqrt(variance[own].sum()) / own.sum() > 0:
             return None
     mean = -float(width.mean())
-    if mean < noise.std_arcsec:
+    return (mean, loops) if mean >= noise.std_arcsec else None
+
+
+def _rates(history: History, loads: list[np.ndarray]) -> np.ndarray | None:
+    """(k,) [N·m/s] of each load's cycle; None where cycles do not differ in it."""
+    if history.time_s is None or at_one_rate(history) is None:
         return None
-    return BackwardLoop(mean, loops, _delay_s(history, angle_arcsec, band_Nm))
+    of_row = np.zeros(len(history))
+    for rows in history.cycle_slices:
+        of_row[rows] = cycle_rate(history, rows)
+    return np.array([of_row[own[0]] for own in loads])
 
 
 def _loads(history: History, band_Nm: float) -> list[np.ndarray]:
@@ -134,39 +179,49 @@ def _widths(history: History, angle_arcsec: np.ndarray, loads: list[np.ndarray])
 
 
 def _width(torque_Nm: np.ndarray, angle_arcsec: np.ndarray) -> float:
-    step, angle = np.diff(torque_Nm), angle_arcsec - angle_arcsec.mean()
-    return -float((angle[1:] + angle[:-1]) @ step) / float(np.abs(step).sum())
+    """Of one load, its last row joined to its first: a row more on one way opens no loop."""
+    step, angle = np.diff(torque_Nm, append=torque_Nm[0]), angle_arcsec - angle_arcsec.mean()
+    return -float((np.roll(angle, -1) + angle) @ step) / float(np.abs(step).sum())
 
 
 def _delay_s(
     history: History, angle_arcsec: np.ndarray, band_Nm: float
 ) -> tuple[float, float] | None:
-    """The delay [s] and its deviation: read so much earlier, the torque closes the loops of every rate.
+    """The delay [s] and its deviation: read so much earlier, the torque makes loops of all rates as wide.
 
-    None where the rates do not differ, or where it leaves them different.
+    None where the rates do not differ, or where it leaves the loops different. What they have in common is
+    friction's.
     """
-    from scipy.optimize import brentq
+    from scipy.optimize import minimize_scalar
 
-    if history.time_s is None or at_one_rate(history) is None:
+    loads = _loads(history, band_Nm)
+    rates = _rates(history, loads)
+    if not loads or rates is None:
         return None
+    assert history.time_s is not None
+    longest = LONGEST * min(float(np.ptp(history.time_s[rows])) for rows in loads)
 
-    def open_by(delay_s: float) -> np.ndarray:
+    def widths(delay_s: float) -> np.ndarray:
         early = replace(history, torque_Nm=_read_at(history, delay_s))
         return _widths(early, angle_arcsec, _loads(early, band_Nm))
 
-    def mean(delay_s: float) -> float:
-        found = open_by(delay_s)
-        return float(found.mean()) if len(found) else np.inf
+    def unlike(delay_s: float) -> float:
+        found = widths(delay_s)
+        return float(found.std()) if len(found) == len(loads) else np.inf
 
-    lasting = [float(np.ptp(history.time_s[rows])) for rows in _loads(history, band_Nm)]
-    longest = LONGEST * min(lasting)
-    if mean(longest) < 0:
+    tried = np.linspace(0.0, longest, TRIED)
+    best = int(np.argmin([unlike(one) for one in tried]))
+    if best in (0, TRIED - 1):
         return None
-    delay = float(brentq(mean, 0.0, longest, xtol=DIGITS * longest))
-    was, left = open_by(0.0), open_by(delay)
+    ends = (tried[best - 1], tried[best + 1])
+    delay = float(minimize_scalar(unlike, bounds=ends, method="bounded").x)
+    was, left = widths(0.0), widths(delay)
     if len(left) != len(was) or left.std() > DIFFERENT * was.std():
         return None
-    return delay, delay * float((left / was).std(ddof=1)) / len(was) ** 0.5
+    # how much of a width's difference goes with the rate for each second
+    per_s = float((was - left) @ (rates - rates.mean())) / delay
+    unsure = left.std(ddof=2) * rates.std() * len(left) ** 0.5 / abs(per_s)
+    return (delay, delay * hypot(float(unsure) / delay, FILTER)) if unsure < delay / 2 else None
 
 
 def _read_at(history: History, later_s: float) -> np.ndarray:

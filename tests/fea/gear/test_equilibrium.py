@@ -53,6 +53,17 @@ def test_from_a_known_state_comes_what_comes_from_none(model: GearModel) -> None
         assert (beside.forces[on] > 0).all()
 
 
+def test_beside_a_state_whose_contacts_all_pull_all_begins_anew() -> None:
+    """Two balls and a tooth at a tenth of the torque: Newton's first step leaves no contact."""
+    strained = np.array([[6.90, -18.1, 7.40], [-18.1, 71.5, -29.7], [7.40, -29.7, 16.0]]) * 1e-6
+    turning, hertz = np.array([10.0, 10.0, -10.0]), np.array([1e-4, 1e-4, 0.0])
+    at = Contacts(np.array([0.0, 0.0, 0.01]), strained, turning, hertz)
+    beside = equilibrium(at, 1e3, equilibrium(at, 1e4))
+    # by hand: the tooth alone carries 1e3/10 N; c θ = g + S F, 10 θ = 0.01 + 16e-6·100
+    assert beside.forces == pytest.approx([0.0, 0.0, 100.0], abs=1e-6)
+    assert beside.rotation == pytest.approx(1.16e-3, rel=1e-6)
+
+
 def test_a_torque_without_teeth_is_refused() -> None:
     nothing = Contacts(np.array([-0.1]), np.eye(1), np.zeros(1), np.zeros(1))
     with pytest.raises(EquilibriumError, match="no tooth"):

@@ -10,8 +10,10 @@ import pytest
 from histories import LARGEST, PREDICTION, triangle
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.sweep.backward import backward_loop
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 FINE = 2000
@@ -98,6 +100,30 @@ def test_friction_wider_than_what_a_late_reading_takes_runs_forwards() -> None:
     """10 arcsec of friction, of which the delay takes 1.28: the loops take energy."""
     outcome = said_of(*read_late((50.0,) * 4, DELAY_S, False, friction_arcsec=10.0))
     assert all("backwards" not in u.what for u in outcome.unexplained)
+
+
+def test_only_the_quickest_loops_may_run_backwards() -> None:
+    """2 arcsec of friction; 0.4 s late are 3.2 arcsec at 0.4 N·m/s, and 0.64 at a fifth of the rate."""
+    outcome = said_of(*read_late((20.0,) * 3 + (100.0,) * 3, DELAY_S, False, friction_arcsec=2.0))
+    assert (outcome.verdict, outcome.causes) == ("unknown", ())
+    (left,) = outcome.unexplained
+    assert "the quickest loops, at 0.4" in left.what
+    delay, std = left.what.split("by ")[1].split(" s at")[0].split(" ± ")
+    assert abs(float(delay) - DELAY_S) < float(std)
+    # neither temperature nor the wave generator's angle was recorded
+    assert "gap that shrinks as the gear warms" in left.what
+
+
+def test_a_cycle_without_a_loop_is_not_against_the_others() -> None:
+    """Three of four ellipses run backwards, one is 0.02 arcsec wide forwards: a fraction of its deviation."""
+    turn = np.linspace(0, 8 * np.pi, 800, endpoint=False)
+    cycle = (turn // (2 * np.pi)).astype(int)
+    history = History(LARGEST * np.sin(turn), np.zeros(800, int), cycle, turn)
+    angle = PREDICTION.angle_arcsec(history)
+    angle += np.where(cycle == 2, -0.01, 2.0) * np.cos(turn)
+    found = backward_loop(history, angle, 0.1, Noise(NOISE**2, 0.0, 0.5))
+    assert found is not None
+    assert found.loops == 4
 
 
 def test_a_drift_runs_no_loop_backwards() -> None:

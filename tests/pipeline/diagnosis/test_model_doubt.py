@@ -206,7 +206,7 @@ def test_friction_in_smaller_loops_than_any_measured_is_not_known() -> None:
 
 @pytest.mark.parametrize("rows", [1_000, 10_000])
 def test_a_reading_of_a_long_record_is_as_noisy_as_one_of_a_short_one(rows: int) -> None:
-    """Rows beyond 6000 are averaged, but single readings are predicted: 0.6 arcsec, torque's noise included."""
+    """Rows beyond 6000 are averaged; single ones are predicted: 0.6 arcsec, the torque's noise among it."""
     history = sweep(cycles=3, rows=rows, hold=0)
     rng = np.random.default_rng(3)
     of_torque = 0.4 / PREDICTION.compliance

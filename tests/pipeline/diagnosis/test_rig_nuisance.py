@@ -188,3 +188,16 @@ def test_noise_and_an_encoder_s_steps_are_no_jumps(step: float) -> None:
 
 def test_jumps_against_the_motion_are_none() -> None:
     assert jumps(saw_tooth(-1.0)) is None
+
+
+@pytest.mark.parametrize("rows_a_second", [10, 100])
+def test_corners_by_a_clock_of_whole_seconds(rows_a_second: int) -> None:
+    """On both sides of a corner all rows may have one time; LAPACK once ended in a traceback there."""
+    history = replace(sweep(cycles=2, rows=240, hold=0), temperature_C=None, input_angle_deg=None)
+    coarse = replace(history, time_s=np.floor(np.arange(len(history)) / rows_a_second))
+    times = [corner.time_s for corner in corners_of(coarse)]
+    assert np.isfinite(times).all()
+    angle = line(coarse.torque_Nm) + np.random.default_rng(4).normal(0, 0.3, len(coarse))
+    cycles = ((1.0, 2.0),)
+    record = Sweep(Path("rig.csv"), coarse, angle, ("",), cycles, np.arange(len(angle)) + 2, True)
+    assert diagnose_sweep(record, PREDICTION)[0].verdict == "consistent"
