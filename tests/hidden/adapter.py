@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,6 +43,9 @@ def _off(found: Diagnosis, csv: Path) -> np.ndarray:
     from flexspline.pipeline.diagnosis.model.doubt import deviation_of
 
     sweep = read_measurement(csv)
+    history = sweep.history
+    if history.time_s is None:  # as `predict` does: rows stand for seconds
+        history = replace(history, time_s=np.arange(len(history), dtype=float))
     doubt = found.sweep.doubt
-    std = deviation_of(found.model, doubt, sweep.history, sweep.units).std_arcsec
-    return np.abs(sweep.angle_arcsec - found.model.angle_of(sweep.history, sweep.units)) / std
+    std = deviation_of(found.model, doubt, history, sweep.units).std_arcsec
+    return np.abs(sweep.angle_arcsec - found.model.angle_of(history, sweep.units)) / std

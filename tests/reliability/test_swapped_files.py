@@ -39,3 +39,11 @@ def test_a_design_is_no_record(tmp_path: Path) -> None:
         expected = f"{given}: is {what}; a measured record (CSV or .xlsx) is expected"
         assert done.stderr == f"flexspline: {expected}\n"
         assert not out.exists()
+
+
+def test_a_design_is_no_model(tmp_path: Path) -> None:
+    torque = tmp_path / "torque.csv"
+    torque.write_text("torque_Nm\n1.0\n", encoding="utf-8")
+    done = CliRunner().invoke(app, ["predict", str(CUP), "--model", str(CUP), str(torque)])
+    assert done.exit_code == 2
+    assert f"{CUP}: is a design file; an extended_model.toml" in done.stderr
