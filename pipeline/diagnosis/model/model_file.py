@@ -98,7 +98,9 @@ def read_model_file(path: Path) -> ModelFile:
         return ModelFileError(path, reason)
 
     if "flexspline" in data:
-        raise refuse("is a design file; an extended_model.toml, which `diagnose` writes, is expected")
+        raise refuse(
+            "is a design file; an extended_model.toml, which `diagnose` writes, is expected"
+        )
     check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"no extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
