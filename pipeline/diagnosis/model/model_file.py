@@ -98,9 +98,7 @@ def read_model_file(path: Path) -> ModelFile:
         return ModelFileError(path, reason)
 
     if "flexspline" in data:
-        raise refuse(
-            "is a design file; an extended_model.toml, which `diagnose` writes, is expected"
-        )
+        raise refuse("no extended model: a design file; `diagnose` writes extended_model.toml")
     check(data, TOP, TOP_OPTIONAL, "the model", lambda r: refuse(f"no extended model: {r}"))
     if data["format"] != FORMAT:
         raise refuse(f"format = {data['format']}: this program reads format {FORMAT}")
