@@ -20,12 +20,6 @@ FLAGS = (
     "--disable-background-networking",
     "--disable-component-update",
     "--no-first-run",
-    # one process for all pages, wherever they come from: of 1.8 s of processor time that a page of the
-    # studio takes until it is drawn, starting a process for it was a third
-    "--process-per-site",
-    "--renderer-process-limit=1",
-    "--disable-site-isolation-trials",
-    "--disable-features=ProactivelySwapBrowsingInstance",
 )
 
 
