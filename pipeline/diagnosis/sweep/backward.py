@@ -14,11 +14,10 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement, Unexplained
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate
+from flexspline.pipeline.diagnosis.sweep.rate_blind import cycle_rates
 
 FEWEST_LOOPS = 2
 """What happens once may be a jolt."""
@@ -41,7 +40,7 @@ sweeps that hold at their ends."""
 LONGEST, TRIED = 0.25, 51
 """Of the quickest load, half of a ramp: a reading later than that is of another way; and the delays tried,
 the best of them refined."""
-SLOW = {"thermal_clearance", "wear", "sensor_drift", "?temperature_C"}
+SLOW = ("thermal_clearance", "wear", "sensor_drift", "?temperature_C")
 """Owners of terms that follow the time within a load; that of the temperature's has no name."""
 ABSENT = {
     "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
@@ -103,8 +102,9 @@ def backward_of(prepared: PreparedSweep, explained: ExplainedSweep) -> BackwardL
     lasts, as a gap that shrinks; a law of the torque opens no loop.
     """
     angle = prepared.sweep.angle_arcsec.copy()
-    for owner in SLOW & {*explained.identified.rms}:
-        angle -= explained.identified.fit.added(owner)
+    for owner in SLOW:
+        if owner in explained.identified.rms:
+            angle -= explained.identified.fit.added(owner)
     history = prepared.sweep.history.shifted(explained.prepared.offset_Nm)
     return backward_loop(history, angle, prepared.band_Nm, prepared.noise)
 
@@ -114,6 +114,8 @@ def backward_loop(
 ) -> BackwardLoop | None:
     """The same of an angle (n,); the gap is crossed within ± `band_Nm`, whose rows decide nothing."""
     loads = _loads(history, band_Nm)
+    if not loads:
+        return None
     rates = _rates(history, loads)
     found, quickest = _backward(history, angle_arcsec, loads, noise), None
     if found is None and rates is not None:
@@ -124,7 +126,8 @@ def backward_loop(
     unrecorded = tuple(
         said for channel, said in ABSENT.items() if getattr(history, channel) is None
     )
-    return BackwardLoop(*found, quickest, _delay_s(history, angle_arcsec, band_Nm), unrecorded)
+    delay = None if rates is None else _delay_s(history, angle_arcsec, band_Nm, rates)
+    return BackwardLoop(*found, quickest, delay, unrecorded)
 
 
 def _backward(
@@ -149,11 +152,12 @@ def _backward(
 
 def _rates(history: History, loads: list[np.ndarray]) -> np.ndarray | None:
     """(k,) [N·m/s] of each load's cycle; None where cycles do not differ in it."""
-    if history.time_s is None or at_one_rate(history) is None:
+    rates = cycle_rates(history)
+    if rates is None:
         return None
     of_row = np.zeros(len(history))
-    for rows in history.cycle_slices:
-        of_row[rows] = cycle_rate(history, rows)
+    for rows, rate in zip(history.cycle_slices, rates, strict=True):
+        of_row[rows] = rate
     return np.array([of_row[own[0]] for own in loads])
 
 
@@ -185,21 +189,17 @@ def _width(torque_Nm: np.ndarray, angle_arcsec: np.ndarray) -> float:
 
 
 def _delay_s(
-    history: History, angle_arcsec: np.ndarray, band_Nm: float
+    history: History, angle_arcsec: np.ndarray, band_Nm: float, rates: np.ndarray
 ) -> tuple[float, float] | None:
     """The delay [s] and its deviation: read so much earlier, the torque makes loops of all rates as wide.
 
-    None where the rates do not differ, or where it leaves the loops different. What they have in common is
-    friction's.
+    None where it leaves the loops different. What they have in common is friction's. `rates` : of the loads.
     """
     from scipy.optimize import minimize_scalar
 
-    loads = _loads(history, band_Nm)
-    rates = _rates(history, loads)
-    if not loads or rates is None:
-        return None
     assert history.time_s is not None
-    longest = LONGEST * min(float(np.ptp(history.time_s[rows])) for rows in loads)
+    lasting = [float(np.ptp(history.time_s[rows])) for rows in _loads(history, band_Nm)]
+    longest = LONGEST * min(lasting)
 
     def widths(delay_s: float) -> np.ndarray:
         early = replace(history, torque_Nm=_read_at(history, delay_s))
@@ -207,7 +207,7 @@ def _delay_s(
 
     def unlike(delay_s: float) -> float:
         found = widths(delay_s)
-        return float(found.std()) if len(found) == len(loads) else np.inf
+        return float(found.std()) if len(found) == len(rates) else np.inf
 
     tried = np.linspace(0.0, longest, TRIED)
     best = int(np.argmin([unlike(one) for one in tried]))

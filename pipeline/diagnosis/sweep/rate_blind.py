@@ -44,7 +44,7 @@ def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool
     if not timed:
         return False
     history = evidence.columns.rig.history
-    if at_one_rate(history) is not None or len(holds(history)) >= len(history.cycle_slices):
+    if cycle_rates(history) is not None or len(holds(history)) >= len(history.cycle_slices):
         return True
     owners = best.owners(evidence)
     rubs = FRICTION in owners or evidence.columns.ahead is not None
@@ -74,15 +74,12 @@ def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
 
 def at_one_rate(history: History) -> History | None:
     """The history as if each cycle had run at the median one's rate; None where rates do not differ."""
-    if history.time_s is None:
-        return None
-    cycles = history.cycle_slices
-    rates = np.array([cycle_rate(history, rows) for rows in cycles])
-    if not (rates > 0).any() or rates.max() < RATES_APART * rates[rates > 0].min():
+    rates = cycle_rates(history)
+    if history.time_s is None or rates is None:
         return None
     usual = float(np.median(rates[rates > 0]))
     stretch = np.ones(len(history))
-    for rows, rate in zip(cycles, rates, strict=True):
+    for rows, rate in zip(history.cycle_slices, rates, strict=True):
         if rate > 0:
             stretch[rows] = rate / usual
     time_s = history.time_s.copy()
@@ -90,3 +87,13 @@ def at_one_rate(history: History) -> History | None:
         steps = np.diff(history.time_s[rows], prepend=history.time_s[rows[0]])
         time_s[rows] = history.time_s[rows[0]] + np.cumsum(steps * stretch[rows])
     return replace(history, time_s=time_s)
+
+
+def cycle_rates(history: History) -> np.ndarray | None:
+    """(c,) torque rate [N·m/s] of each cycle; None where cycles do not differ in it, or time is missing."""
+    if history.time_s is None:
+        return None
+    rates = np.array([cycle_rate(history, rows) for rows in history.cycle_slices])
+    if not (rates > 0).any() or rates.max() < RATES_APART * rates[rates > 0].min():
+        return None
+    return rates

@@ -126,6 +126,16 @@ def test_a_cycle_without_a_loop_is_not_against_the_others() -> None:
     assert found.loops == 4
 
 
+def test_loads_that_never_come_back_are_no_loops() -> None:
+    """Two rates, torque that only rises in each cycle."""
+    torque = np.tile(np.linspace(0.2, LARGEST, 50), 2)
+    cycle = np.repeat([0, 1], 50)
+    time = np.cumsum(np.repeat([1.0, 4.0], 50))
+    history = History(torque, np.zeros(100, int), cycle, time)
+    angle = PREDICTION.angle_arcsec(history)
+    assert backward_loop(history, angle, 0.1, Noise(NOISE**2, 0.0, 0.5)) is None
+
+
 def test_a_drift_runs_no_loop_backwards() -> None:
     """It is lower on the way down on one side of the gap only."""
     history, angle = read_late((50.0,) * 4, 1e-3, False)
