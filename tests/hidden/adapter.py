@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tempfile
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,11 +40,10 @@ def _off(found: Diagnosis, csv: Path) -> np.ndarray:
     """(n,) of a record measured again, in stated deviations."""
     from flexspline.pipeline.diagnosis.measurement.record import read_measurement
     from flexspline.pipeline.diagnosis.model.doubt import deviation_of
+    from flexspline.pipeline.diagnosis.sweep.prepare import true_history
 
     sweep = read_measurement(csv)
-    history = sweep.history
-    if history.time_s is None:  # as `predict` does: rows stand for seconds
-        history = replace(history, time_s=np.arange(len(history), dtype=float))
+    history = true_history(sweep)
     doubt = found.sweep.doubt
     std = deviation_of(found.model, doubt, history, sweep.units).std_arcsec
     return np.abs(sweep.angle_arcsec - found.model.angle_of(history, sweep.units)) / std

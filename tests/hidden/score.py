@@ -71,7 +71,7 @@ def figures(marks: Sequence[Mark]) -> list[Figure]:
         _share("triple: exactly right", triples, "exact", least=0.90),
         _share("triple: wrong name with confidence", triples, "wrong", most=0.01),
         _share("nothing hidden: consistent", kind["clean"], "right", least=0.985),
-        _share("foreign: unknown", [m for m in kind["foreign"] if not m.near], "right", least=0.93),
+        _share("foreign: unknown", [m for m in kind["foreign"] if not m.near], "right", least=0.95),
         _share("foreign, nearly a named cause: unknown",
                [m for m in kind["foreign"] if m.near], "right"),
         _share("foreign: wrong name with confidence", kind["foreign"], "wrong"),
