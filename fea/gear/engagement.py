@@ -72,11 +72,11 @@ class Engagement:
         n, flanks = len(port) // 2, model.flanks
         moved = model.rim_compliance[:n]
         per_force = np.zeros((n, model.balls.stop))
-        per_force[:, flanks] = moved[:, : len(port)] @ model.gap_per_pitch_point.T
+        per_force[:, flanks] = model.at_flanks(moved[:, : len(port)].T).T
         per_force[:, model.seat] = moved[:, len(port) :]
         if model.spline:
             other = model.spline.compliance(port, angle)[:n]
-            per_force[:, flanks] += other @ model.gap_per_pitch_point.T
+            per_force[:, flanks] += model.at_flanks(other.T).T
         mean = np.kron(np.eye(len(model.tooth_angles)), rim.face)
         return -mean @ per_force @ self.evenly.T
 

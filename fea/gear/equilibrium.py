@@ -80,9 +80,10 @@ def equilibrium(at: Contacts, torque: float, start: Equilibrium | None = None) -
     """
     if torque and not (at.turning * torque < 0).any():
         raise EquilibriumError("no tooth within reach can carry a torque")
-    known = start is not None and start.forces.max() > 0
-    found = _among_contacts(at, torque, start) if known and start else None
-    forces, rotation = found or _settled(at, torque)
+    known = None
+    if start is not None and start.forces.max() > 0:
+        known = _among_contacts(at, torque, start)
+    forces, rotation = known or _settled(at, torque)
     slope, forces_slope = _tangent(at, forces)
     return Equilibrium(torque, rotation, forces, slope, forces_slope)
 

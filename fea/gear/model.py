@@ -156,10 +156,10 @@ class GearModel:
 
     def _of_rim(self) -> np.ndarray:
         flanks, moved = self.flanks.stop, self.rim_compliance
-        half = np.concatenate([self._at_flanks(moved[:flanks]), moved[flanks:]]).T
+        half = np.concatenate([self.at_flanks(moved[:flanks]), moved[flanks:]]).T
         found = np.zeros((self.balls.stop, self.balls.stop))
         seat = len(moved)
-        found[:seat, :seat] = np.concatenate([self._at_flanks(half[:flanks]), half[flanks:]])
+        found[:seat, :seat] = np.concatenate([self.at_flanks(half[:flanks]), half[flanks:]])
         return found
 
     def _of_teeth(self) -> np.ndarray:
@@ -169,12 +169,12 @@ class GearModel:
         face = np.tile(self.rim.face, 2 * len(self.tooth_angles))
         found[i, i] = self.pair / self.teeth_per_station / face
         if self.spline:
-            half = self._at_flanks(self.spline.compliance(*self.pitch_points)).T
-            found[:flanks, :flanks] += self._at_flanks(half)
+            half = self.at_flanks(self.spline.compliance(*self.pitch_points)).T
+            found[:flanks, :flanks] += self.at_flanks(half)
         return found
 
-    def _at_flanks(self, moved: np.ndarray) -> np.ndarray:
-        """`gap_per_pitch_point` @ moved; by rows, as all but two in each of its rows are 0."""
+    def at_flanks(self, moved: np.ndarray) -> np.ndarray:
+        """Gaps (k, j) of the flanks where `pitch_points` move by (k, j); the spline's count the other way."""
         s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)
         radial, tangential = np.split(moved, 2)
         return np.concatenate([-s * radial - c * tangential, c * tangential - s * radial])
@@ -185,13 +185,6 @@ class GearModel:
         rim, t = self.rim, len(self.tooth_angles)
         port = np.concatenate([np.tile(rim.radial, t), np.tile(rim.tangential, t)])
         return port, np.tile(np.repeat(self.tooth_angles, len(rim.face)), 2)
-
-    @cached_property
-    def gap_per_pitch_point(self) -> np.ndarray:
-        """Of each flank, per displacement of `pitch_points`; of the spline's, the other way."""
-        one = np.eye(len(self.tooth_angles) * len(self.rim.face))
-        s, c = sin(self.mesh.pressure_angle), cos(self.mesh.pressure_angle)
-        return np.block([[-s * one, -c * one], [-s * one, c * one]])
 
     def _of_race(self, race: Condensed) -> np.ndarray:
         a, m, at = len(self.seat_angles), len(self.rim.seat), self.wave_generator.angles

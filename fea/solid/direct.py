@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from flexspline.fea.solid.errors import IterationError, SolveError
+from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.iteration import conjugate_gradients
 
 Back = Callable[[np.ndarray], np.ndarray]
@@ -140,27 +140,31 @@ def direct(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
     SolveError : as `factorised`.
     """
     if pardiso() is not None and matrix.shape[0] >= SINGLE_FROM and right.any():
-        with suppress(SolveError):
-            return _by_single(matrix, right)
+        with factorised(matrix, single=True) as back, suppress(SolveError):
+            return _in_double(matrix, right, back)
     with factorised(matrix) as back:
         return back(right)
 
 
-def _by_single(matrix: csr_matrix, right: np.ndarray) -> np.ndarray:
-    """As `direct`; raises IterationError where FACTORED_STEPS are not enough."""
+def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
+    """K⁻¹ f by conjugate gradients that `back`, factors in single precision, precondition.
+
+    Raises
+    ------
+    SolveError : those are not near enough to K⁻¹, or FACTORED_STEPS are not enough.
+    """
     x = np.zeros_like(right)
-    with factorised(matrix, single=True) as back:
-        for _ in range(FACTORED_ROUNDS):
-            off, before = right - matrix @ x, x
+    for _ in range(FACTORED_ROUNDS):
+        before = x
 
-            def allowed(more: np.ndarray, before: np.ndarray = before) -> float:
-                return FACTORED_ENERGY * abs(float((before + more) @ right))
+        def allowed(more: np.ndarray, before: np.ndarray = before) -> float:
+            return FACTORED_ENERGY * abs(float((before + more) @ right))
 
-            found = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
-            x = before + found.x
-            if found.early:
-                off = right - matrix @ x
-                raise IterationError(found.steps, float(off @ back(off)), allowed(found.x))
+        off = right - matrix @ before
+        found = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
+        if found.early:
+            raise SolveError(f"{FACTORED_STEPS} steps were not enough")
+        x = before + found.x
     return x
 
 

@@ -82,9 +82,7 @@ def solve(
         except IterationError:
             if worth == inf:
                 raise
-            how = (
-                "direct"  # from here on the error no longer holds what the iteration had in memory
-            )
+            how = "direct"  # below, where the error holds none of the iteration's memory any more
     if how == "direct":
         u[free] = direct(inner, right)
     off = inner @ u[free] - right

@@ -23,7 +23,7 @@ FEWEST_SWEEP_ROWS = 4
 class Averaging:
     """How a long record was made shorter: rows in the file, rows that went into means, and how these scatter.
 
-    within : mean over the rows averaged of da², da·dT and dT², the distances of angle [arcsec] and torque
+    within : sums over the rows averaged of da², da·dT and dT², the distances of angle [arcsec] and torque
         [N·m] from their means.
     """
 
@@ -34,7 +34,8 @@ class Averaging:
     def variance_within(self, compliance: float) -> float:
         """[arcsec²] of a row's angle about its mean's, torque as read taken off; arcsec per N·m."""
         angle, both, torque = self.within
-        return max(angle - 2 * compliance * both + compliance**2 * torque, 0.0)
+        summed = angle - 2 * compliance * both + compliance**2 * torque
+        return max(summed, 0.0) / self.rows_averaged
 
 
 @dataclass(frozen=True)

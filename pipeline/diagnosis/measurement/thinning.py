@@ -95,10 +95,7 @@ def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Swee
     rows, sizes = np.concatenate(groups), [len(g) for g in groups]
     off_torque = h.torque_Nm[rows] - np.repeat(torque, sizes)
     off = sweep.angle_arcsec[rows] - np.repeat(angle, sizes)
-    within = [
-        float(a @ b) / len(rows)
-        for a, b in ((off, off), (off, off_torque), (off_torque, off_torque))
-    ]
+    within = off @ off, off @ off_torque, off_torque @ off_torque
     history = History(
         torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), maybe(h.temperature_C),
@@ -106,5 +103,5 @@ def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Swee
     )  # fmt: skip
     return replace(
         sweep, history=history, angle_arcsec=angle, line=sweep.line[first],
-        averaging=Averaging(len(sweep), len(rows), (within[0], within[1], within[2])),
+        averaging=Averaging(len(sweep), len(rows), within),
     )  # fmt: skip

@@ -7,7 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
-from flexspline.pipeline.diagnosis.sweep.shape_tuning import DIFFERENCE, tunable, with_shapes
+from flexspline.pipeline.diagnosis.sweep.shape_tuning import (
+    DIFFERENCE,
+    columns_with_shapes,
+    tunable,
+)
 
 
 def magnitude_stds(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
@@ -19,13 +23,13 @@ def magnitude_stds(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, fl
     Parameters: slopes, of each magnitude for each amplitude (`SweepFit.magnitude_slopes`).
     """
     evidence, posterior, terms = fit.evidence, fit.posterior, fit.regressors
-    keys = tunable(terms, [t.shape for t in terms])
+    shapes = [t.shape for t in terms]
+    keys = tunable(terms, shapes)
     b = posterior.base_count
-    prior_std = [evidence.scale[t.at] for t in terms]
-    scale = np.concatenate([np.ones(b), *prior_std])
+    scale = np.concatenate([np.ones(b), *(evidence.scale[t.at] for t in terms)])
     blocks = [evidence.x[:, t.at] for t in terms]
     amplitude = (posterior.mean / scale)[b:]
-    whole, prior = with_shapes(evidence, terms, [t.shape for t in terms], blocks, keys, amplitude)
+    whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
     covariance = np.linalg.inv(whole.T @ whole + np.diag(prior))
     by_shape = _shape_slopes(fit, keys)
     of_all = {c: np.concatenate([s * scale, by_shape[c]]) for c, s in slopes.items()}

@@ -108,12 +108,12 @@ def _step(
     x = np.hstack([evidence.base, *blocks])
     prior = np.concatenate([evidence.columns.base_prior**-2, np.ones(x.shape[1] - b)])
     amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
-    whole, prior = with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
+    whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
     found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
     return np.clip(found[-len(keys) :], -LONGEST, LONGEST)
 
 
-def with_shapes(
+def columns_with_shapes(
     evidence: GaussianEvidence, terms: Sequence[Regressor], shapes: Sequence[Shape],
     blocks: Sequence[np.ndarray], keys: Sequence[tuple[int, str]], amplitude: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
