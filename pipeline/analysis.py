@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
@@ -19,10 +20,15 @@ from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.beside import beside
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE, ellipse_field, half_seat_peak
+from flexspline.pipeline.ellipse_peak import (
+    STRESS_TOLERANCE,
+    ellipse_field,
+    ellipse_peak,
+    half_seat_peak,
+)
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
-from flexspline.pipeline.load_cases import RimAnswers, rim_answers
+from flexspline.pipeline.load_cases import RimCase, figure_of, rim_cases, rim_stiffness
 from flexspline.pipeline.part_meshes import MeshedPart
 from flexspline.pipeline.part_stiffness import TwistedPart, part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -89,7 +95,7 @@ def stiffnesses(
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         if wanted:
             part.refuse_settings()
-    tried, tried_rim = Attempts(), Attempts()
+    tried = Attempts()
 
     def K_of(name: str, part: PartModel) -> Stiffness | None:
         found = tried.get(name, lambda: part_stiffness(part))
@@ -102,19 +108,35 @@ def stiffnesses(
         ring = context.ring if flexspline else None
         return Stiffnesses(in_order(every), ring=ring, missing=tried.missing)
 
-    def of_rim() -> tuple[RimAnswers, StressPeak | None]:
-        answers = rim_answers(rim_part, tried_rim)
-        return answers, tried_rim.get("half_seat_peak", lambda: half_seat_peak(rim_part))
+    solved_rim: dict[str, Stiffness | None] = {}
+    peaks: dict[str, StressPeak | None] = {}
 
-    with beside(context.progress, of_rim) as rim_work:
+    def solve(cases: tuple[RimCase, ...]) -> Attempts:
+        own = Attempts()
+        for case in cases:
+            name = figure_of(case)
+            solved_rim[name] = own.get(name, partial(rim_stiffness, rim_part, case))
+        return own
+
+    def find(name: str, peak: Callable[[PartModel], StressPeak]) -> Attempts:
+        own = Attempts()
+        peaks[name] = own.get(name, partial(peak, rim_part))
+        return own
+
+    tasks = [
+        *(partial(solve, cases) for cases in rim_cases(rim_part)),
+        partial(find, "wave_generator_peak", ellipse_peak),
+        partial(find, "half_seat_peak", half_seat_peak),
+    ]
+    with beside(context.progress, tasks) as rest:
         K_e = K_of("K_e", shaft_part) if shaft else None
-        answers, half_seat = rim_work.result()
+        every_tried = [tried, *rest()]
     return Stiffnesses(
-        in_order({"K_b": K_b, "K_e": K_e, **answers.stiffnesses}),
-        answers.wave_generator_peak,
-        half_seat,
+        in_order({"K_b": K_b, "K_e": K_e, **solved_rim}),
+        peaks["wave_generator_peak"],
+        peaks["half_seat_peak"],
         context.ring,
-        {**tried.missing, **tried_rim.missing},
+        {name: why for each in every_tried for name, why in each.missing.items()},
     )
 
 
@@ -146,9 +168,11 @@ def run(
     found = stiffnesses(context, solved=under_torque)
     found.require(design)
     total = backlash_of(design, found)
-    solve("wave_generator", lambda: ellipse_field(context.part("flexspline")))
-    gear = tried.get("gear", lambda: _gear(context))
-    found = replace(found, missing={**found.missing, **tried.missing})
+    tried_gear = Attempts()
+    with beside(context.progress, [lambda: tried_gear.get("gear", lambda: _gear(context))]) as rest:
+        solve("wave_generator", lambda: ellipse_field(context.part("flexspline")))
+        (gear,) = rest()
+    found = replace(found, missing={**found.missing, **tried.missing, **tried_gear.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
     limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)
     seconds = dict(context.progress.seconds)

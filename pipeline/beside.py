@@ -1,9 +1,9 @@
-"""Work that goes on beside other work, on another core: factorising lets go of Python's interpreter."""
+"""Work that two threads share, each on its core: factorising lets go of Python's interpreter."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -13,15 +13,30 @@ T = TypeVar("T")
 
 
 @contextmanager
-def beside(progress: Progress, work: Callable[[], T]) -> Iterator[Future[T]]:
-    """Do `work` in a thread while the context is open; its result is the future's.
+def beside(progress: Progress, tasks: Sequence[Callable[[], T]]) -> Iterator[Callable[[], list[T]]]:
+    """Begin `tasks` in a thread, one after the other; the function that is given does those not yet begun.
 
-    Where the context ends by an error or an interruption, the work ends at its next stage.
+    It returns all results in the tasks' order, or raises what a task raised. Where the context ends by an
+    error or an interruption, the thread ends at its next stage.
     """
+    numbers = iter(range(len(tasks)))  # of the tasks not yet begun, for both threads
+    results: dict[int, T] = {}
+
+    def work() -> None:
+        for number in numbers:
+            results[number] = tasks[number]()
+
     try:
-        with ThreadPoolExecutor(1) as thread:
+        with ThreadPoolExecutor(1) as executor:
             try:
-                yield thread.submit(work)
+                other = executor.submit(work)
+
+                def rest() -> list[T]:
+                    work()
+                    other.result()
+                    return [results[number] for number in range(len(tasks))]
+
+                yield rest
             except BaseException:
                 progress.stopped = True
                 raise

@@ -13,13 +13,11 @@ from typing import Literal, get_args
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.types import Stiffness, StressPeak
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
-from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.by_harmonics import by_harmonics
-from flexspline.pipeline.ellipse_peak import ellipse_peak
 from flexspline.pipeline.enclosed_part import (
     enclosure_if_any,
     enclosure_of,
@@ -56,27 +54,15 @@ def figure_of(case: RimCase) -> str:
     return f"K_b_{case}"
 
 
-@dataclass(frozen=True)
-class RimAnswers:
-    """K_b of the lobe cases by the name of its figure, and the peak stress on the ellipse; None: not found.
+def rim_cases(flexspline: PartModel) -> tuple[tuple[RimCase, ...], ...]:
+    """The cases that are answered by the model of the part's stiffness, those together that share solves.
 
-    `K_b_lobes_contact` (the seat may lift off) is absent where the solid model is asked for: lift-off
+    "lobes_contact" (the seat may lift off) is not among them where the solid model is asked for: lift-off
     breaks the symmetry that makes that model small.
     """
-
-    stiffnesses: Mapping[str, Stiffness | None]
-    wave_generator_peak: StressPeak | None
-
-
-def rim_answers(flexspline: PartModel, tried: Attempts) -> RimAnswers:
-    """By the model that the part's stiffness uses; `tried` hears what fails."""
-    every = flexspline.axisymmetric or may_answer(flexspline)
-    found = {
-        figure_of(case): tried.get(figure_of(case), partial(rim_stiffness, flexspline, case))
-        for case in RIM_CASES
-        if every or CASES[case].solid is not None
-    }
-    return RimAnswers(found, tried.get("wave_generator_peak", partial(ellipse_peak, flexspline)))
+    if flexspline.axisymmetric or may_answer(flexspline):
+        return ("lobes", "lobes_contact"), ("lobes_unsupported",)
+    return (tuple(case for case in RIM_CASES if CASES[case].solid is not None),)
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from functools import partial
 
 import pytest
 
@@ -22,10 +23,10 @@ def test_stages_of_two_threads_are_not_inside_each_other() -> None:
         closed.set()
         return "done"
 
-    with beside(progress, work) as other, progress.stage("here"):
+    with beside(progress, [work]) as rest, progress.stage("here"):
         opened.set()
         assert closed.wait(60)
-        assert other.result(60) == "done"
+        assert rest() == ["done"]
     assert progress.seconds["beside"] >= 0.1
     assert progress.seconds["here"] >= 0.1
 
@@ -33,23 +34,26 @@ def test_stages_of_two_threads_are_not_inside_each_other() -> None:
 def test_an_interruption_ends_the_work_at_its_next_stage() -> None:
     progress, begun = Progress(), threading.Event()
 
-    def endless() -> None:
-        while True:
-            with progress.stage("round"):
-                begun.set()
-                time.sleep(0.01)
+    ended: list[BaseException] = []
 
-    asked = []
+    def endless() -> None:
+        try:
+            while True:
+                with progress.stage("round"):
+                    begun.set()
+                    time.sleep(0.01)
+        except BaseException as why:
+            ended.append(why)
+            raise
 
     def interrupted() -> None:
-        with beside(progress, endless) as other:
-            asked.append(other)
+        with beside(progress, [endless]):
             assert begun.wait(60)
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        interrupted()
-    assert isinstance(asked[0].exception(), Stopped)
+        interrupted()  # would not come back while the work goes on
+    assert isinstance(ended[0], Stopped)
     progress.note("the next command's")  # nothing is stopped any more
 
 
@@ -57,5 +61,22 @@ def test_an_error_of_the_work_is_its_reader_s() -> None:
     def failing() -> None:
         raise ValueError("of the work")
 
-    with pytest.raises(ValueError, match="of the work"), beside(Progress(), failing) as other:
-        other.result(60)
+    with pytest.raises(ValueError, match="of the work"), beside(Progress(), [failing]) as rest:
+        rest()
+
+
+def test_both_threads_do_the_tasks_each_once() -> None:
+    """Whoever has the first task waits in it until the other has done the last one."""
+    last, done = threading.Event(), []
+
+    def task(number: int) -> int:
+        if number == 0:
+            assert last.wait(60)
+        done.append(number)
+        if number == 2:
+            last.set()
+        return 10 * number
+
+    with beside(Progress(), [partial(task, number) for number in range(3)]) as rest:
+        assert rest() == [0, 10, 20]
+    assert done == [1, 2, 0]
