@@ -43,6 +43,9 @@ KIRSCH = 4.0
 """Largest stress at a small round hole over the plate's, under pure shear; 3 under tension (G. Kirsch, VDI-Z
 42 (1898) 797-807). In a row it rises at most as the ligament falls: pitch over ligament (Peterson's Stress
 Concentration Factors, row of holes, on the gross section)."""
+COARSE = 1.5
+"""Of a solid model on the mesh that gave K, where that bound is above the peak. Its nodes at the holes missed
+up to 16 % of what meshes of up to six times the elements had (five cups of 2 to 16 holes)."""
 
 
 def ellipse_peak(flexspline: PartModel) -> StressPeak:
@@ -96,9 +99,26 @@ def _of_two_bodies(flexspline: PartModel) -> StressPeak | None:
         return None
     same = abs(cut.mises_MPa / whole.mises_MPa - 1) <= AGREEMENT
     here = dist(cut.at_mm, whole.at_mm) <= flexspline.part.exclusion_mm
-    if not (same and here and raised(at_holes, bolts) < whole.mises_MPa):
+    if not (same and here):
         return None
+    if raised(at_holes, bolts) >= whole.mises_MPa:
+        try:
+            at_holes = _at_holes_of(coarse_ellipse(flexspline), flexspline.part, bolts)
+        except (ComputationError, MemoryError):
+            return None
+        if COARSE * at_holes >= whole.mises_MPa:
+            return None
     return replace(whole, stands_for=WITHOUT_HOLES)
+
+
+def _at_holes_of(field: SolidField, part: Part, bolts: BoltCircle) -> float:
+    """The largest von Mises stress [MPa] of a solid model's nodes in the annulus of the holes."""
+    x, y, z = field.mesh.nodes.T
+    return float(field.mises[_in_holes_ring(np.hypot(x, y), z, part, bolts)].max())
+
+
+def _in_holes_ring(r: np.ndarray, z: np.ndarray, part: Part, bolts: BoltCircle) -> np.ndarray:
+    return (abs(r - bolts.radius) <= bolts.hole_radius) & (z <= part.hole_depth)
 
 
 def raised(stress_MPa: float, bolts: BoltCircle) -> float:
@@ -127,6 +147,6 @@ def _of_body(
 def _in_annulus(field: RevolvedField, part: Part, bolts: BoltCircle) -> float:
     """The largest von Mises stress [MPa] at nodes in the annulus of the holes."""
     r, z = field.places.T
-    inside = (abs(r - bolts.radius) <= bolts.hole_radius) & (z <= part.hole_depth)
+    inside = _in_holes_ring(r, z, part, bolts)
     angles = (0.0, pi / (2 * field.n))
     return max(float(field.mises(phi)[inside].max(initial=0.0)) for phi in angles)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from finished_run import FinishedRun
 
@@ -57,9 +59,22 @@ def test_bodies_that_differ_leave_it_to_the_solid_model(part, monkeypatch) -> No
     assert under_test.ellipse_peak(part).mises_MPa == SOLID_MPa
 
 
-def test_stress_at_the_holes_leaves_it_to_the_solid_model(part, monkeypatch) -> None:
+@pytest.mark.parametrize(("share", "answered"), [(0.5, True), (0.8, False)])
+def test_stress_at_the_holes_is_looked_up_where_its_bound_is_too_high(
+    part: PartModel, monkeypatch: pytest.MonkeyPatch, share: float, answered: bool
+) -> None:
+    """Of the peak, at one node of a solid model in the annulus of the holes; more of it at the rim."""
     monkeypatch.setattr(under_test, "KIRSCH", 1e3)
-    assert under_test.ellipse_peak(part).mises_MPa == SOLID_MPa
+    whole = under_test.ellipse_peak(replace(part, part=part.part.without_holes()))
+    bolts = part.part.bolts
+    assert bolts is not None
+    at = np.array([[bolts.radius, 0.0, 0.0], [0.0, 20.0, 30.0]])
+    mesh: Any = SimpleNamespace(nodes=at)
+    mises = np.array([share, 1.0]) * whole.mises_MPa
+    field = SolidField(mesh, "", np.zeros((2, 3)), mises, whole)
+    monkeypatch.setattr(under_test, "coarse_ellipse", lambda asked: field)
+    found = under_test.ellipse_peak(part).mises_MPa
+    assert found == (whole.mises_MPa if answered else SOLID_MPa)
 
 
 def test_the_solid_model_by_name_answers_itself(part: PartModel, folder: Path) -> None:
