@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
+from scipy.special import gammaincinv
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
@@ -30,6 +31,10 @@ OPEN = 0.1
 SURE = 4.0
 """Standard deviations below none, on either side of the gap, as a drift widens a loop on one side and narrows
 it on the other. By chance one record in a billion has that."""
+ONE_SIZE = 0.05
+"""Relative difference up to which loads have one amplitude, or one rate."""
+FEWEST_ALIKE, LUCK = 4, 0.05
+"""Differences between loads that are alike of which a noise is told, and the chance that it is larger."""
 QUICK = 1.25
 """Times a load's own rate that the quickest must not exceed, where the quickest are looked at alone."""
 DIFFERENT = 0.3
@@ -117,6 +122,7 @@ def backward_loop(
     if not loads:
         return None
     rates = _rates(history, loads)
+    noise = _as_repeated(history, angle_arcsec, loads, rates, noise)
     found, quickest = _backward(history, angle_arcsec, loads, noise), None
     if found is None and rates is not None:
         quick = [own for own, rate in zip(loads, rates, strict=True) if rate * QUICK > rates.max()]
@@ -128,6 +134,36 @@ def backward_loop(
     )
     delay = None if rates is None else _delay_s(history, angle_arcsec, band_Nm, rates)
     return BackwardLoop(*found, quickest, delay, unrecorded)
+
+
+def _as_repeated(
+    history: History,
+    angle_arcsec: np.ndarray,
+    loads: list[np.ndarray],
+    rates: np.ndarray | None,
+    noise: Noise,
+) -> Noise:
+    """The noise, lower where loads that are alike have widths more alike than it allows.
+
+    Local polynomials take the gap's step for noise where a late reading moves it out of the crossing; it is
+    the same step in every load.
+    """
+    width = _widths(history, angle_arcsec, loads)
+    torque = np.array([np.abs(history.torque_Nm[own]).max() for own in loads])
+    kinds = [history.unit[[own[0] for own in loads]], history.sign[[own[0] for own in loads]]]
+    for sizes in (torque, rates):
+        if sizes is not None:
+            kinds.append(np.round(np.log(sizes) / ONE_SIZE))
+    _, kind = np.unique(np.column_stack(kinds), axis=0, return_inverse=True)
+    count = np.bincount(kind)
+    free = len(loads) - len(count)
+    if free < FEWEST_ALIKE:
+        return noise
+    off = width - (np.bincount(kind, width) / count)[kind]
+    rows = np.array([len(own) for own in loads])
+    chance = 2 * float(gammaincinv(free / 2, LUCK))  # of χ², so much or less
+    share = min(1.0, float((off**2 * rows).sum()) / (4 * noise.slow_power) / chance)
+    return replace(noise, white=share * noise.white, coloured=share * noise.coloured)
 
 
 def _backward(

@@ -25,7 +25,11 @@ NOISE, TORQUE_NOISE = 0.2, 0.002
 
 
 def read_late(
-    periods_s: tuple[float, ...], delay_s: float, filtered: bool, friction_arcsec: float = 0.0
+    periods_s: tuple[float, ...],
+    delay_s: float,
+    filtered: bool,
+    friction_arcsec: float = 0.0,
+    every: int = EVERY,
 ) -> tuple[History, np.ndarray]:
     """What a rig reads of an elastic gear with a gap of 60 arcsec, its torque channel late.
 
@@ -49,7 +53,7 @@ def read_late(
         stuck[i] = state
     rng = np.random.default_rng(17)
     angle = 10.0 * torque + 30.0 * np.sign(torque) - friction_arcsec / 2 * stuck
-    rows = np.arange(1, len(torque), EVERY)
+    rows = np.arange(1, len(torque), every)
     none = np.zeros(len(rows), int)
     history = History(
         read[rows] + rng.normal(0, TORQUE_NOISE, len(rows)), none, (rows - 1) // FINE, time[rows]
@@ -82,6 +86,16 @@ def test_a_late_torque_reading_is_said_with_its_delay(filtered: bool) -> None:
     assert outcome.next_measurement is not None
     assert outcome.next_measurement.vary == "torque_rate"
     assert "one instant" in outcome.next_measurement.doing
+
+
+@pytest.mark.parametrize("periods_s", [(240.0, 60.0) * 3, (60.0,) * 4])
+def test_a_gap_crossed_outside_its_band_is_no_noise(periods_s: tuple[float, ...]) -> None:
+    """1 s late at 0.13 N·m/s, 100 rows a cycle: in every quick load the step of 60 arcsec is read where local
+    polynomials over 8 rows look for noise."""
+    outcome = said_of(*read_late(periods_s, 1.0, False, every=2 * EVERY))
+    assert (outcome.verdict, outcome.causes) == ("unknown", ())
+    (left,) = outcome.unexplained
+    assert "backwards" in left.what
 
 
 def test_at_one_rate_or_without_time_no_delay_is_said() -> None:
