@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
@@ -38,7 +42,23 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         inputs = (NOT_SOUGHT,)
     else:
         inputs = ()
-    return (*reading_notes(diagnosis.measurement.read_as), *against, *inputs, *_of_kind(diagnosis))
+    return (
+        *_ratios(diagnosis.causes),
+        *reading_notes(diagnosis.measurement.read_as),
+        *against,
+        *inputs,
+        *_of_kind(diagnosis),
+    )
+
+
+def _ratios(causes: Iterable[NamedCause]) -> list[str]:
+    """Of what the sizes in % are shares."""
+    known = known_causes()
+    return [
+        f"size of {title_of(c.id, c.magnitude)}: {known[c.id].ratio}"
+        for c in causes
+        if c.id in known and known[c.id].ratio
+    ]
 
 
 def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -84,6 +84,8 @@ class Cause(ABC):
     """What a person reads: a noun phrase."""
     unit: ClassVar[str]
     """Of the magnitude."""
+    ratio: ClassVar[str] = ""
+    """Of a magnitude in % or 1: which ratio it is (docs/contract.md)."""
     none: ClassVar[float] = 0.0
     """The magnitude of no effect."""
     passes_none: ClassVar[bool] = True

@@ -42,6 +42,7 @@ class Creep(Cause):
     id = CREEP
     title = "creep (twist that grows while torque is held)"
     unit = "%"
+    ratio = "in % of the elastic twist for each decade of time within holds"
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
     shape_doubt = 0.045

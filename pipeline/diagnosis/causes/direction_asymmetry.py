@@ -26,6 +26,7 @@ class DirectionAsymmetry(Cause):
     id = "direction_asymmetry"
     title = "stiffness that differs with the torque's direction"
     unit = "%"
+    ratio = "difference between the two directions in % of their mean"
     tunable = ("exponent", "rounding_Nm")
     shape_doubt = 0.02
     """One and two deviations cover 75 and 96 % of 28 sizes."""

@@ -21,6 +21,7 @@ class PositionStiffness(PeriodicShapes, Cause):
     id = "position_stiffness"
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
+    ratio = "amplitude of the compliance in % of its mean"
     shape_doubt = 0.003
     """One and two deviations cover 71 and 100 % of 7 sizes."""
     shows_as = "compliance"

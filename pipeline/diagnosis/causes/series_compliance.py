@@ -18,6 +18,7 @@ class SeriesCompliance(Cause):
     id = "series_compliance"
     title = "elastic part left out of the simulation"
     unit = "%"
+    ratio = "in % of the simulated compliance"
     exact = True
     shape_doubt = 0.0007
     """One and two deviations cover 59 and 90 % of 29 sizes."""

@@ -46,6 +46,7 @@ class StiffnessHardening(Cause):
     id = "stiffness_hardening"
     title = "stiffness that grows with load (soft wind-up)"
     unit = "1"
+    ratio = "stiffness near the largest torque over that at 5 to 20 % of it"
     none = 1.0
     shape_doubt = 0.008
     """One and two deviations cover 71 and 86 % of 28 sizes. Beside other causes a law

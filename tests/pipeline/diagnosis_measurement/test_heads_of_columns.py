@@ -33,6 +33,12 @@ SAID = {
     "Stiffness std [N·m/rad]": ("stiffness_std", "Nm_per_rad"),
     "flexspline.length_mm": ("flexspline.length_mm", None),
     "torque_m_Nm": ("torque", "Nm"), "torque_m-Nm": ("torque", "Nm"),
+    "Kroutící moment [N·m]": ("torque", "Nm"), "Úhel natočení (°)": ("angle", "deg"),
+    "Vstupní úhel [°]": ("input_angle", "deg"), "Čas [s]": ("time", "s"),
+    "Teplota [°C]": ("temperature", "C"),
+    "扭矩（N·m）": ("torque", "Nm"), "输出转角 [°]": ("angle", "deg"), "输入角度[°]": ("input_angle", "deg"),
+    "时间/s": ("time", "s"), "温度(℃)": ("temperature", "C"), "循环": ("cycle", None),
+    "出力トルク [Nm]": ("torque", "Nm"), "回転角 [deg]": ("angle", "deg"), "時間 [s]": ("time", "s"),
 }  # fmt: skip
 WRITTEN = {
     "Nm": "Nm N.m N*m N·m N-m N−m N_m N・m N•m NM newton-metres",
@@ -56,6 +62,7 @@ IN_WORDS = {
 }  # fmt: skip
 NOT_OURS = (
     "Motor torque [Nm]", "Torque setpoint [Nm]", "Soll-Winkel [°]", "Angle rate [deg/s]", "Cycle time [s]",
+    "设定扭矩 [Nm]", "Žádaný moment [Nm]", "输入扭矩 [Nm]",
     "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
 )  # fmt: skip
 NO_UNIT = {
