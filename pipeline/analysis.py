@@ -46,10 +46,14 @@ CACHED_TYPES: tuple[type, ...] = (
 
 
 def analysis_context(
-    design: Design, say: Callable[[str], None] = lambda line: None
+    design: Design,
+    say: Callable[[str], None] = lambda line: None,
+    progress: Progress | None = None,
 ) -> AnalysisContext:
-    """A design with the user's cache of solved parts; `say` is told the stages and the cache's faults."""
-    return AnalysisContext(design, Cache(cache_folder(), CACHED_TYPES, say), Progress(say))
+    """A design with the user's cache of solved parts; `say` is told the cache's faults, and the stages too
+    where there is no `progress` yet."""
+    cache = Cache(cache_folder(), CACHED_TYPES, say)
+    return AnalysisContext(design, cache, progress or Progress(say))
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from flexspline.fea.types import Stiffness
-from flexspline.pipeline.analysis import stiffnesses
-from flexspline.pipeline.parts import AnalysisContext
-from flexspline.pipeline.stiffnesses import Stiffnesses
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.parts import AnalysisContext
+    from flexspline.pipeline.stiffnesses import Stiffnesses
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,11 @@ class StiffnessPair:
         return self.solved is None
 
 
+def given_pair(K_b: float | None, K_e: float | None) -> StiffnessPair | None:
+    """Both K [N·m/rad] as the user gives them; None where one is to be solved."""
+    return None if K_b is None or K_e is None else StiffnessPair(K_b, K_e)
+
+
 def stiffness_pair(
     context: AnalysisContext, K_b: float | None = None, K_e: float | None = None
 ) -> StiffnessPair:
@@ -39,8 +46,10 @@ def stiffness_pair(
     DesignError
     NotFoundError : a stiffness that is needed failed.
     """
-    if K_b is not None and K_e is not None:
-        return StiffnessPair(K_b, K_e)
+    if given := given_pair(K_b, K_e):
+        return given
+    from flexspline.pipeline.analysis import stiffnesses
+
     rim = context.design.solver.K_b_in_sum != "K_b"
     found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
     from flexspline.pipeline.parts import AnalysisContext
+    from flexspline.pipeline.progress import Progress
     from flexspline.pipeline.stiffnesses import Stiffnesses
     from flexspline.results.report.attached import Attachment
 
@@ -75,13 +77,20 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Job:
-    """A design that loaded, the folder for its files, and an analysis context with the cache."""
+    """A design that loaded, and the folder for its files."""
 
     design: Design
-    context: AnalysisContext
+    progress: Progress
     folder: Path
     file: Attachment
     began: float
+
+    @cached_property
+    def context(self) -> AnalysisContext:
+        """The design with the cache; asked for where something is solved, as that loads the solvers."""
+        from flexspline.pipeline.analysis import analysis_context
+
+        return analysis_context(self.design, tell, self.progress)
 
     @property
     def wall_s(self) -> float:
@@ -89,7 +98,7 @@ class Job:
 
 
 def begin(path: Path, out: Path | None, files: Iterable[str]) -> Job:
-    """Load the design, say its warnings, open the cache; `files`: names of those that are written."""
+    """Load the design and say its warnings; `files`: names of those that are written."""
     from flexspline.geometry.load import design_from, read_raw, tables_from
     from flexspline.geometry.sanity import warnings
     from flexspline.results.output_folder import folder_of
@@ -100,11 +109,10 @@ def begin(path: Path, out: Path | None, files: Iterable[str]) -> Job:
     folder = folder_of(path, out, files)
     for line in warnings(design):
         tell(f"warning: {line}")
-    from flexspline.pipeline.analysis import analysis_context
+    from flexspline.pipeline.progress import Progress
     from flexspline.results.report.attached import Attachment
 
-    context = analysis_context(design, tell)
-    return Job(design, context, folder, Attachment(path.name, raw, "Design file"), began)
+    return Job(design, Progress(tell), folder, Attachment(path.name, raw, "Design file"), began)
 
 
 def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:

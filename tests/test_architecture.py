@@ -59,6 +59,16 @@ def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
     assert [name for name, _ in imports(bad)] == ["results", "cadquery"]
 
 
+def test_a_diagnosis_with_given_stiffnesses_loads_no_solver() -> None:
+    """They are a third of a second of its three."""
+    code = (
+        "import sys, flexspline.results.diagnosis.diagnose\n"
+        "print(sorted({'skfem', 'pypardiso', 'cadquery', 'flexspline.pipeline.analysis'} & set(sys.modules)))"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"
+
+
 def test_help_loads_nothing_heavy() -> None:
     code = (
         "import sys, flexspline.results.cli\n"

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -39,15 +38,14 @@ from flexspline.pipeline.diagnosis.outcome import (
 )
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd
 from flexspline.pipeline.diagnosis.prediction import Prediction, prediction_of
-from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis, diagnose_sweep
 from flexspline.pipeline.diagnosis.timeless import in_rows
-from flexspline.pipeline.parts import AnalysisContext
 
 if TYPE_CHECKING:
     from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs
     from flexspline.pipeline.gear_chain import Chain
+    from flexspline.pipeline.parts import AnalysisContext
 
 MeasurementKind = Literal["sweep", "end_points", "specimens"]
 
@@ -156,6 +154,9 @@ def diagnose_file(
     if isinstance(measurement, EndPoints):
         outcome, analysis, model = diagnose_end_points(design, measurement, prediction)
         return Diagnosis(design, measurement, prediction, outcome, model, end_points=analysis)
+    from flexspline.pipeline.analysis import analysis_context
+    from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
+
     bench = context or analysis_context(design)
     outcome, found = diagnose_specimens(
         design, measurement, K_b, K_e, bench, full=context is not None

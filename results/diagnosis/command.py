@@ -98,10 +98,7 @@ def diagnose(
             from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 
             refuse_given(kb, ke)
-        said = diagnose_and_write(
-            job.context, measured, given, job.folder, json, (job.file,), counts_per_turn,
-            against == GEAR,
-        )  # fmt: skip
+        said = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
         show(said, json)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
-from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
+if TYPE_CHECKING:  # they load the solvers
+    from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
+    from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 
 @dataclass(frozen=True)
