@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import left_out, summary
 
 DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
@@ -67,3 +70,12 @@ def test_a_rival_is_named_in_the_advice(kind) -> None:
     said = why(after, kind)
     assert "elastic part left out of the simulation" in said
     assert "friction hysteresis" in said
+
+
+@pytest.mark.parametrize("cause", [c for c in known_causes().values() if c.unit in ("%", "1")])
+def test_a_ratio_says_of_what(cause: Cause) -> None:
+    assert cause.ratio
+    found = DiagnosisOutcome("named", (named(cause.id, 2.0, cause.unit),))
+    diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(1.0, 1.0, 0.0, 0.0), found)
+    (note,) = (n for n in notes(diagnosis) if n.startswith("size of"))
+    assert note == f"size of {cause.title_at(2.0)}: {cause.ratio}"
