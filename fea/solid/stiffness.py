@@ -45,7 +45,9 @@ NEAR_STEP, FAR_STEP = (0.25, 0.6), 0.8
 length there, so that is refined by as much as is still missing, within this range. Around them and
 far away the error falls with the fourth power of growth and length: both take the second factor."""
 LONGER = 2.0
-"""Time of the next mesh and its solution over that of the last, at least: it has about twice the elements."""
+"""Time of the next mesh and its solution over that of the last where the singular edges' step is the longest:
+it has about twice the elements; a shorter step takes so much more. fTetWild took 12 s for 14 766 elements of
+a cup, and was not done in 45 s with the shortest step."""
 AIM = 0.7
 """Share of the tolerance that the next mesh aims at."""
 
@@ -130,11 +132,12 @@ class _SolidTorsion:
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
             self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, FALLS
             return made
-        now_s = self._deadline.elapsed()
-        if now_s + LONGER * (now_s - self._began_s) >= self._deadline.limit_s:
+        now_s, step = self._deadline.elapsed(), near_step(self._tolerance, self.half)
+        longer = LONGER * NEAR_STEP[1] / step
+        if now_s + longer * (now_s - self._began_s) >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began_s = now_s
-        self._spec = _finer(self._spec, near_step(self._tolerance, self.half))
+        self._spec = _finer(self._spec, step)
         left_s = self._deadline.limit_s - now_s
         return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
