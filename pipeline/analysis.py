@@ -112,36 +112,45 @@ def stiffnesses(
         ring = context.ring if flexspline else None
         return Stiffnesses(in_order(every), ring=ring, missing=tried.missing)
 
-    solved_rim: dict[str, Stiffness | None] = {}
-    peaks: dict[str, StressPeak | None] = {}
-
-    def solve(cases: tuple[RimCase, ...]) -> Attempts:
-        own = Attempts()
-        for case in cases:
-            name = figure_of(case)
-            solved_rim[name] = own.get(name, partial(rim_stiffness, rim_part, case))
-        return own
-
-    def find(name: str, peak: Callable[[PartModel], StressPeak]) -> Attempts:
-        own = Attempts()
-        peaks[name] = own.get(name, partial(peak, rim_part))
-        return own
-
-    tasks = [
-        *(partial(solve, cases) for cases in rim_cases(rim_part)),
-        partial(find, "wave_generator_peak", ellipse_peak),
-        partial(find, "half_seat_peak", half_seat_peak),
-    ]
-    with beside(context.progress, tasks) as rest:
+    rim_found = _RimFigures()
+    with beside(context.progress, rim_found.tasks(rim_part)) as rest:
         K_e = K_of("K_e", shaft_part) if shaft else None
         every_tried = [tried, *rest()]
     return Stiffnesses(
-        in_order({"K_b": K_b, "K_e": K_e, **solved_rim}),
-        peaks["wave_generator_peak"],
-        peaks["half_seat_peak"],
+        in_order({"K_b": K_b, "K_e": K_e, **rim_found.K}),
+        rim_found.peaks["wave_generator_peak"],
+        rim_found.peaks["half_seat_peak"],
         context.ring,
         {name: why for each in every_tried for name, why in each.missing.items()},
     )
+
+
+class _RimFigures:
+    """K and peak stresses of the rim under lobes and ellipse, by name; None: not found."""
+
+    def __init__(self) -> None:
+        self.K: dict[str, Stiffness | None] = {}
+        self.peaks: dict[str, StressPeak | None] = {}
+
+    def tasks(self, rim: PartModel) -> list[Callable[[], Attempts]]:
+        """What finds them, in any order; each gives what it tried."""
+        return [
+            *(partial(self._solve, rim, cases) for cases in rim_cases(rim)),
+            partial(self._find, rim, "wave_generator_peak", ellipse_peak),
+            partial(self._find, rim, "half_seat_peak", half_seat_peak),
+        ]
+
+    def _solve(self, rim: PartModel, cases: tuple[RimCase, ...]) -> Attempts:
+        tried = Attempts()
+        for case in cases:
+            name = figure_of(case)
+            self.K[name] = tried.get(name, partial(rim_stiffness, rim, case))
+        return tried
+
+    def _find(self, rim: PartModel, name: str, peak: Callable[[PartModel], StressPeak]) -> Attempts:
+        tried = Attempts()
+        self.peaks[name] = tried.get(name, partial(peak, rim))
+        return tried
 
 
 def run(
