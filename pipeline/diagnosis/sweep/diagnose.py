@@ -17,7 +17,7 @@
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
-| verdict; physical limits | `../decision.py`; `limits.py`, `backward.py` |
+| verdict; physical limits | `../decision.py`; `limits.py`, `backward.py` (`loads.py`, `torque_delay.py`) |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """

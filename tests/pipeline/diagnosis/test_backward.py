@@ -170,3 +170,13 @@ def test_loops_of_one_twist_take_or_give_by_the_sense_they_are_run() -> None:
         angle = angle + np.random.default_rng(2).normal(0, NOISE, 800)
         left = said_of(history, angle).unexplained
         assert any("backwards" in u.what for u in left) == backward
+
+
+def test_a_record_without_noise_has_no_loop_of_rounding() -> None:
+    history, _ = read_late((100.0, 50.0) * 3, 1e-9, False)
+    torque = np.round(history.torque_Nm, 3)
+    angle = 10.0 * torque + 30.0 * np.sign(torque)
+    exact = replace(history, torque_Nm=torque)
+    for rounding in (-1e-9, 0.0, 1e-9):  # of the loop's width
+        tilted = angle + rounding * np.gradient(torque)
+        assert backward_loop(exact, tilted, 0.07, Noise(0.04, 0.0, 0.5)) is None
