@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -16,15 +17,20 @@ T = TypeVar("T")
 def beside(progress: Progress, tasks: Sequence[Callable[[], T]]) -> Iterator[Callable[[], list[T]]]:
     """Begin `tasks` in a thread, one after the other; the function that is given does those not yet begun.
 
-    It returns all results in the tasks' order, or raises what a task raised. Where the context ends by an
-    error or an interruption, the thread ends at its next stage.
+    It returns all results in the tasks' order, or raises what a task raised, after which none is begun. Where
+    the context ends by an error or an interruption, the thread ends at its next stage.
     """
     numbers = iter(range(len(tasks)))  # of the tasks not yet begun, for both threads
     results: dict[int, T] = {}
+    stopped = progress.stopped
 
     def work() -> None:
         for number in numbers:
-            results[number] = tasks[number]()
+            try:
+                results[number] = tasks[number]()
+            except BaseException:
+                deque(numbers, maxlen=0)
+                raise
 
     try:
         with ThreadPoolExecutor(1) as executor:
@@ -41,4 +47,4 @@ def beside(progress: Progress, tasks: Sequence[Callable[[], T]]) -> Iterator[Cal
                 progress.stopped = True
                 raise
     finally:
-        progress.stopped = False
+        progress.stopped = stopped

@@ -183,7 +183,10 @@ def _superlu(matrix: csr_matrix) -> Back:
     from scipy.sparse.linalg import splu
 
     options = {"SymmetricMode": True}
-    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options=options).solve
+    try:
+        return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options=options).solve
+    except RuntimeError as fault:  # its word for an exactly singular matrix
+        raise SolveError(f"{fault}: part of the model may be unsupported") from fault
 
 
 @cache

@@ -68,3 +68,11 @@ def test_the_answer_is_that_of_non_negative_least_squares() -> None:
 
 def test_no_force_where_nothing_touches() -> None:
     assert not pushing(np.eye(4), np.array([0.0, 1.0, 2.0, 0.0])).any()
+
+
+def test_places_that_are_one_share_the_force() -> None:
+    """Two places with one compliance: the matrix is singular, and what they carry together is known."""
+    matrix = np.array([[2.0, 1.0, 1.0], [1.0, 2.0, 2.0], [1.0, 2.0, 2.0]])
+    force = pushing(matrix, -np.ones(3))
+    # 2a + b = 1 and a + 2b = 1
+    assert [force[0], force[1] + force[2]] == pytest.approx([1 / 3, 1 / 3], rel=1e-8)

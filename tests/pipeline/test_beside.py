@@ -80,3 +80,24 @@ def test_both_threads_do_the_tasks_each_once() -> None:
     with beside(Progress(), [partial(task, number) for number in range(3)]) as rest:
         assert rest() == [0, 10, 20]
     assert done == [1, 2, 0]
+
+
+def test_after_an_error_no_task_is_begun() -> None:
+    failed, begun = threading.Event(), []
+
+    def failing() -> None:
+        failed.set()
+        raise ValueError("of the work")
+
+    def task() -> None:
+        begun.append(failed.wait(60))
+
+    def both() -> None:
+        with beside(Progress(), [failing, *9 * [task]]) as rest:
+            failed.wait(60)
+            time.sleep(0.2)  # until the thread has said so
+            rest()
+
+    with pytest.raises(ValueError, match="of the work"):
+        both()
+    assert not begun

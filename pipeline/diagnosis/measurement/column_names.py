@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.measurement.time_stamps import without_form
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES, UNITS, unit_named
 from flexspline.pipeline.diagnosis.measurement.vocabulary import (
     ANOTHER,
+    EASTERN,
+    EASTERN_WORDS,
     ENDINGS,
     INPUT,
     MINUS,
@@ -111,7 +114,7 @@ def _parted(text: str) -> tuple[str, str | None]:
 def _in_words(text: str, written: str | None) -> ColumnName | None:
     kinds: set[str] = set()
     left: list[str] = []
-    for token in (t.lower() for t in _TOKEN.findall(text)):
+    for token in _tokens(text):
         ending = "" if token in QUANTITY_OF else next(filter(token.endswith, ENDINGS), "")
         if ending:
             kinds.add(ENDINGS[ending])
@@ -128,6 +131,15 @@ def _in_words(text: str, written: str | None) -> ColumnName | None:
     if len(kinds) != 1 or ("part" in kinds and left):
         return None
     return _qualified(kinds.pop(), left, written)
+
+
+def _tokens(text: str) -> Iterator[str]:
+    """Words, figures and signs in small letters; Chinese and Japanese cut into words that are known."""
+    for token in (t.lower() for t in _TOKEN.findall(text)):
+        if EASTERN.search(token):
+            yield from (part for part in EASTERN_WORDS.split(token) if part)
+        else:
+            yield token
 
 
 def _by_symbol(words: list[str], written: str) -> tuple[set[str], list[str]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 
 def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
@@ -9,12 +11,13 @@ def _words(text: str) -> frozenset[str]:
 
 _QUANTITIES = {
     "torque": "torque drehmoment moment torsionsmoment 扭矩 转矩 力矩 トルク",
-    "angle": "angle winkel twist verdrehung verdrehwinkel torsionswinkel drehwinkel rotation "
-    "position encoder deflection displacement úhel uhel natočení natoceni 角度 转角 扭转角 回転角",
-    "time": "time zeit timestamp datetime date datum uhrzeit zeitstempel elapsed čas cas 时间 時間",
-    "temperature": "temperature temperatur temp teplota 温度",
+    "angle": "angle winkel twist verdrehung verdrehwinkel torsionswinkel drehwinkel rotation position "
+    "encoder deflection displacement úhel uhel natočení natoceni zkroucení zkrut "
+    "角度 转角 扭转角 扭角 旋转角 角位移 回転角 ねじれ角",
+    "time": "time zeit timestamp datetime date datum uhrzeit zeitstempel elapsed čas cas 时间 时刻 時間",
+    "temperature": "temperature temperatur temp teplota 温度 油温",
     "stiffness": "stiffness steifigkeit torsionssteifigkeit tuhost 刚度 剛性",
-    "cycle": "cycle cycles zyklus zyklen loop cyklus 循环 サイクル",
+    "cycle": "cycle cycles zyklus zyklen loop cyklus cyklu 循环 循环次数 サイクル サイクル数",
     "unit": "unit gear prüfling seriennummer serial sn",
     "specimen": "specimen probe",
     "part": "part bauteil",
@@ -30,21 +33,22 @@ SYMBOLS = {
 """Letters that stand for a quantity where the unit says the same: T in N·m, °C and s."""
 ENDINGS = {
     "moment": "torque", "winkel": "angle", "temperatur": "temperature", "zeit": "time",
-    "steifigkeit": "stiffness", "position": "angle", "扭矩": "torque", "转矩": "torque", "力矩": "torque",
-    "トルク": "torque", "角度": "angle", "转角": "angle", "回転角": "angle", "时间": "time", "時間": "time",
-    "温度": "temperature", "刚度": "stiffness", "剛性": "stiffness",
+    "steifigkeit": "stiffness", "position": "angle",
 }  # fmt: skip
-"""Ends of compounds, which some languages write as one word; what stands before them qualifies."""
+"""Ends of German compounds; what stands before them qualifies."""
 SAYS_NOTHING = _words(
     "output abtrieb abtriebs abtriebsseitig ausgang ausgangs actual act ist istwert measured gemessen "
     "mess messwert value wert reading signal no nr nummer number num s n in of the des der angular "
     "torsion torsional torsions rotational spring degree dreh verdreh test prüf lauf "
-    "výstup výstupní vystup vystupni kroutící krouticí točivý tocivy torzní torzni naměřený "
-    "naměřená měřený číslo 输出 输出端 测量 实测 扭转 编号 出力 出力側 測定"
+    "výstup výstupní výstupu výstupního vystup vystupni hřídele na v kroutící krouticí točivý tocivy torzní "
+    "torzni naměřený naměřená měřený měřená číslo "
+    "输出 输出端 输出轴 输出侧 轴 侧 端 负载 测量 测得 实测 实际 扭转 编号 序号 号 值 数 "
+    "出力 出力側 出力軸 軸 側 の 負荷 測定 実測 値"
 )
 INPUT = _words(
-    "input motor antrieb antriebs eingang eingangs wave generator wg drive vstup vstupní vstupni motoru "
-    "输入 输入端 电机 入力 入力側 モータ モーター"
+    "input motor antrieb antriebs eingang eingangs wave generator wg drive "
+    "vstup vstupní vstupni vstupu vstupního motoru motorový motorovy motorová generátoru generatoru vlnového "
+    "输入 电机 电动机 马达 驱动 波发生器 波动发生器 入力 モータ モーター 電動機 駆動 ウェーブジェネレータ"
 )
 """The wave generator's side."""
 ANOTHER = _words(
@@ -54,11 +58,23 @@ ANOTHER = _words(
     "current voltage strom spannung leistung drehzahl beschleunigung "
     "change rise delta δ diff difference differenz änderung increment step remaining half double "
     "x per pro div milli micro mikro kilo "
-    "žádaný žádaná zadaný zadaná rychlost otáčky chyba odchylka 设定 指令 目标 额定 速度 误差 目標 誤差 定格"
+    "žádaný žádaná zadaný zadaná požadovaný požadovaná nastavený nastavená cílový cílová jmenovitý jmenovitá "
+    "maximální minimální třecí rychlost otáčky chyba odchylka směrodatná "
+    "设定 给定 指令 命令 目标 期望 额定 最大 最小 峰值 平均 速度 加速度 转速 误差 偏差 标准差 标准偏差 "
+    "摩擦 启动 变化 率 增量 差 零点 零位 理论 计算 仿真 电流 电压 功率 "
+    "設定 目標 定格 回転数 誤差 標準偏差 起動 変化 計算 電流 電圧"
 )
 """Words that make of a quantity another one, or scale it."""
-OTHER_TIMES = _words("step remaining left")
+OTHER_TIMES = _words("step remaining left zbývající 剩余 间隔 采样 残り 間隔 サンプリング")
 """Of a time: the others of `ANOTHER` leave it one, as in "Time 1 - default sample rate"."""
-SPREAD = _words("std sd standard deviation standardabweichung abweichung")
+SPREAD = _words(
+    "std sd standard deviation standardabweichung abweichung směrodatná odchylka 标准差 标准偏差 標準偏差"
+)
 PLUS = _words("plus + pos positive positiv")
 MINUS = _words("minus - − neg negative negativ")
+
+EASTERN = re.compile("[぀-ヿ㐀-鿿]")
+"""Letters of Japanese and Chinese, which have no spaces between words."""
+_EVERY = QUANTITY_OF.keys() | SAYS_NOTHING | INPUT | ANOTHER | OTHER_TIMES | SPREAD
+EASTERN_WORDS = re.compile(f"({'|'.join(sorted(filter(EASTERN.search, _EVERY), key=len)[::-1])})")
+"""Known words in those letters, the longest first: a head is cut into them."""

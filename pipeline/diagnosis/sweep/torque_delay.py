@@ -19,6 +19,9 @@ LONGEST, TRIED = 0.25, 51
 """Of the quickest load, half of a ramp: a reading later than that is of another way; and the delays tried,
 the best of them refined."""
 
+FAR = 10.0
+"""Times as different as they are, where a delay leaves other loads than there were."""
+
 
 def torque_delay_s(
     loads: Loads, angle_arcsec: np.ndarray, band_Nm: float
@@ -40,9 +43,11 @@ def torque_delay_s(
         early = replace(history, torque_Nm=_read_at(history, delay_s))
         return Loads.of(early, band_Nm).widths(angle_arcsec)
 
+    was = widths(0.0)
+
     def unlike(delay_s: float) -> float:
         found = widths(delay_s)
-        return float(found.std()) if len(found) == len(rates) else np.inf
+        return float((found if len(found) == len(was) else FAR * was).std())
 
     tried = np.linspace(0.0, longest, TRIED)
     best = int(np.argmin([unlike(one) for one in tried]))
@@ -50,7 +55,7 @@ def torque_delay_s(
         return None
     ends = (tried[best - 1], tried[best + 1])
     delay = float(minimize_scalar(unlike, bounds=ends, method="bounded").x)
-    was, left = widths(0.0), widths(delay)
+    left = widths(delay)
     if len(left) != len(was) or left.std() > DIFFERENT * was.std():
         return None
     # how much of a width's difference goes with the rate for each second

@@ -79,6 +79,8 @@ def crossing(
     if not both_ways(torque_Nm):
         return None
     near = np.abs(torque_Nm) < REACH * largest
+    if not near.any():
+        return None
     torque, left = torque_Nm[near], left_arcsec[near]
     # what the model misses near zero is not evidence of an offset
     beside = np.abs(np.abs(left) - gap_arcsec / 2)

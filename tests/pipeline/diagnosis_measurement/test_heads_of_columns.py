@@ -38,6 +38,11 @@ SAID = {
     "Teplota [°C]": ("temperature", "C"),
     "扭矩（N·m）": ("torque", "Nm"), "输出转角 [°]": ("angle", "deg"), "输入角度[°]": ("input_angle", "deg"),
     "时间/s": ("time", "s"), "温度(℃)": ("temperature", "C"), "循环": ("cycle", None),
+    "ねじれ角 (arcsec)": ("angle", "arcsec"), "入力軸回転角 (deg)": ("input_angle", "deg"),
+    "波发生器角度 (deg)": ("input_angle", "deg"), "输出端角位移 (arcsec)": ("angle", "arcsec"),
+    "úhel generátoru vln (deg)": ("input_angle", "deg"), "zkroucení (arcsec)": ("angle", "arcsec"),
+    "ウェーブジェネレータ回転角 (deg)": ("input_angle", "deg"), "输出端扭转角 (arcsec)": ("angle", "arcsec"),
+    "刚度 标准差 (Nm/rad)": ("stiffness_std", "Nm_per_rad"),
     "出力トルク [Nm]": ("torque", "Nm"), "回転角 [deg]": ("angle", "deg"), "時間 [s]": ("time", "s"),
 }  # fmt: skip
 WRITTEN = {
@@ -62,7 +67,11 @@ IN_WORDS = {
 }  # fmt: skip
 NOT_OURS = (
     "Motor torque [Nm]", "Torque setpoint [Nm]", "Soll-Winkel [°]", "Angle rate [deg/s]", "Cycle time [s]",
-    "设定扭矩 [Nm]", "Žádaný moment [Nm]", "输入扭矩 [Nm]",
+    "设定扭矩 [Nm]", "Žádaný moment [Nm]", "输入扭矩 [Nm]", "扭矩设定值 (Nm)",
+    "电动机转矩 (Nm)", "马达扭矩 [Nm]", "モータ側トルク [Nm]", "入力軸トルク [Nm]", "motorový moment [Nm]",
+    "moment na vstupu [Nm]", "给定扭矩 [Nm]", "設定トルク [Nm]", "požadovaný moment [Nm]", "最大扭矩 [Nm]",
+    "摩擦力矩 [Nm]", "サイクル時間 (s)", "čas cyklu (s)", "剩余时间 (s)", "残り時間 (s)",
+    "扭转角 标准差 (arcsec)", "角速度 [deg/s]", "仿真转角 [arcsec]",
     "Comment", "Part No.", "1.25", "", "angle_predicted_arcsec", "Torque;Angle", "Drehzahl [1/min]",
 )  # fmt: skip
 NO_UNIT = {

@@ -1,0 +1,24 @@
+"""One thread of the linear algebra libraries, asked for by two threads that overlap."""
+
+from __future__ import annotations
+
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from flexspline.fea.threads import one_thread
+
+
+def threads() -> set[int]:
+    return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+
+
+def test_the_last_to_leave_takes_the_limit_off() -> None:
+    """Neither is inside the other: the first leaves while the second is there."""
+    with threadpool_limits(2, "blas"):
+        before = threads()
+        first, second = one_thread(), one_thread()
+        first.__enter__()
+        second.__enter__()
+        first.__exit__(None, None, None)
+        assert threads() == {1}
+        second.__exit__(None, None, None)
+        assert threads() == before == {2}
