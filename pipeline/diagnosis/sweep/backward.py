@@ -31,18 +31,28 @@ FEWEST_ALIKE, LUCK = 4, 0.05
 """Differences between loads that are alike of which a noise is told, and the chance that it is larger."""
 QUICK = 1.25
 """Times a load's own rate that the quickest must not exceed, where the quickest are looked at alone."""
-SLOW = ("thermal_clearance", "wear", "sensor_drift", "?temperature_C")
-"""Owners of terms that follow the time within a load; that of the temperature's has no name."""
+WITHIN_LOADS = (
+    "thermal_clearance", "wear", "sensor_drift", "?temperature_C", "kinematic_error", "position_stiffness",
+)  # fmt: skip
+"""Owners of terms that change with time or the input within a load; that of the temperature has no name."""
 ABSENT = {
     "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
     "input_angle_deg": "a wave generator that turns with the load (its angle)",
 }
 """What an honest gear or rig may do that gives such loops, by the channel that would show it."""
-NEXT = NextMeasurement(
+FOLLOWS = 0.2
+"""Share of a late reading's growth from the slowest to the quickest loads, below which loops do not grow."""
+LATE = NextMeasurement(
     "torque_rate",
     "find_structure",
     doing="compare the filters of the torque and the angle channel, and whether both are read at one "
-    "instant; then repeat the sweep ten times slower: what a late reading opens is then a tenth as wide",
+    "instant; then repeat the sweep ten times slower: what a late reading opens is then a tenth as wide, "
+    "what a hysteresis of the torque cell opens as wide as before",
+)
+CELL = NextMeasurement(
+    "torque_Nm",
+    "find_structure",
+    doing="load and unload the torque cell against known weights, and compare its reading both ways",
 )
 
 
@@ -54,35 +64,48 @@ class BackwardLoop:
     ----------
     loops : so many. rate_Nm_per_s : of the quickest, where only those do; else None.
     delay_s : by which a late torque reading explains how loops differ with their rate, with its standard
-        deviation; None where the rates do not differ, or where that does not explain it. unrecorded : what
-        else may look like it, in words, where its channel is missing.
+        deviation; None where the rates do not differ, or where that does not explain it. grows : whether
+        the loops do with the rate; None where rates do not differ. unrecorded : what else may look like it,
+        in words, where its channel is missing.
     """
 
     width_arcsec: float
     loops: int
     rate_Nm_per_s: float | None
     delay_s: tuple[float, float] | None
+    grows: bool | None
     unrecorded: tuple[str, ...] = ()
 
     @property
     def said(self) -> Unexplained:
         """As structure without a name that breaks a limit."""
-        late = "by a filter or a delay"
-        if self.delay_s is not None:
-            delay, std = self.delay_s
-            late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
         which = "the loops run" if self.rate_Nm_per_s is None else (
             f"the quickest loops, at {self.rate_Nm_per_s:.3g} N·m/s, run"
         )  # fmt: skip
         what = (
             f"{which} backwards: in the mean of {self.loops} the angle is {self.width_arcsec:.3g} "
             "arcsec lower while torque falls than while it rises, so that the gear would give energy, which "
-            f"none does; most likely the torque reading lags the angle reading, {late}, or the two are not "
-            "read at one instant"
+            f"none does; most likely {self._likely}"
         )
         if self.unrecorded:
             what += f". Not recorded, and able to look like it: {' and '.join(self.unrecorded)}"
         return Unexplained("torque_rate", self.width_arcsec / 2, 0.0, what, limit=True)
+
+    @property
+    def _likely(self) -> str:
+        if self.grows is False:
+            return "the torque cell has a hysteresis of its own, as the loops do not grow with the torque's rate"
+        late = "by a filter or a delay"
+        if self.delay_s is not None:
+            delay, std = self.delay_s
+            late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
+        late = f"the torque reading lags the angle reading, {late}, or the two are not read at one instant"
+        return late if self.grows else f"{late}, or the torque cell has a hysteresis of its own"
+
+    @property
+    def next(self) -> NextMeasurement:
+        """What tells more."""
+        return CELL if self.grows is False else LATE
 
 
 def backward_of(prepared: PreparedSweep, explained: ExplainedSweep) -> BackwardLoop | None:
@@ -90,14 +113,14 @@ def backward_of(prepared: PreparedSweep, explained: ExplainedSweep) -> BackwardL
 
     `prepared` : before the race, with the noise that local polynomials leave: what the race leaves holds what
     no cause could make of such loops. Of what it found only that is taken off which changes while a load
-    lasts, as a gap that shrinks; a law of the torque opens no loop.
+    lasts, as a gap that shrinks; a law of the torque opens no loop, nor does a shift of its reading, which
+    the race may have made of a late one.
     """
     angle = prepared.sweep.angle_arcsec.copy()
-    for owner in SLOW:
+    for owner in WITHIN_LOADS:
         if owner in explained.identified.rms:
             angle -= explained.identified.fit.added(owner)
-    history = prepared.sweep.history.shifted(explained.prepared.offset_Nm)
-    return backward_loop(history, angle, prepared.band_Nm, prepared.noise)
+    return backward_loop(prepared.sweep.history, angle, prepared.band_Nm, prepared.noise)
 
 
 def backward_loop(
@@ -118,7 +141,18 @@ def backward_loop(
         said for channel, said in ABSENT.items() if getattr(history, channel) is None
     )
     delay = torque_delay_s(loads, angle_arcsec, band_Nm)
-    return BackwardLoop(*found, quickest, delay, unrecorded)
+    grows = True if quickest or delay else _grow(loads, angle_arcsec)
+    return BackwardLoop(*found, quickest, delay, grows, unrecorded)
+
+
+def _grow(loads: Loads, angle_arcsec: np.ndarray) -> bool | None:
+    """Whether backward loops are the wider the quicker; None where rates do not differ."""
+    if loads.rates is None:
+        return None
+    slope, at_rest = np.polyfit(loads.rates, loads.widths(angle_arcsec), 1)
+    slow, quick = float(loads.rates.min()), float(loads.rates.max())
+    wider = (at_rest + slope * quick) / (at_rest + slope * slow) - 1
+    return bool(wider > FOLLOWS * (quick / slow - 1))
 
 
 def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
@@ -133,8 +167,10 @@ def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
     if free < FEWEST_ALIKE:
         return noise
     off = width - (np.bincount(kind, width) / count)[kind]
-    chance = 2 * float(gammaincinv(free / 2, LUCK))  # of χ², so much or less
-    seen = float((off**2 * loads.counts).sum()) / (4 * noise.slow_power) / chance
+    power = off**2 * loads.counts
+    chance = 2 * float(gammaincinv((free - 1) / 2, LUCK))  # of χ², so much or less
+    # without the one that is most unlike: a record may end within a load
+    seen = float(power.sum() - power.max()) / (4 * noise.slow_power) / chance
     share = float(np.clip(seen, FINEST_ARCSEC**2 / noise.variance, 1.0))
     return replace(noise, white=share * noise.white, coloured=share * noise.coloured)
 

@@ -38,9 +38,8 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.backward import NEXT as BACKWARD_NEXT
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
-from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels
+from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
@@ -110,19 +109,21 @@ def diagnose_sweep(
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
-    # causes that explain all leave no loop to run backwards
-    backward = backward_of(prepared, explained) if decision.unexplained else None
+    backward = backward_of(prepared, explained)
     if backward is not None:  # whatever else was found is what the race made of it
         decision = Decision("unknown", (), (backward.said,))
     ids = [c.id for c in decision.causes]
     gain = gain_of(explained, ids)
+    levels = gains_at_levels(explained, ids) if ids else ()
+    if (fails := refuted(levels)) is not None:
+        decision = Decision("unknown", decision.causes, (fails, *decision.unexplained))
     outcome = DiagnosisOutcome(
         decision.verdict,
         decision.causes,
         decision.unexplained,
         gain,
-        BACKWARD_NEXT if backward else next_measurement(explained, decision),
-        gains_at_levels=gains_at_levels(explained, ids) if ids else (),
+        backward.next if backward else next_measurement(explained, decision),
+        gains_at_levels=levels,
     )
     written = written_model(explained, sweep, ids, gain)
     return outcome, SweepAnalysis(explained, written.model, written.doubt, tuple(tests))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
+from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
@@ -21,6 +22,10 @@ MOST_ROWS = 24_000
 """Rows that all levels together may take, each with a search of its own: 1.5 ms of a processor a row."""
 FEWEST_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
+
+REFUTED = 2.0
+"""Times the error without the causes, at a whole level that was held out, from which they explain nothing:
+half of a true effect would still make it smaller."""
 
 
 def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
@@ -38,6 +43,23 @@ def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple
     splits = splits[-(MOST_ROWS // len(prepared.kept)) :] if len(prepared.kept) <= MOST_ROWS else []
     gains = (_gain(explained, causes, split) for split in splits)
     return tuple(g for g in gains if g is not None)
+
+
+def refuted(levels: Iterable[Gain]) -> Unexplained | None:
+    """A level at which the causes learnt on the others are worse than none of them; None where none is so."""
+    worst = max(levels, key=_times_worse, default=None)
+    if worst is None or _times_worse(worst) < REFUTED:
+        return None
+    without = min(worst.rmse_before, worst.rmse_calibrated)
+    what = (
+        f"what was found does not hold at {worst.held_out}: learnt on the other rows it misses these by "
+        f"{worst.rmse_after:.3g} arcsec rms, the simulation without it by {without:.3g}"
+    )
+    return Unexplained(worst.channel, worst.rmse_after, 0.0, what, limit=True)
+
+
+def _times_worse(gain: Gain) -> float:
+    return gain.rmse_after / max(min(gain.rmse_before, gain.rmse_calibrated), FINEST_ARCSEC)
 
 
 def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> Gain | None:

@@ -110,6 +110,26 @@ def test_at_one_rate_or_without_time_no_delay_is_said() -> None:
         assert "at all rates" not in left.what
 
 
+@pytest.mark.parametrize(
+    ("periods_s", "likely"),
+    [((100.0, 50.0, 200.0, 100.0), False), ((50.0,) * 4, True)],
+)
+def test_a_torque_cell_s_own_hysteresis_is_no_delay(
+    periods_s: tuple[float, ...], likely: bool
+) -> None:
+    """Read 0.06 N·m lower while torque rises, at every rate; at one rate it may be late as well."""
+    history, angle = read_late(periods_s, 1e-3, False)
+    rising = np.gradient(history.torque_Nm) > 0
+    read = replace(history, torque_Nm=history.torque_Nm - np.where(rising, 0.06, 0.0))
+    outcome = said_of(read, angle)
+    (left,) = outcome.unexplained
+    assert "backwards" in left.what
+    assert "torque cell has a hysteresis" in left.what
+    assert ("lags" in left.what) == likely
+    assert outcome.next_measurement is not None
+    assert ("weights" in outcome.next_measurement.doing) != likely
+
+
 def test_friction_wider_than_what_a_late_reading_takes_runs_forwards() -> None:
     """10 arcsec of friction, of which the delay takes 1.28: the loops take energy."""
     outcome = said_of(*read_late((50.0,) * 4, DELAY_S, False, friction_arcsec=10.0))
