@@ -94,7 +94,7 @@ class BackwardLoop:
     @property
     def _likely(self) -> str:
         if self.grows is False:
-            return "the torque cell has a hysteresis of its own, as the loops do not grow with the torque's rate"
+            return "the torque cell has a hysteresis of its own, as the loops do not grow with the rate"
         late = "by a filter or a delay"
         if self.delay_s is not None:
             delay, std = self.delay_s

@@ -12,7 +12,8 @@ from histories import PREDICTION, joined, sweep
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels
+from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.splits import between_others, whole_levels
@@ -147,3 +148,16 @@ def test_what_is_known_carries_over_to_an_amplitude_not_measured() -> None:
     for g in gains:  # 300 rows and more: the rms of the noise is good to 4 %, thrice that
         assert g.rmse_after == pytest.approx(0.5, rel=0.15)
         assert g.rmse_before > 4.0  # 6 arcsec beside the line on all but the reversals
+
+
+def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
+    def level(calibrated: float, after: float) -> Gain:
+        return Gain("rate 0.1 N·m/s", 9.0, calibrated, after, 0.5, channel="torque_rate")
+
+    assert refuted([]) is None
+    assert refuted([level(4.0, 1.0), level(1.0, 1.9)]) is None
+    found = refuted([level(4.0, 1.0), level(1.0, 2.1)])
+    assert found is not None
+    assert found.channel == "torque_rate"
+    assert "does not hold at rate 0.1 N·m/s" in found.what
+    assert "by 2.1 arcsec rms, the simulation without it by 1" in found.what
