@@ -11,8 +11,8 @@ from histories import PREDICTION, joined, sweep
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
