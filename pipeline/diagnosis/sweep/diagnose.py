@@ -109,7 +109,9 @@ def diagnose_sweep(
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
-    backward = backward_of(prepared, explained)
+    # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
+    # curve's, a few loads of a gear that does nothing seem to
+    backward = backward_of(prepared, explained) if decision.unexplained else None
     if backward is not None:  # whatever else was found is what the race made of it
         decision = Decision("unknown", (), (backward.said,))
     ids = [c.id for c in decision.causes]
