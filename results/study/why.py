@@ -16,6 +16,10 @@ from flexspline.results.study.labels import entry, valued
 
 STRONG = 0.3
 """Rank correlation from which an influence is worth a sentence."""
+BY_CHANCE = 0.01
+"""Of dimensions that move nothing, the share that a report may say something of."""
+SAME = 1e-9
+"""Of ranks that others make up to rounding."""
 AT_END = 0.02
 """Of a span: a best design so near its end would go on if it could."""
 FEWEST = 8
@@ -25,17 +29,23 @@ WORTH = 0.1
 
 
 def influences(result: StudyResult) -> list[str]:
-    """What moves each objective, by Spearman's rank correlation over all designs built."""
+    """What moves each objective, by Spearman's rank correlation over all designs built.
+
+    An optimiser's designs move several dimensions together, and few designs agree by chance: what is no
+    influence of the dimension itself is left out.
+    """
     rows = result.built
     if len(rows) < FEWEST or result.about_scatter:  # where indices say what moves what
         return []
     said = []
+    values = {key: np.array([r.values[key] for r in rows]) for key in result.study.file.vary}
+    moved = {key: x for key, x in values.items() if np.ptp(x) > 0}
     for key in result.shown:
         y = np.array([r.outcome.figures[key] for r in rows])
         found = []
-        for varied in result.study.file.vary:
-            x = np.array([r.values[varied] for r in rows])
-            if np.ptp(x) > 0 and np.ptp(y) > 0:
+        for varied, x in moved.items():
+            others = [moved[other] for other in moved if other != varied]
+            if np.ptp(y) > 0 and _is_its_own(x, y, others):
                 found.append((_spearman(x, y), entry(varied).name))
         found.sort(key=lambda f: -abs(f[0]))
         strong = [
@@ -168,6 +178,24 @@ def _stem(reason: str) -> str:
     """The key that is at fault and why, without the value that differs from design to design."""
     key, found, rest = reason.partition(" = ")
     return f"{key}: {rest.partition(': ')[2]}" if found else reason
+
+
+def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
+    """Whether x moves y beside the others: by the partial rank correlation, beyond what chance gives."""
+    from scipy.stats import rankdata, t
+
+    free = len(x) - len(others) - 2
+    if free < 1:
+        return False
+    beside = np.column_stack([np.ones(len(x)), *map(rankdata, others)])
+    ranks = np.column_stack([rankdata(x), rankdata(y)])
+    own = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
+    size = np.linalg.norm(own, axis=0)
+    if not (size > SAME * np.linalg.norm(ranks, axis=0)).all():  # the others stand for one of them
+        return True
+    rho = float(own[:, 0] @ own[:, 1] / size.prod())
+    chance = t.isf(BY_CHANCE / 2, free)
+    return abs(rho) > chance / np.sqrt(free + chance**2)
 
 
 def _spearman(x: np.ndarray, y: np.ndarray) -> float:

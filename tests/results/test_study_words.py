@@ -4,6 +4,7 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
@@ -98,6 +99,23 @@ def test_without_an_objective_the_usual_figures_are_followed() -> None:
         "Flexspline stiffness", "Peak von Mises stress", "Backlash",
     ]  # fmt: skip
     assert all("rises with wall thickness (rank correlation +1.00)" in s for s in said)
+
+
+def test_what_only_goes_along_is_no_influence() -> None:
+    """The stiffness follows the length alone; an optimiser moved the wall with it, rank correlation 0.7."""
+    text = STUDY.replace("[objective]", f'"{LENGTH}" = {{ min = 20.0, max = 30.0 }}\n[objective]')
+    study = study_from(tomllib.loads(text), Path(__file__).parents[2] / "examples", "test")
+    rng = np.random.default_rng(20261124)
+    along, own, scatter = rng.random((3, 30))
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.1 * (a + o), LENGTH: 20 + 10 * a},
+            Outcome({K: 3e4 - 1e3 * a + 50 * s, STRESS: 300.0, TOTAL: 85.0}))
+        for i, (a, o, s) in enumerate(zip(along, own, scatter, strict=True))
+    )  # fmt: skip
+    said = next(s for s in influences(StudyResult(study, rows)) if s.startswith("Flexspline stiff"))
+    assert spearmanr(along + own, -along).statistic < -0.5
+    assert "falls with length" in said
+    assert "wall" not in said
 
 
 def test_ranks_count_and_equal_values_share_theirs() -> None:
