@@ -18,6 +18,8 @@ _WITH_UNIT = re.compile(
 """A number, and what may be the unit behind it."""
 _VALUE = re.compile(r"=\s*([^#]*)")
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
+_FULL_WIDTH = str.maketrans("，。．＝＂“”＃［］｛｝－　", ',..="""#[]{}- ')
+"""Signs of a Chinese or Japanese keyboard, and TOML's."""
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
 
@@ -60,13 +62,17 @@ def number_help(text: str) -> str:
 
 
 def _help(text: str, fault: ValueError) -> str:
-    """What to write where the line at fault holds a number such as 38,4 or 0.4 mm; else nothing."""
+    """What to write where the line at fault holds a number such as 38,4 or 0.4 mm, or signs of a Chinese or
+    Japanese keyboard; else nothing."""
     lines, at = text.split("\n"), _AT_LINE.search(str(fault))
     if at is None or int(at[1]) > len(lines):
         return ""
-    line = lines[int(at[1]) - 1]
+    written = lines[int(at[1]) - 1]
+    line = written.translate(_FULL_WIDTH)
     if number := _COMMA.search(line):
         return f"; write {number[1]}.{number[2]} with a point"
+    if line != written:
+        return f"; write {line.strip()}"
     value = _VALUE.search(line)
     return number_help(value[1]) if value else ""
 

@@ -179,6 +179,8 @@ FILES = {
     "latin-1": ('# x\nname = "Zähne"'.encode("latin-1"), r"line 2, byte 13\); save it as UTF-8"),
     "syntax": (b"name = \n[flexspline", "not valid TOML"),
     "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
+    "full-width point": ('name = "a"\nlength_mm = 38。4\n'.encode(), "write length_mm = 38.4"),
+    "full-width equals": ("name ＝ “谐波”\n".encode(), 'write name = "谐波"'),
     "decimal comma": (b'name = "a"\nlength_mm = 38,4  # long\n', "write 38.4 with a point"),
     "a unit behind a number": (
         b'name = "a"\nlength_mm = 38.4 mm  # long\n',
