@@ -1,16 +1,14 @@
 """Forces that only push: the linear complementarity problem p ≥ 0, u = u0 + S p ≥ 0, p·u = 0.
 
 Solved by Mehrotra's predictor-corrector interior point method (SIAM J. Optim. 2 (1992) 575-601). Its rounds
-hardly depend on the number of places. Once a round leaves the same gaps closed as the one before, the forces
-that close just these are tried: half of the rounds are not needed. A primal-dual active set alone does not
-settle on a thin rim with many places: S is no inverse of an M-matrix (pushed here, the rim bends outwards
-there), so the set runs in a circle.
+hardly depend on the number of places. A primal-dual active set does not settle on a thin rim with many of
+them: S is no inverse of an M-matrix (pushed here, the rim bends outwards there), so the set runs in a circle.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicError
 from flexspline.fea.interior_point import CENTRING, room
@@ -37,13 +35,7 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
         return np.zeros_like(free)
     force = np.full(len(free), size / matrix.diagonal().mean())
     gap = np.full(len(free), size)
-    closed = np.ones(len(free), bool)
     for _ in range(MOST_ROUNDS):
-        before, closed = closed, force * matrix.diagonal() > gap
-        if (closed == before).all():
-            found = _where_closed(matrix, free, closed)
-            if found is not None:
-                return found
         off = gap - free - matrix @ force
         both = force * gap
         if np.abs(off).max() < EPS * size and both.max() < EPS * size * force.max():
@@ -65,21 +57,3 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
         f"the contact on the seat did not settle in {MOST_ROUNDS} rounds: force times gap is "
         f"{both.max() / (size * force.max()):.1e} of the largest, allowed {EPS:.0e}"
     )
-
-
-def _where_closed(matrix: np.ndarray, free: np.ndarray, closed: np.ndarray) -> np.ndarray | None:
-    """Forces (n,) that close just these gaps; None where one pulls, or another gap would be closed too."""
-    at = np.flatnonzero(closed)
-    if not len(at):
-        return None
-    try:
-        pushed = cho_solve(cho_factor(matrix[np.ix_(at, at)], check_finite=False), -free[at])
-    except LinAlgError:  # places that are one to rounding: their forces are known together only
-        return None
-    gaps = free + matrix[:, at] @ pushed
-    allowed = EPS * float(np.abs(free).max())
-    if pushed.min() < -EPS * pushed.max() or gaps.min() < -allowed or gaps[at].max() > allowed:
-        return None
-    force = np.zeros_like(free)
-    force[at] = np.maximum(pushed, 0)
-    return force
