@@ -41,7 +41,8 @@ ABSENT = {
 }
 """What an honest gear or rig may do that gives such loops, by the channel that would show it."""
 FOLLOWS = 0.2
-"""Share of a late reading's growth from the slowest to the quickest loads, below which loops do not grow."""
+"""Share of the slowest loads' width that goes with the rate, up to which loops do not grow: all of a late
+reading's does."""
 LATE = NextMeasurement(
     "torque_rate",
     "find_structure",
@@ -150,9 +151,8 @@ def _grow(loads: Loads, angle_arcsec: np.ndarray) -> bool | None:
     if loads.rates is None:
         return None
     slope, at_rest = np.polyfit(loads.rates, loads.widths(angle_arcsec), 1)
-    slow, quick = float(loads.rates.min()), float(loads.rates.max())
-    wider = (at_rest + slope * quick) / (at_rest + slope * slow) - 1
-    return bool(wider > FOLLOWS * (quick / slow - 1))
+    with_rate = slope * loads.rates.min()
+    return bool(with_rate / (at_rest + with_rate) > FOLLOWS)
 
 
 def _as_repeated(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> Noise:
