@@ -1,6 +1,8 @@
 """One design, one process: what two processes that want the same design get."""
 
+import gc
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import FrameType
@@ -62,16 +64,31 @@ def test_a_design_whose_process_died_is_tried_with_the_same_values(tmp_path: Pat
 
 def work_of_one_design(folder: Path, stored: int) -> tuple[int, int]:
     """Python's calls, and trials read, for one design's claim and row in a study that has some already,
-    made by another process."""
+    made by another process.
+
+    The least of three designs: a heartbeat that is due, or an object of an earlier test that is
+    finalised, comes on top of one of them.
+    """
     study = study_of(GRID.replace("steps = 3", "steps = 1000"))
     other, store = trial_store_of(study, folder), trial_store_of(study, folder)
     source = source_of(study)
     outcome = Outcome(dict.fromkeys(USUAL_FIGURES, 1.0))
     jobs = source.claim(replace(other, owner="another/1/1"), stored)
     source.store(other, [Finished(j, outcome, [1.0]) for j in jobs])
-    for _ in range(2):  # the first reads what is there, and compiles the statements
+
+    def one_design() -> None:
         (job,) = source.claim(store, 1)
         source.store(store, [Finished(job, outcome, [1.0])])
+
+    for _ in range(2):  # the first reads what is there, and compiles the statements
+        one_design()
+    counted = [count_of(one_design) for _ in range(3)]
+    assert len(store.rows()) == stored + 5
+    return min(calls for calls, _ in counted), max(read for _, read in counted)
+
+
+def count_of(step: Callable[[], None]) -> tuple[int, int]:
+    """Python's calls, and trials read, in one step, without those of garbage collection."""
     calls, read = 0, 0
 
     def count(frame: FrameType, event: str, value: object) -> None:
@@ -79,13 +96,14 @@ def work_of_one_design(folder: Path, stored: int) -> tuple[int, int]:
         calls += event in ("call", "c_call")
         read += event == "call" and frame.f_code is StoredTrial.__init__.__code__
 
+    gc.collect()
+    gc.disable()
     sys.setprofile(count)
     try:
-        (job,) = source.claim(store, 1)
-        source.store(store, [Finished(job, outcome, [1.0])])
+        step()
     finally:
         sys.setprofile(None)
-    assert len(store.rows()) == stored + 3
+        gc.enable()
     return calls, read
 
 
@@ -94,4 +112,5 @@ def test_a_design_costs_as_much_in_a_large_study(tmp_path: Path) -> None:
     many, many_read = work_of_one_design(tmp_path / "many", 1000)
     # what a claim reads is made by other processes meanwhile: here nothing
     assert few_read == many_read == 0
-    assert many == pytest.approx(few, rel=0.05)  # garbage collection calls back now and then
+    # 3161 calls each when this was written: 5 % are 158 calls, and 980 rows more would be 980 at the least
+    assert many == pytest.approx(few, rel=0.05)
