@@ -84,8 +84,16 @@ def plus_minus(value: float, std: float) -> str:
 
 
 def magnitude_words(cause: NamedCause) -> str:
-    """Magnitude, deviation and unit."""
-    return f"{plus_minus(cause.magnitude, cause.magnitude_std)} {unit_words(cause.unit)}".rstrip()
+    """Magnitude, deviation and unit; of a loop that is wider elsewhere, where it has that."""
+    where = " at T = 0" if _is_wider(cause) else ""
+    size = plus_minus(cause.magnitude, cause.magnitude_std)
+    return f"{size} {unit_words(cause.unit)}".rstrip() + where
+
+
+def _is_wider(cause: NamedCause) -> bool:
+    """Whether friction's loop is much wider elsewhere than at T = 0, where its magnitude is."""
+    widest = cause.widest_arcsec
+    return widest is not None and widest > WIDER * abs(cause.magnitude)
 
 
 def title_of(cause_id: str, magnitude: float = 0.0) -> str:
@@ -103,7 +111,7 @@ def cause_title(cause: NamedCause) -> str:
     more = []
     if cause.ahead_Nm:
         more.append(f"of it {figures_text(cause.ahead_Nm)} N·m ahead of the gap")
-    if cause.widest_arcsec is not None and cause.widest_arcsec > WIDER * abs(cause.magnitude):
+    if cause.widest_arcsec is not None and _is_wider(cause):
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
     title = title_of(cause.id, cause.magnitude)
     return f"{title} ({', '.join(more)})" if more else title

@@ -17,7 +17,8 @@
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
-| verdict; physical limits | `../decision.py`; `limits.py`, `backward.py` (`loads.py`, `torque_delay.py`) |
+| verdict; physical limits | `../decision.py`; `limits.py` |
+| a torque that comes late, an angle | `backward.py` (`loads.py`, `torque_delay.py`), `late_angle.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """
@@ -38,14 +39,15 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.backward import backward_of
+from flexspline.pipeline.diagnosis.sweep.backward import BackwardLoop, backward_of
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
+from flexspline.pipeline.diagnosis.sweep.late_angle import LateAngle, late_angle_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
-from flexspline.pipeline.diagnosis.sweep.prepare import TooFewRowsError, prepare
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
@@ -109,11 +111,9 @@ def diagnose_sweep(
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
-    # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
-    # curve's, a few loads of a gear that does nothing seem to
-    backward = backward_of(prepared, explained) if decision.unexplained else None
-    if backward is not None:  # whatever else was found is what the race made of it
-        decision = Decision("unknown", (), (backward.said,))
+    misread = _misread(prepared, explained, decision)
+    if misread is not None:  # whatever else was found is what the race made of it
+        decision = Decision("unknown", (), (misread.said,))
     ids = [c.id for c in decision.causes]
     gain = gain_of(explained, ids)
     levels = gains_at_levels(explained, ids) if ids else ()
@@ -124,11 +124,25 @@ def diagnose_sweep(
         decision.causes,
         decision.unexplained,
         gain,
-        backward.next if backward else next_measurement(explained, decision),
+        misread.next if misread else next_measurement(explained, decision),
         gains_at_levels=levels,
     )
     written = written_model(explained, sweep, ids, gain)
     return outcome, SweepAnalysis(explained, written.model, written.doubt, tuple(tests))
+
+
+def _misread(
+    prepared: PreparedSweep, explained: ExplainedSweep, decision: Decision
+) -> BackwardLoop | LateAngle | None:
+    """A reading that comes late, where something was found that may be it."""
+    found = None
+    # causes that explain all leave no loop to run backwards: where polynomials took slow noise for the
+    # curve's, a few loads of a gear that does nothing seem to
+    if decision.unexplained:
+        found = backward_of(prepared, explained)
+    if found is None and (decision.causes or decision.unexplained):
+        return late_angle_of(prepared, explained)
+    return found
 
 
 def _too_little(sweep: Sweep) -> str | None:

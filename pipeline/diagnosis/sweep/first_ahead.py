@@ -9,21 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.causes.operators import (
-    direction_of_loading,
-    steadied,
-    stops,
-)
+from flexspline.pipeline.diagnosis.causes.operators import steadied, stops
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
-from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
+    looped_functions,
     nats_over,
     step_misfit,
-    stiffness_of_positions,
-    zeros_of_cycles,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
 
@@ -37,8 +31,6 @@ OFFSETS = 33
 """Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
 OFFSET_NATS = 3.0
 """Over the best of them, odds of 20 to 1: a race with either decides what is as near as that."""
-BESIDE = (0.04, 0.12, 0.3)
-"""Thresholds of ordinary friction that may act at every place tried: only the step decides."""
 
 
 @dataclass(frozen=True)
@@ -63,18 +55,10 @@ def first_ahead(
     largest = float(np.abs(history.torque_Nm).max())
     if not both_ways(history.torque_Nm):
         return None
-    x = history.torque_Nm / largest
     torque = steadied(history, deadband_Nm(history))
     coarse = np.linspace(0, LARGEST, COARSE + 1)[1:] * largest
-    tried = np.r_[np.array(BESIDE) * largest, coarse]
-    states = stops(history, torque, tried, np.zeros(len(tried)))
-    beside, carried = states[:, : len(BESIDE)] / tried[: len(BESIDE)], states[:, len(BESIDE) :]
-    direction = direction_of_loading(history)
-    positions = stiffness_of_positions(history)
-    zeros, lagging = zeros_of_cycles(history), lagging_torque(history) / largest
-    smooth = np.column_stack(
-        [*zeros, positions, x, np.abs(x), x * np.abs(x), x**3, direction, beside, lagging]
-    )
+    carried = stops(history, torque, coarse, np.zeros(COARSE))
+    smooth = looped_functions(history)
 
     def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
         beyond = history.torque_Nm - carried_Nm
@@ -85,7 +69,7 @@ def first_ahead(
     best = int(np.argmin(table))
     if not np.isfinite(table[best]) or table[best] <= 0:
         return None
-    rows = len(x)
+    rows = len(history)
 
     def finer(best: int, coarsest: float, offset: float) -> tuple[float, float]:
         """The friction near one of the coarse places, and its misfit."""

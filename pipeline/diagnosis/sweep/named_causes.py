@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
@@ -26,6 +27,8 @@ SERIES = "series_compliance"
 OPEN, NARROWED = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
+NEAR_ZERO = 0.15
+"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
 MOST_SHAPES = 24
 """Of these sets at most, the likeliest: each is fitted anew for its deviation."""
 
@@ -139,7 +142,18 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         # their mean distance: one set far off does not make it as wide
         spread = float(weight @ np.abs(values - best[cause]))
         std[cause] = hypot(doubt.std[cause], spread)
+    # a loop in proportion to load has no width at T = 0 by its shape alone
+    if FRICTION in std:
+        std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
     return best, std
+
+
+def _width_std_arcsec(evidence: GaussianEvidence) -> float:
+    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
+    history = evidence.columns.rig.history
+    near = np.abs(history.torque_Nm) < NEAR_ZERO * np.abs(history.torque_Nm).max()
+    rows = max(1, int((near & evidence.kept).sum()))
+    return 2 * evidence.noise.std_arcsec / rows**0.5
 
 
 def _shape_nats(identified: Identification) -> float:

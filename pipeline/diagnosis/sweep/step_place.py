@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.operators import (
+    direction_of_loading,
+    steadied,
+    stops,
+)
 from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmonic
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 
 MOST_ZEROS = 40
 """Cycles with a zero of their own each; where there are more, each unit has one."""
@@ -23,6 +30,22 @@ SINGULAR = 1e-12
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
 ROBUST = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
+
+BESIDE = (0.04, 0.12, 0.3)
+"""Thresholds of ordinary friction that may act at every place tried: only the step decides."""
+
+
+def looped_functions(history: History) -> np.ndarray:
+    """(n, k) zeros, a stiffness of each position, smooth functions of torque, friction elements, lags."""
+    largest = float(np.abs(history.torque_Nm).max())
+    x = history.torque_Nm / largest
+    limits = np.array(BESIDE) * largest
+    torque = steadied(history, deadband_Nm(history))
+    beside = stops(history, torque, limits, np.zeros(len(limits))) / limits
+    zeros, positions = zeros_of_cycles(history), stiffness_of_positions(history)
+    powers = [x, np.abs(x), x * np.abs(x), x**3]
+    direction, lagging = direction_of_loading(history), lagging_torque(history) / largest
+    return np.column_stack([*zeros, positions, *powers, direction, beside, lagging])
 
 
 def zeros_of_cycles(history: History) -> list[np.ndarray]:

@@ -40,7 +40,7 @@ def torque_delay_s(
     longest = LONGEST * min(float(np.ptp(history.time_s[rows])) for rows in loads.rows)
 
     def widths(delay_s: float) -> np.ndarray:
-        early = replace(history, torque_Nm=_read_at(history, delay_s))
+        early = replace(history, torque_Nm=torque_read_at(history, delay_s))
         return Loads.of(early, band_Nm).widths(angle_arcsec)
 
     was = widths(0.0)
@@ -64,7 +64,7 @@ def torque_delay_s(
     return (delay, delay * hypot(float(unsure) / delay, FILTER)) if unsure < delay / 2 else None
 
 
-def _read_at(history: History, later_s: float) -> np.ndarray:
+def torque_read_at(history: History, later_s: float) -> np.ndarray:
     """(n,) torque as read so much later than each row, within its unit."""
     assert history.time_s is not None
     out = np.empty(len(history))

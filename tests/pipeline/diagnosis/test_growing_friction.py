@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, shape_of, sweep
@@ -10,9 +12,12 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import GROWING
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
+from flexspline.results.diagnosis.words import magnitude_words
 
 FRICTION = known_causes()["friction_hysteresis"]
 HISTORY = sweep(cycles=3, rows=160, hold=0)
@@ -52,3 +57,25 @@ def test_tuning_finds_the_power() -> None:
     start = next(i for i, t in enumerate(columns.terms) if dict(t.shape) == SHAPE)
     # 5 arcsec over 0.05 of noise on 450 rows: the power is known to about 0.3 %
     assert tuned(now, [start]).shapes[0][1]["growth"] == pytest.approx(1.6, abs=0.03)
+
+
+def test_a_loop_in_proportion_to_load_has_a_doubt_where_it_is_closed() -> None:
+    """Its width at T = 0 is none, and known no better than the rows there let."""
+    noise = 0.3
+    state, stuck = 0.0, []
+    for step in np.diff(HISTORY.torque_Nm, prepend=0.0):
+        state = float(np.clip(state + step / 0.1, -1.0, 1.0))
+        stuck.append(state)
+    rng = np.random.default_rng(11)
+    angle = 10.0 * HISTORY.torque_Nm + 30.0 * HISTORY.sign - 1.5 * np.abs(HISTORY.torque_Nm) * stuck
+    angle += rng.normal(0, noise, len(angle))
+    cycles, line = (tuple(np.unique(HISTORY.cycle) + 1.0),), np.arange(len(angle)) + 2
+    record = Sweep(Path("rig.csv"), HISTORY, angle, ("",), cycles, line, True)
+    (cause,) = diagnose_sweep(record, PREDICTION)[0].causes
+    assert cause.id == FRICTION.id
+    near = (np.abs(HISTORY.torque_Nm) < 0.15 * LARGEST).sum()
+    assert abs(cause.magnitude) < 2 * cause.magnitude_std
+    assert (
+        cause.magnitude_std >= 2 * noise / near**0.5 * 0.8
+    )  # the noise is estimated, to some 10 %
+    assert magnitude_words(cause).endswith("arcsec at T = 0")

@@ -1,0 +1,163 @@
+"""An angle reading that comes late takes the gap's step with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from histories import LARGEST, PREDICTION, triangle
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.sweep.crossing_forms import filtered_side
+from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
+
+FINE, EVERY = 2000, 20
+"""Rows of a cycle of the true course, and of which one each is read: 100 rows a cycle."""
+NOISE, TORQUE_NOISE = 0.3, 0.002
+"""Arcsec, N·m."""
+ONE_RATE, FOUR_RATES = (60.0,) * 4, (240.0, 60.0, 120.0, 30.0)
+"""Periods [s]; rates of 8 N·m in each."""
+Course = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""What a function of time [s] and of a quantity is read as."""
+
+
+def through_filter(time: np.ndarray, values: np.ndarray, filter_s: float) -> np.ndarray:
+    """A first-order filter, R' = (v − R)/τ, by small steps."""
+    keep = np.exp(-np.diff(time) / filter_s).tolist()
+    means = ((values[1:] + values[:-1]) / 2).tolist()
+    read = [float(values[0])]
+    for k, mean in zip(keep, means, strict=True):
+        read.append(mean + (read[-1] - mean) * k)
+    return np.array(read)
+
+
+def curve(torque: np.ndarray) -> np.ndarray:
+    """Of an elastic gear with a gap of 60 arcsec."""
+    return 10.0 * torque + 30.0 * np.sign(torque)
+
+
+def straight(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return values
+
+
+def rig(
+    periods_s: tuple[float, ...],
+    angle_of: Course,
+    torque_of: Course = straight,
+    seed: int = 23,
+) -> PreparedSweep:
+    """What a rig reads, with `angle_of` and `torque_of` between the true course and its two readings."""
+    torque = np.concatenate([[0.0], np.tile(triangle(FINE, 0), len(periods_s))])
+    time = np.concatenate([[0.0], np.cumsum(np.repeat(np.array(periods_s) / FINE, FINE))])
+    rows = np.arange(1 + EVERY // 2, len(torque), EVERY)
+    rng = np.random.default_rng(seed)
+    none = np.zeros(len(rows), int)
+    read = torque_of(time, torque)[rows] + rng.normal(0, TORQUE_NOISE, len(rows))
+    history = History(read, none, (rows - 1) // FINE, time[rows])
+    angle = angle_of(time, torque)[rows] + rng.normal(0, NOISE, len(rows))
+    cycles, line = (tuple(np.unique(history.cycle) + 1.0),), np.arange(len(angle)) + 2
+    return prepare(Sweep(Path("rig.csv"), history, angle, ("",), cycles, line, True), PREDICTION)
+
+
+@pytest.mark.parametrize("periods_s", [ONE_RATE, FOUR_RATES])
+@pytest.mark.parametrize("filter_s", [0.5, 1.5])
+def test_a_filter_of_the_angle_is_said_with_its_time(
+    periods_s: tuple[float, ...], filter_s: float
+) -> None:
+    prepared = rig(periods_s, lambda t, q: through_filter(t, curve(q), filter_s))
+    found = late_angle_of(prepared)
+    assert found is not None
+    assert found.kind == "filter"
+    # the torque's noise moves the step among few rows: three deviations, and a tenth of the time
+    assert found.time_s == pytest.approx(filter_s, abs=3 * found.std_s, rel=0.1)
+    outcome = diagnose_sweep(prepared.sweep, PREDICTION)[0]
+    assert (outcome.verdict, outcome.causes) == ("unknown", ())
+    (left,) = outcome.unexplained
+    assert "angle reading follows the torque through a filter" in left.what
+    assert outcome.next_measurement is not None
+    assert "filters of the torque and the angle channel" in str(outcome.next_measurement.doing)
+
+
+def test_a_delay_of_the_angle_is_told_where_rates_differ() -> None:
+    delay_s = 1.0
+
+    def delayed(time: np.ndarray, torque: np.ndarray) -> np.ndarray:
+        return curve(np.interp(time - delay_s, time, torque))
+
+    found = late_angle_of(rig(FOUR_RATES, delayed))
+    assert found is not None
+    assert found.kind == "delay"
+    assert found.time_s == pytest.approx(delay_s, abs=3 * found.std_s, rel=0.15)
+    # at one rate the step comes late by one torque, as behind friction ahead of the teeth
+    assert late_angle_of(rig(ONE_RATE, delayed)) is None
+
+
+def test_one_filter_of_both_readings_is_told() -> None:
+    filter_s = 1.0
+    found = late_angle_of(
+        rig(
+            ONE_RATE,
+            lambda t, q: through_filter(t, curve(q), filter_s),
+            lambda t, q: through_filter(t, q, filter_s),
+        )
+    )
+    assert found is not None
+    assert found.kind == "both"
+    assert found.time_s == pytest.approx(filter_s, abs=3 * found.std_s, rel=0.1)
+
+
+def ahead(time: np.ndarray, torque: np.ndarray) -> np.ndarray:
+    """Coulomb friction of 0.12 N·m between the torque cell and the teeth."""
+    carried = np.empty(len(torque))
+    state = 0.0
+    for i, step in enumerate(np.diff(torque, prepend=0.0).tolist()):
+        state = min(max(state + step, -0.12), 0.12)
+        carried[i] = state
+    return curve(torque - carried)
+
+
+def lagging(time: np.ndarray, torque: np.ndarray) -> np.ndarray:
+    """Twist that lags; the teeth change sides where the torque does."""
+    return curve(torque) - 10.0 * (torque - through_filter(time, torque, 1.5))
+
+
+@pytest.mark.parametrize("periods_s", [ONE_RATE, FOUR_RATES])
+@pytest.mark.parametrize(
+    ("angle_of", "torque_of"),
+    [
+        (ahead, straight),
+        (lagging, straight),
+        (lambda t, q: curve(q), lambda t, q: q + 0.1),
+        (lambda t, q: curve(q), lambda t, q: through_filter(t, q, 1.0)),
+        (lambda t, q: curve(q) + 8.0 * np.tanh(q / 0.3), straight),
+    ],
+    ids=["friction ahead", "lagging twist", "torque offset", "late torque", "soft wind-up"],
+)
+def test_what_else_moves_or_bends_the_crossing_is_no_late_angle(
+    periods_s: tuple[float, ...], angle_of: Course, torque_of: Course
+) -> None:
+    for seed in range(2):
+        assert late_angle_of(rig(periods_s, angle_of, torque_of, seed)) is None
+
+
+def test_without_time_nothing_is_late() -> None:
+    prepared = rig(ONE_RATE, lambda t, q: through_filter(t, curve(q), 1.5))
+    history = replace(prepared.sweep.history, time_s=None)
+    assert late_angle_of(replace(prepared, sweep=replace(prepared.sweep, history=history))) is None
+
+
+def test_a_filtered_sign_is_exact_between_rows() -> None:
+    """x' = (sign T − x)/τ, by steps a thousand times shorter than the rows."""
+    time = np.array([0.0, 1.0, 2.5, 3.0, 4.0, 6.0])
+    torque = np.array([-1.0, -0.4, 0.8, 0.1, -0.3, -0.2]) * LARGEST
+    fine = np.linspace(0.0, 6.0, 60_001)
+    exact = through_filter(fine, np.sign(np.interp(fine, time, torque)), 0.8)
+    none = np.zeros(len(time), int)
+    found = filtered_side(History(torque, none, none, time), torque, 0.8)
+    assert found == pytest.approx(np.interp(time, fine, exact), abs=2e-4)
