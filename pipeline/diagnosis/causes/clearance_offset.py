@@ -29,7 +29,8 @@ class ClearanceOffset(Cause):
         return history.sign[:, None] / 2
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return rig.scale_arcsec
+        """About the gap itself, whatever the torque."""
+        return rig.prediction.gap_arcsec + rig.prediction.gap_std_arcsec or rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return rig.gap_arcsec - rig.prediction.gap_arcsec

@@ -9,14 +9,22 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
+from flexspline.pipeline.diagnosis.measurement.holds import hold_s
+from flexspline.pipeline.diagnosis.measurement.ramps import (
+    ramp_s,
+    shortest_lag_s,
+    slowest_ramp_s,
+)
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 RATE = "rate_dependence"
 """This cause's id."""
-LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
-"""Time constants as shares of a ramp: a longer lag is creep."""
+LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+"""Time constants as shares of a ramp: a longer lag is creep (docs/contract.md), which shows in holds."""
+LONGER_SHARES = (1.6, 2.5, 4.0)
+"""The same where torque is never held, up to the slowest cycle's ramp; four of the quickest cycle's are 98 %
+of its twist lost."""
 CLEARED = 0.25
 """Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
@@ -50,7 +58,12 @@ class RateDependence(Cause):
             "rate_Nm_per_s": rate, "ramp_s": ramp, "shortest_s": shortest,
             "deadband_Nm": CLEARED * deadband_Nm(rig.history),
         }  # fmt: skip
-        lags_s = sorted({max(s * ramp, shortest) for s in LAG_SHARES})
+        shares = list(LAG_SHARES)
+        if hold_s(rig.history) == 0:
+            slowest = slowest_ramp_s(rig.history) / ramp
+            shares += [s for s in LONGER_SHARES if s <= slowest]
+            common["longest_s"] = shares[-1] * ramp
+        lags_s = sorted({max(s * ramp, shortest) for s in shares})
         found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]
         found += [
             {"lag_s": max(LAG_SHARES[1] * ramp, shortest), "exponent": n, **common}
@@ -59,7 +72,7 @@ class RateDependence(Cause):
         return found
 
     def possible(self, shape: Shape) -> bool:
-        longest = LAG_SHARES[-1] * shape["ramp_s"]
+        longest = shape.get("longest_s", LAG_SHARES[-1] * shape["ramp_s"])
         return 0.4 <= shape["exponent"] <= 1.8 and shape["shortest_s"] <= shape["lag_s"] <= longest
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:

@@ -80,8 +80,9 @@ class StiffnessHardening(Cause):
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
         low, high = LIMITS[int(shape["law"])]
-        second = shape.get("second", 0.6)
-        return low <= shape["parameter"] <= high and shape["parameter"] < second <= 0.9
+        second, share = shape.get("second", 0.6), shape.get("share", 0.5)
+        apart = shape["parameter"] < second <= 0.9 and 0 < share < 1
+        return low <= shape["parameter"] <= high and apart
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]

@@ -17,14 +17,16 @@ CHANNELS = ("time_s", "temperature_C", "input_angle_deg")
 """That a record may lack."""
 
 
-def example_history(largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int = 4) -> History:
-    """A record with every channel: triangles with a hold at either end, warming, at many positions.
+def example_history(
+    largest_Nm: float = 1.0, ramp_s: float = 30.0, cycles: int = 4, held: int = 12
+) -> History:
+    """A record with every channel: triangles, `held` rows of hold at either end, warming, at many positions.
 
     A little noise on the torque, always the same: shapes may be given its size.
     """
     quarter = np.arange(1, 11) / 10
     one = np.concatenate(
-        [quarter, np.ones(12), 1 - 2 * np.arange(1, 21) / 20, -np.ones(12), quarter - 1]
+        [quarter, np.ones(held), 1 - 2 * np.arange(1, 21) / 20, -np.ones(held), quarter - 1]
     )
     n = len(one) * cycles
     noise = np.random.default_rng(0).normal(0.0, 0.002, n)
@@ -85,10 +87,11 @@ def _known(cause: Cause) -> tuple[frozenset[frozenset[str]], dict[str, frozenset
     apart = frozenset(frozenset(shape) for shape in cause.searched_apart)
     if not any(tried):
         return apart or frozenset({frozenset()}), {}
-    names = frozenset(frozenset(shape) for shapes in tried for shape in shapes)
+    unheld = cause.shapes(Rig(prediction, example_history(held=0)))
+    names = frozenset(frozenset(shape) for shapes in (*tried, unheld) for shape in shapes)
     fixed = {}
     for name in set().union(*names) - set(cause.tunable):
         one, other = ({shape[name] for shape in shapes if name in shape} for shapes in tried)
-        if one == other and all(float(v).is_integer() for v in one):
+        if one and one == other and all(float(v).is_integer() for v in one):
             fixed[name] = frozenset(one)
     return names | apart, fixed

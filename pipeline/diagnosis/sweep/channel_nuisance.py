@@ -65,12 +65,17 @@ def waves_and_steps(rig: Rig) -> Made:
         return
     for k in WAVES:
         yield "time_s", "a wave in time", wave(t, k)
-    for u, rows in enumerate(rig.history.unit_slices):
+    for rows in rig.history.unit_slices:
         for place in np.linspace(0, 1, STEPS + 2)[1:-1]:
-            step = np.zeros(len(t))
-            step[rows[int(place * len(rows)) :]] = 1.0
-            where = f" of unit {u + 1}" if len(rig.history.unit_slices) > 1 else ""
-            yield "time_s", f"a step in time{where}", step[:, None]
+            yield from step_from(rig, int(rows[int(place * len(rows))]))
+
+
+def step_from(rig: Rig, row: int) -> Made:
+    """The zero jumps at a row, until its unit ends."""
+    unit = rig.history.unit
+    after = (unit == unit[row]) & (np.arange(len(unit)) >= row)
+    where = f" of unit {unit[row] + 1}" if len(rig.history.unit_slices) > 1 else ""
+    yield "time_s", f"a step in time{where}", after[:, None].astype(float)
 
 
 def over_cycle(rig: Rig) -> Made:

@@ -16,7 +16,9 @@
 | or a shifted reading (both: `step_place.py`) | `first_offset.py`, `torque_offset.py`, `offset_race.py` |
 | magnitudes, their deviation, probabilities; units | `named_causes.py`, `unit_amplitudes.py` |
 | test the residual in every channel | `residual_tests.py`, `unexplained.py` |
+| test it for what comes back in every cycle | `repeated_misfit.py` |
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
+| what the causes explain by themselves, and the rest after them | `credit.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
 | a torque that comes late, an angle | `backward.py` (`loads.py`, `torque_delay.py`), `late_angle.py` |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
@@ -40,6 +42,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurem
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import BackwardLoop, backward_of
+from flexspline.pipeline.diagnosis.sweep.credit import unnamed_share
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.late_angle import LateAngle, late_angle_of
@@ -49,6 +52,7 @@ from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measuremen
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.repeated_misfit import repeated_misfit
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
@@ -100,12 +104,17 @@ def diagnose_sweep(
             for test in (jumps_of, stuck_of, scatter_along_travel)
         )
     )
+    again = repeated_misfit(explained.prepared, identified.fit)
     told = {name for c in causes for name in (c.id, *c.alternatives)}
+    named_rms = hypot(*(c.rms_arcsec for c in causes))
+    unnamed_rms = hypot(
+        identified.unnamed_rms(told), *(s.rms_arcsec for s in (jumps, again) if s is not None)
+    )
     decision = decided(
         causes,
-        unexplained_of(identified, tests, jumps, told),
-        named_rms=hypot(*(c.rms_arcsec for c in causes)),
-        unnamed_rms=hypot(identified.unnamed_rms(told), jumps.rms_arcsec if jumps else 0.0),
+        unexplained_of(identified, tests, jumps, again, told),
+        named_rms=named_rms,
+        unnamed_rms=max(unnamed_rms, unnamed_share(identified, told) * named_rms),
         structure=any(t.p_value < SURE for t in tests),
     )
     broken = broken_limit(sweep, explained, decision.causes)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import LINEAR, SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms, rms_together
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import fits_noise, plausible
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
@@ -19,6 +19,9 @@ from flexspline.pipeline.diagnosis.sweep.size_doubt import SizeDoubt
 NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: beside others by more, as their misfit
 may feed it, unless they have but one shape."""
+STATED_NATS = 1.0
+"""The same of a compliance or a gap alone: the evidence is then that of its stated uncertainty, and neither
+has a shape to miss. About four deviations are named, as one right simulation in 10 000 would be."""
 STAND_IN_NATS = 3.0
 """The same over a set with a nuisance term in its place: something is there, and of two that explain it alike
 the nuisance term, which costs 4.5 more, is not the one."""
@@ -110,8 +113,10 @@ def _worth(
     def too_little(without: Candidate, cause: str) -> bool:
         if _stands_in(evidence, best, without):
             needed = STAND_IN_NATS
+        elif beside or inexact - {cause}:
+            needed = SECOND_NATS
         else:
-            needed = SECOND_NATS if beside or inexact - {cause} else NAMING_NATS
+            needed = STATED_NATS if cause in LINEAR else NAMING_NATS
         return best.score - without.score < needed
 
     for cause in present:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     over_temperature,
     over_time,
     over_unit,
+    step_from,
     waves_and_steps,
     zeros_apart,
 )
@@ -72,17 +74,18 @@ class _Kind:
     spread: float = SPREAD
 
 
-def nuisance_terms(rig: Rig) -> list[NuisanceTerm]:
+def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
     """All flexible terms that a rig's record has the channels for.
 
-    Columns have unit rms in the rows that count.
+    `step` : the row from which a jump of the zero is likeliest. Columns have unit rms in the rows that count.
     """
+    kinds = KINDS if step is None else (*KINDS, _Kind(partial(step_from, row=step), less=_of_lags))
     counted = ~settling(rig.history)
-    taken = {kind.less: kind.less(rig) for kind in KINDS if kind.less is not None}
+    taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
     onto = {less: _projection(columns, share) for less, columns in taken.items()}
     found = []
-    for kind in KINDS:
+    for kind in kinds:
         for channel, what, columns in kind.make(rig):
             rest = columns
             if kind.less is not None:

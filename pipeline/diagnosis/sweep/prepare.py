@@ -28,6 +28,7 @@ from flexspline.pipeline.diagnosis.sweep.regressors import (
     design_matrix,
 )
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts, naming_rows, row_counts
+from flexspline.pipeline.diagnosis.sweep.sudden_step import sudden_step
 
 ROWS_PER_PARAMETER = 6
 """Of the local parabolas, three parameters each, in a cycle of 216 rows: windows are a twelfth of it."""
@@ -123,7 +124,7 @@ def prepare(
         sweep,
         prediction,
         rig,
-        design_matrix(rig, _knowable(sweep), carried),
+        design_matrix(rig, _knowable(sweep), carried, sudden_step(history, target, kept)),
         target,
         kept,
         outlier,

@@ -104,9 +104,15 @@ class DesignMatrix:
 
 
 def design_matrix(
-    rig: Rig, known: dict[str, Cause], ahead: FrictionAhead | None = None
+    rig: Rig,
+    known: dict[str, Cause],
+    ahead: FrictionAhead | None = None,
+    step: int | None = None,
 ) -> DesignMatrix:
-    """Evaluate every shape of every cause, and every nuisance term, on a rig's record."""
+    """Evaluate every shape of every cause, and every nuisance term, on a rig's record.
+
+    `step` : the row from which a jump of the zero is likeliest (`sudden_step.py`).
+    """
     base, prior = base_columns(rig)
     blocks: list[np.ndarray] = []
     terms: list[Regressor] = []
@@ -124,7 +130,7 @@ def design_matrix(
             )
             blocks.append(block.astype(np.float32))
             width += k
-    rivals = nuisance_terms(rig)
+    rivals = nuisance_terms(rig, step)
     for rival in rivals:
         terms.append(_nuisance_regressor(rival, rivals, width, rig))
         blocks.append(rival.columns.astype(np.float32))

@@ -45,26 +45,38 @@ def channel_tests(prepared: PreparedSweep, fit: SweepFit) -> list[ChannelTest]:
     freedom as they have where nothing is left. All is whitened, so coloured noise does not pass for
     structure.
     """
-    evidence = fit.evidence
-    chosen = [evidence.x[:, evidence.terms[i].at] for i in fit.posterior.terms]
-    model, _ = np.linalg.qr(np.hstack([evidence.base, *chosen]))
-    left = evidence.y - model @ (model.T @ evidence.y)
+    left = _unexplained(fit)[1]
     found = []
     for channel, values in _channels(prepared).items():
         codes = _bins(values)
-        levels = codes.max() + 1
-        if levels < 2:
+        if codes.max() < 1:
             continue
-        bins = evidence.prepared((codes[:, None] == np.arange(levels)).astype(float))
-        bins -= model @ (model.T @ bins)
-        basis, size, _ = np.linalg.svd(bins, full_matrices=False)
-        own = basis[:, size > RANK * size.max()]
-        statistic = float(((own.T @ left) ** 2).sum())
-        freedom = own.shape[1]
-        share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
-        rms = float(np.sqrt(share)) * prepared.noise.std_arcsec
+        statistic, freedom, rms = structure_in(prepared, fit, codes)
         found.append(ChannelTest(channel, rms, float(chdtrc(freedom, statistic))))
     return [*found, _wave(prepared, left)]
+
+
+def structure_in(
+    prepared: PreparedSweep, fit: SweepFit, codes: np.ndarray
+) -> tuple[float, int, float]:
+    """χ² of what a solution leaves in bins (n,) from 0, its degrees of freedom, and its rms [arcsec]."""
+    model, left = _unexplained(fit)
+    bins = fit.evidence.prepared((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
+    bins -= model @ (model.T @ bins)
+    basis, size, _ = np.linalg.svd(bins, full_matrices=False)
+    own = basis[:, size > RANK * size.max()]
+    statistic = float(((own.T @ left) ** 2).sum())
+    freedom = own.shape[1]
+    share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
+    return statistic, freedom, float(np.sqrt(share)) * prepared.noise.std_arcsec
+
+
+def _unexplained(fit: SweepFit) -> tuple[np.ndarray, np.ndarray]:
+    """Orthonormal columns (r, k) of what the model can be, and what it leaves (r,), whitened."""
+    evidence = fit.evidence
+    chosen = [evidence.x[:, evidence.terms[i].at] for i in fit.posterior.terms]
+    model, _ = np.linalg.qr(np.hstack([evidence.base, *chosen]))
+    return model, evidence.y - model @ (model.T @ evidence.y)
 
 
 def _wave(prepared: PreparedSweep, left: np.ndarray) -> ChannelTest:

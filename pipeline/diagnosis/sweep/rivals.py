@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 from math import log
 
+import numpy as np
+
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.decision import is_rival
+from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import LINEAR, SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
 
@@ -45,14 +47,27 @@ def rivals_of(
         rival = search.run(starts, most=len(best.terms) + MORE_OF_RIVAL)
         if other not in rival.named(evidence) or cancels_itself(evidence, rival, other):
             continue
-        elements = fit_regressors(evidence, rival.terms).elements()[other]
-        if not known_causes()[other].plausible(elements):
+        fit = fit_regressors(evidence, rival.terms)
+        if not known_causes()[other].plausible(fit.elements()[other]):
+            continue
+        if cause in LINEAR and _is_calibration(fit, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
             found.append((gap, other, rival))
     found.sort(key=lambda f: f[0])
     return tuple(f[1] for f in found), (found[0][2] if found else None)
+
+
+def _is_calibration(fit: SweepFit, owner: str) -> bool:
+    """Whether the record shows nothing of an owner's effect but a change of zero, compliance and gap.
+
+    A soft wind-up that ends below the least torque recorded is a gap: nothing more is known of it.
+    """
+    evidence = fit.evidence
+    effect = evidence.prepared(fit.added(owner)[:, None])[:, 0]
+    left = effect - evidence.base @ np.linalg.lstsq(evidence.base, effect, rcond=None)[0]
+    return float(left @ left) / 2 < RIVAL_EVIDENCE
 
 
 def penalised(evidence: GaussianEvidence, terms: tuple[int, ...]) -> float:

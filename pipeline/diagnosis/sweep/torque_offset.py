@@ -35,8 +35,12 @@ BETWEEN_ROWS = 0.29
 """Of the torque between the two rows next to a crossing, the deviation of a place anywhere between: 1/√12."""
 SEEN = 2.0
 """Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
-FINE_STEPS = 81
-"""Offsets between two neighbours of the first search; their spacing is in the deviation."""
+WITHIN = 0.25
+"""Of the gap, from its middle: a row there lies in the gap, which is then crossed at its torque."""
+FAR_BEHIND = 4.5
+"""Nats: an offset three deviations from the best one is so much less likely."""
+FINE_STEPS, AT_ROW = 81, 25
+"""Offsets tried between those that are far behind, and across one crossing's width: a quarter of it apart."""
 UNSEEN_STEPS = 9
 """Offsets within the torque's noise, each of which counts as none: a quarter of its reach apart."""
 LEAST_WIDTH = 1e-4
@@ -85,37 +89,43 @@ def crossing(
     # what the model misses near zero is not evidence of an offset
     beside = np.abs(np.abs(left) - gap_arcsec / 2)
     noise_arcsec = max(noise_arcsec, MISFIT * SIGMA_PER_MAD * float(np.median(beside)))
-    offsets = np.linspace(-REACH, REACH, STEPS) * largest * INSIDE
     floor = max(torque_noise_Nm, LEAST_WIDTH * largest)
-    best = [
-        np.array(
-            [_log_likelihood(o, w * floor, torque, left, gap_arcsec, noise_arcsec) for o in offsets]
+    even = np.linspace(-REACH, REACH, STEPS) * largest * INSIDE
+    inside = torque[np.abs(left) < WITHIN * gap_arcsec]
+    offsets = np.union1d(even, np.round(inside / floor) * floor)
+
+    def likelihood(places: np.ndarray, width: float) -> np.ndarray:
+        """(n,) log likelihood of each offset."""
+        return np.array(
+            [_log_likelihood(o, width, torque, left, gap_arcsec, noise_arcsec) for o in places]
         )
-        for w in WIDTHS
-    ]
-    table = np.array(best)
-    w, k = divmod(int(table.argmax()), STEPS)
-    fine = np.linspace(offsets[max(0, k - 1)], offsets[min(STEPS - 1, k + 1)], FINE_STEPS)
-    along = np.array(
-        [
-            _log_likelihood(o, WIDTHS[w] * floor, torque, left, gap_arcsec, noise_arcsec)
-            for o in fine
-        ]
-    )
+
+    table = np.array([likelihood(offsets, w * floor) for w in WIDTHS])
+    w, k = divmod(int(table.argmax()), len(offsets))
+    width = WIDTHS[w] * floor
+    fine = _between(offsets, table[w], k, width)
+    along = likelihood(fine, width)
     # an offset within the torque's noise is none
-    unseen = max(UNSEEN * torque_noise_Nm, offsets[1] - offsets[0]) * np.linspace(
-        -1, 1, UNSEEN_STEPS
-    )
-    none = max(
-        _log_likelihood(o, x * floor, torque, left, gap_arcsec, noise_arcsec)
-        for o in unseen
-        for x in WIDTHS
-    )
-    weight = np.exp(along - along.max())
+    unseen = max(UNSEEN * torque_noise_Nm, even[1] - even[0]) * np.linspace(-1, 1, UNSEEN_STEPS)
+    none = max(likelihood(unseen, x * floor).max() for x in WIDTHS)
+    weight = np.exp(along - along.max()) * np.gradient(fine)
     mean = float(weight @ fine / weight.sum())
-    std = float(np.sqrt(weight @ (fine - mean) ** 2 / weight.sum() + (fine[1] - fine[0]) ** 2 / 12))
+    spread = float(weight @ (fine - mean) ** 2 / weight.sum())
     between = BETWEEN_ROWS * between_rows(torque_Nm, mean)
-    return Crossing(mean, float(np.hypot(std, between)), float(along.max() - none))
+    return Crossing(mean, max(float(np.sqrt(spread)), between), float(along.max() - none))
+
+
+def _between(offsets: np.ndarray, nats: np.ndarray, best: int, width: float) -> np.ndarray:
+    """(m,) offsets around the best one of a table, out to those that are `FAR_BEHIND`.
+
+    Between two rows the step may lie anywhere: all places there are as good.
+    """
+    behind = nats < nats[best] - FAR_BEHIND
+    lower, upper = np.flatnonzero(behind[:best]), np.flatnonzero(behind[best:])
+    low = offsets[lower[-1]] if len(lower) else offsets[0]
+    high = offsets[best + upper[0]] if len(upper) else offsets[-1]
+    at_row = offsets[best] + width * np.linspace(-UNSEEN, UNSEEN, AT_ROW)
+    return np.union1d(np.linspace(low, high, FINE_STEPS), at_row.clip(low, high))
 
 
 def between_rows(torque_Nm: np.ndarray, place_Nm: float, nearest: int = 1) -> float:

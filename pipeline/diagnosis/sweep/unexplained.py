@@ -8,18 +8,21 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
+from flexspline.pipeline.diagnosis.sweep.repeated_misfit import RepeatedMisfit
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT, ChannelTest
 
 NUISANCE_P = 1e-6
 """Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
 
 JUMPING = "jumps with the torque's motion; something sticks and breaks away"
+COMES_BACK = "a misfit at the same torques in every cycle"
 
 
 def unexplained_of(
     identified: Identification,
     tests: Sequence[ChannelTest],
     jumps: Jumps | None = None,
+    again: RepeatedMisfit | None = None,
     told: Collection[str] = (),
 ) -> tuple[Unexplained, ...]:
     """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
@@ -38,6 +41,8 @@ def unexplained_of(
             found.append(Unexplained("torque_Nm", rms, NUISANCE_P, trace))
     if jumps is not None:
         found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPING))
+    if again is not None:
+        found.append(Unexplained("torque_Nm", again.rms_arcsec, again.p_value, COMES_BACK))
     said = {u.channel for u in found}
     for t in sorted(tests, key=lambda t: t.p_value):
         if t.p_value < SIGNIFICANT and t.channel not in said:

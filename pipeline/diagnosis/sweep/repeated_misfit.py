@@ -1,0 +1,65 @@
+"""What the best explanation misses at the same torques in every cycle.
+
+The noise is estimated from what an explanation leaves, so a misfit at a few torques passes for noise. Noise
+does not come back: rows of one torque on one branch share what is missed, and differ by the noise (a test of
+lack of fit by repeated readings: Draper, Smith, Applied Regression Analysis, 3rd ed. (1998), chapter 2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtrc
+
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
+from flexspline.pipeline.diagnosis.sweep.jumps import encoder_step, undithered
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STEADY_SIGMAS, SURE, structure_in
+
+WIDTHS = (0.01, 0.02, 0.05)
+"""Of the largest torque: a place is so wide; the first that gives no more than `MOST_PLACES`."""
+MOST_PLACES = 120
+"""Fifty steps of torque on two branches, and some more."""
+FEWEST_CYCLES = 3
+"""In which torque comes to a place: of two cycles one may be the odd one."""
+
+
+@dataclass(frozen=True)
+class RepeatedMisfit:
+    """Its p-value, and its rms over all rows."""
+
+    p_value: float
+    rms_arcsec: float
+
+
+def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> RepeatedMisfit | None:
+    """The misfit that comes back; None where there is none beyond doubt, or an encoder's step rounds so."""
+    codes = _places(prepared)
+    if codes is None:
+        return None
+    statistic, freedom, rms = structure_in(prepared, fit, codes)
+    p_value = float(chdtrc(freedom, statistic))
+    rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
+    if p_value > SURE or rms**2 < rounding:
+        return None
+    return RepeatedMisfit(p_value, rms)
+
+
+def _places(prepared: PreparedSweep) -> np.ndarray | None:
+    """(n,) number of each row's place, a torque on a branch; 0 of rows whose torque does not come back."""
+    history = prepared.rig.history
+    torque = steadied(history, STEADY_SIGMAS * torque_noise_Nm(history))
+    up = direction_of_loading(history) > 0
+    for width in WIDTHS:
+        step = np.round(torque / (width * prepared.rig.torque_Nm)).astype(int)
+        _, place = np.unique(2 * step + up, return_inverse=True)
+        visits = np.unique(
+            np.column_stack([place, history.unit, history.cycle])[prepared.kept], axis=0
+        )
+        often = np.bincount(visits[:, 0], minlength=place.max() + 1) >= FEWEST_CYCLES
+        if 1 <= often.sum() <= MOST_PLACES:
+            return np.where(often[place], np.cumsum(often)[place], 0)
+    return None
