@@ -27,13 +27,12 @@ def check(design: Design) -> None:
 
     Raises
     ------
-    DesignError : the first fault: its key, its value, the range that works; the second, or how many more.
+    DesignError : the first fault: its key, its value, the range that works; and the others.
     """
     faults = list(_faults(design))
     if faults:
         first = faults[0]
-        second = faults[1] if len(faults) > 1 else None
-        raise DesignError(first.key, first.value, first.reason, len(faults) - 1, second)
+        raise DesignError(first.key, first.value, first.reason, faults[1:])
 
 
 def _faults(design: Design) -> Iterator[DesignError]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 
 from flexspline.geometry.ranges import SMALLEST_NUMBER
@@ -166,18 +164,6 @@ def incomplete(result: StudyResult) -> str:
     count = len(result.incomplete)
     lack = "1 design lacks" if count == 1 else f"{count} designs lack"
     return f"{lack} a figure that the study does not ask for (column reason)"
-
-
-def failures(result: StudyResult) -> list[str]:
-    """The commonest reasons for figures that are missing, and in how many designs."""
-    reasons = Counter(_stem(r.outcome.reason) for r in result.rows if r.outcome.reason)
-    return [f"{count} ×: {reason}" for reason, count in reasons.most_common(5)]
-
-
-def _stem(reason: str) -> str:
-    """The key that is at fault and why, without the value that differs from design to design."""
-    key, found, rest = reason.partition(" = ")
-    return f"{key}: {rest.partition(': ')[2]}" if found else reason
 
 
 def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
