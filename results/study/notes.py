@@ -11,10 +11,11 @@ from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import SHOWN
-from flexspline.results.study.why import signed, unfollowed
+from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)

@@ -11,10 +11,11 @@ from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
+from flexspline.results.numbers import signed
 from flexspline.results.study.failures import Cause, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.why import disagreement, incomplete, misses, signed
+from flexspline.results.study.why import disagreement, incomplete, misses
 
 SHOWN = 5
 """Best designs that the summary lists."""

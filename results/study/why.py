@@ -10,6 +10,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
+from flexspline.results.numbers import signed
 from flexspline.results.study.labels import entry, valued
 
 STRONG = 0.3
@@ -188,8 +189,3 @@ def _spearman(x: np.ndarray, y: np.ndarray) -> float:
     from scipy.stats import spearmanr
 
     return float(spearmanr(x, y).statistic)
-
-
-def signed(value: float, decimals: int = 2) -> str:
-    """With its sign, a true minus."""
-    return f"{value:+z.{decimals}f}".replace("-", "\N{MINUS SIGN}")
