@@ -95,7 +95,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """How K_b and K_e change with every dimension, found in two ways, and the backlash with each clearance."""
+    """How K_b and K_e change with every dimension, found in two ways; the sum with each clearance."""
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities
