@@ -17,6 +17,7 @@ from flexspline.geometry.check_tooth import ring_ends, tooth_faults
 from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.module_fit import module_hint
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
@@ -100,7 +101,8 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
             "bearing.radial_clearance_um",
             c,
             f"must be {span(0.0, limit, 4)} µm, c_max = 2a(1 - cos α), where the involute model "
-            'ends; bearing_play_model = "small_displacement" has no such end',
+            'ends; bearing_play_model = "small_displacement" has no such end'
+            + (f"; {hint}" if (hint := module_hint(design)) else ""),
         )
 
 

@@ -1,4 +1,4 @@
-"""What is given in place of a design: a path, say, where a function of `flexspline` wants the design itself."""
+"""What is given in place of a design: a path, say, where a function wants the design itself."""
 
 from __future__ import annotations
 

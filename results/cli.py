@@ -233,7 +233,9 @@ def init(
     size: Annotated[
         float | None,
         typer.Option(
-            metavar="S", parser=number, help="Of a catalogue: in proportion, assumptions marked."
+            metavar="S",
+            parser=number("25, as a catalogue names it"),
+            help="Of a catalogue: in proportion, assumptions marked.",
         ),
     ] = None,
     ratio: Annotated[
@@ -244,7 +246,7 @@ def init(
         float | None,
         typer.Option(
             metavar="T",
-            parser=number,
+            parser=number("87, in N·m"),
             help="Rated torque in N·m, with a size; default in proportion.",
         ),
     ] = None,

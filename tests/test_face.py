@@ -89,7 +89,7 @@ def test_a_path_in_place_of_a_design_is_answered_with_how_to_load_it(
     name: str, given: object
 ) -> None:
     more = ("sweep.csv",) if name == "diagnose" else ()
-    with pytest.raises(flexspline.FlexsplineError, match="flexspline.load_design") as caught:
+    with pytest.raises(flexspline.FlexsplineError, match=r"flexspline\.load_design") as caught:
         getattr(flexspline, name)(given, *more)
     assert isinstance(caught.value, TypeError)
     assert "\n" not in str(caught.value)
