@@ -20,7 +20,7 @@ from pathlib import Path
 
 import psutil
 
-from flexspline.pipeline.study.evaluate import Outcome, Task
+from flexspline.pipeline.study.evaluate import Outcome, Task, outcome_of
 
 WAIT_S = 60.0
 """For the scheduler and all workers to start."""
@@ -28,7 +28,7 @@ WAIT_S = 60.0
 
 @cache
 def recorded(path: Path) -> list[Outcome]:
-    return [Outcome(**told) for told in json.loads(path.read_text(encoding="utf-8"))]
+    return [outcome_of(told) for told in json.loads(path.read_text(encoding="utf-8"))]
 
 
 def slept(path: Path, share: float, task: Task) -> Outcome:

@@ -17,6 +17,7 @@ from flexspline.geometry.check_tooth import ring_ends, tooth_faults
 from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.module_fit import module_hint
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
@@ -27,13 +28,12 @@ def check(design: Design) -> None:
 
     Raises
     ------
-    DesignError : the first fault: its key, its value, the range that works; the second, or how many more.
+    DesignError : the first fault: its key, its value, the range that works; and the others.
     """
     faults = list(_faults(design))
     if faults:
         first = faults[0]
-        second = faults[1] if len(faults) > 1 else None
-        raise DesignError(first.key, first.value, first.reason, len(faults) - 1, second)
+        raise DesignError(first.key, first.value, first.reason, faults[1:])
 
 
 def _faults(design: Design) -> Iterator[DesignError]:
@@ -101,7 +101,8 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
             "bearing.radial_clearance_um",
             c,
             f"must be {span(0.0, limit, 4)} µm, c_max = 2a(1 - cos α), where the involute model "
-            'ends; bearing_play_model = "small_displacement" has no such end',
+            'ends; bearing_play_model = "small_displacement" has no such end'
+            + (f"; {hint}" if (hint := module_hint(design)) else ""),
         )
 
 

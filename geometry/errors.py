@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 _UNREAD = re.compile("[\udc80-\udcff]+")
 MISSING = object()
@@ -27,19 +28,23 @@ class DesignError(FlexsplineError, ValueError):
     key : dotted key of the design file, e.g. ``flexspline.wall_thickness_mm``.
     value : what was found there; `MISSING` if nothing.
     reason : one clause that names the workable range, with its numbers.
-    more : how many further faults the design has.
+    others : the design's further faults: one is said too, more are counted.
     """
 
     def __init__(
-        self, key: str, value: object, reason: str, more: int = 0, second: DesignError | None = None
+        self, key: str, value: object, reason: str, others: Sequence[DesignError] = ()
     ) -> None:
-        """`second`: the next fault, which is said too where it is the only one."""
-        self.key, self.value, self.reason, self.more = key, value, reason, more
-        found = "is missing" if value is MISSING else f"= {short(value)}"
-        also = f" (and {more} more)" if more else ""
-        if more == 1 and second is not None:
-            also = f"; and {second}"
-        super().__init__(f"{one_line(key)} {found}: {one_line(reason)}{also}")
+        self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
+        also = f" (and {len(others)} more)" if others else ""
+        if len(others) == 1:
+            also = f"; and {others[0]}"
+        super().__init__(f"{self.alone}{also}")
+
+    @property
+    def alone(self) -> str:
+        """This fault without the others."""
+        found = "is missing" if self.value is MISSING else f"= {short(self.value)}"
+        return f"{one_line(self.key)} {found}: {one_line(self.reason)}"
 
 
 class DesignFileError(DesignError):

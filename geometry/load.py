@@ -98,7 +98,7 @@ def _by_the_rest(
     What a key may hold by itself is wider: its nearest end would be refused again.
     """
     location = without_tag(fault.errors()[0]["loc"])
-    if refused.more or not (ends := ends_of(location, kind_of(data))):
+    if refused.others or not (ends := ends_of(location, kind_of(data))):
         return None
     tried = deepcopy(dict(data))
     table: Any = tried

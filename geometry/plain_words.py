@@ -18,14 +18,13 @@ _NOUNS = {str: "text", bool: "true or false", dict: "a table", list: "a list"}
 
 
 def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
-    """The first fault as a DesignError that says the second, or counts the others.
+    """The first fault as a DesignError with the others.
 
     Unknown keys come first: a misspelt key is also a missing one, and its own name says more.
     """
     found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    first = _translated(found[0], data)
-    second = _translated(found[1], data) if len(found) == 2 else None
-    return DesignError(first.key, first.value, first.reason, len(found) - 1, second)
+    first, *others = (_translated(each, data) for each in found)
+    return DesignError(first.key, first.value, first.reason, others)
 
 
 def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:

@@ -12,6 +12,7 @@ from math import pi
 from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
+from flexspline.geometry.module_fit import module_hint, root_radius_mm
 from flexspline.geometry.rated import rated_warnings
 
 ROOT_TOLERANCE = 0.15
@@ -63,9 +64,11 @@ def ring_bending_stress_MPa(design: Design) -> float:
 
 def _root_radius(design: Design) -> Iterator[str]:
     gear, ring = design.gear, design.flexspline.ring_radius
-    root = gear.module_mm * (gear.teeth_flexspline / 2 - DEDENDUM)
+    root = root_radius_mm(design)
     apart, allowed = abs(root - ring), ROOT_TOLERANCE * gear.module_mm
-    if root < design.flexspline.inner_radius:
+    if hint := module_hint(design):
+        yield f"tooth-root radius {root:.4g} mm, ring's outer radius {ring:.4g} mm: {hint}"
+    elif root < design.flexspline.inner_radius:
         yield (
             f"tooth-root radius m(z1/2 - {DEDENDUM}) = {root:.4g} mm lies inside the tube, whose inner "
             f"radius is {design.flexspline.inner_radius:.4g} mm: gear.module_mm, gear.teeth_flexspline or "

@@ -28,6 +28,7 @@ from flexspline.pipeline.load_cases import (
     RimCase,
     rim_stiffness,
 )
+from flexspline.pipeline.no_design import require_design
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.study.load import load_study
@@ -72,6 +73,7 @@ def stiffness(
     >>> K_b.guaranteed and lower < 31337 and upper > 31330
     True
     """
+    require_design(design)
     if part not in ("flexspline", "shaft"):
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
     if case not in ("uniform", *RIM_CASES):
@@ -107,6 +109,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     >>> round(double / once, 9)
     2.0
     """
+    require_design(design)
     context = analysis_context(design)
     if case == "wave_generator":
         return ellipse_field(context.part("flexspline"))
@@ -136,6 +139,7 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
     True
     """
+    require_design(design)
     used = stiffness_pair(analysis_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
 
@@ -162,6 +166,7 @@ def gear(design: Design) -> GearCurve:
     >>> found.K1_Nm_per_rad < found.K2_Nm_per_rad < found.K3_Nm_per_rad
     True
     """
+    require_design(design)
     return gear_curve(analysis_context(design))
 
 
@@ -181,6 +186,7 @@ def sensitivity(design: Design) -> tuple[Slope, ...]:
     >>> slopes["flexspline.wall_thickness_mm"].elasticity > 0
     True
     """
+    require_design(design)
     return sensitivities(design, lambda line: None)
 
 
@@ -248,6 +254,7 @@ def diagnose(
     >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
     True
     """
+    require_design(design)
     read_measurement(Path(path), counts_per_turn)  # a bad file is refused before the long work
     context = analysis_context(design)
     solved = context if K_b is None and K_e is None else None

@@ -18,6 +18,7 @@ from flexspline.results.job import (
     keep,
     kept,
     present,
+    put,
     tell,
     tell_all,
     warn,
@@ -84,7 +85,7 @@ def run(
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
         from flexspline.results.pictures import RunDrawings, write_pictures
-        from flexspline.results.records import Record, extended_record, run_record, write_record
+        from flexspline.results.records import Record, extended_record, run_record
         from flexspline.results.report.build import write_run_page, write_run_report
 
         with RunDrawings(job.context) as drawings:
@@ -104,7 +105,7 @@ def run(
                 added = extended_record(extended, name) if extended is not None else {}
                 return run_record(result, job.wall_s) | added
 
-            write_record(job.folder, record())  # the answer first: drawing may fail
+            put(job.folder, record())  # the answer first: drawing may fail
             pictures = write_pictures(drawings, result, job.folder, extended)
             for line in pictures.warnings:
                 tell(f"warning: {line}")
@@ -232,7 +233,9 @@ def init(
     size: Annotated[
         float | None,
         typer.Option(
-            metavar="S", parser=number, help="Of a catalogue: in proportion, assumptions marked."
+            metavar="S",
+            parser=number("25, as a catalogue names it"),
+            help="Of a catalogue: in proportion, assumptions marked.",
         ),
     ] = None,
     ratio: Annotated[
@@ -243,7 +246,7 @@ def init(
         float | None,
         typer.Option(
             metavar="T",
-            parser=number,
+            parser=number("87, in N·m"),
             help="Rated torque in N·m, with a size; default in proportion.",
         ),
     ] = None,

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 PARTS = ("flexspline", "shaft")
 RESULT = "result.json"
 """Of `run`, `stiffness` and `backlash`."""
+PREVIOUS = "result.previous.json"
+"""An earlier result.json with figures that the present one lacks."""
 REPORT = "report"
 """Name of the reports of a run and of a study."""
 CURVE, LOADS = "gear_torque_angle", "gear_loads"
@@ -30,9 +32,9 @@ def _reports(name: str) -> tuple[str, ...]:
     return f"{name}.pdf", f"{name}.html"
 
 
-ONE_RECORD = (RESULT,)
+ONE_RECORD = (RESULT, PREVIOUS)
 RUN = (
-    RESULT, *_reports(REPORT),
+    *ONE_RECORD, *_reports(REPORT),
     *_pictures(*(f"{part}_{what}" for part in PARTS for what in ("mesh", "torque")), ELLIPSE),
     *_pictures("backlash_budget", "torque_angle", "convergence", CURVE, LOADS),
 )  # fmt: skip

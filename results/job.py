@@ -117,10 +117,16 @@ def begin(path: Path, out: Path | None, files: Iterable[str]) -> Job:
 
 def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
     """Write result.json and print it."""
-    from flexspline.results.records import write_record
-
-    write_record(folder, record)
+    put(folder, record)
     present(folder, record, as_json)
+
+
+def put(folder: Path, record: dict[str, Any]) -> None:
+    """Write result.json; say where a fuller one that was there is kept."""
+    from flexspline.results.earlier import write_result
+
+    if note := write_result(folder, record):
+        tell(f"note: {note}")
 
 
 def present(folder: Path, record: dict[str, Any], as_json: bool) -> None:

@@ -24,6 +24,8 @@ from flexspline.results.renders.whole import FACES, whole_part
 if TYPE_CHECKING:
     import meshio
 
+ALWAYS = ("step", "stp", "stl")
+"""What `export` writes, asked or not: by the names that users give it."""
 NEED_H5PY = ("med", "xdmf")
 """XDMF is written as XML alone, but meshio imports h5py for it all the same."""
 NASTRAN_DIGITS = 11
@@ -96,6 +98,9 @@ def chosen_formats(words: Sequence[str]) -> tuple[str, ...]:
     """
     asked = tuple(dict.fromkeys(f.strip() for word in words for f in word.split(",")))
     for name in asked:
+        if name in ALWAYS:
+            others = f"for a mesh too, one of {', '.join(WRITERS)}"
+            raise DesignError("--format", name, f"is written without this option; {others}")
         if name not in WRITERS:
             raise DesignError("--format", name, f"must be one of {', '.join(WRITERS)}")
         if name in NEED_H5PY and find_spec("h5py") is None:

@@ -17,6 +17,11 @@ def grouped(value: float, decimals: int) -> str:
     return ("\N{MINUS SIGN}" if negative else "") + whole + point + rest
 
 
+def signed(value: float, decimals: int = 2) -> str:
+    """With its sign, a true minus."""
+    return f"{value:+z.{decimals}f}".replace("-", "\N{MINUS SIGN}")
+
+
 def with_power(value: float, digits: int = 1) -> str:
     """So many significant digits and a power of ten: ``3·10⁻⁶``; ``0`` is 0."""
     if not value:

@@ -32,13 +32,14 @@ Out = Annotated[
         help="Where files go; default beside the input, NAME.out/",
     ),
 ]
+_K = number("31300 or 3.13e4, in N·m/rad")
 Kb = Annotated[
     float | None,
-    typer.Option("--Kb", metavar="X", parser=number, help="K_b in N·m/rad, instead of FEA"),
+    typer.Option("--Kb", metavar="X", parser=_K, help="K_b in N·m/rad, instead of FEA"),
 ]
 Ke = Annotated[
     float | None,
-    typer.Option("--Ke", metavar="X", parser=number, help="K_e in N·m/rad, instead of FEA"),
+    typer.Option("--Ke", metavar="X", parser=_K, help="K_e in N·m/rad, instead of FEA"),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 

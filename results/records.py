@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexspline import __version__
@@ -12,8 +11,6 @@ from flexspline.geometry.errors import readable
 from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.stress_limits import PEAK_OF
-from flexspline.results.atomic import write_bytes
-from flexspline.results.file_names import RESULT
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -209,8 +206,3 @@ def as_json(record: Record) -> str:
     Names of files are written as UTF-8 has them, whatever the locale.
     """
     return readable(json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False))
-
-
-def write_record(folder: Path, record: Record, name: str = RESULT) -> None:
-    """A record as JSON in `folder`, whole or not at all."""
-    write_bytes(folder / name, (as_json(record) + "\n").encode())

@@ -54,8 +54,11 @@ def _reader(kind: Callable[[str], T], what: str) -> Callable[[str], T]:
     return read
 
 
-number = _reader(float, "a number, such as 31300 or 3.13e4")
-"""Every float, as Python reads it."""
+def number(example: str) -> Callable[[str], float]:
+    """Of a number without its unit: every float, as Python reads it. `example`: what it may be."""
+    return _reader(float, f"a number without a unit, such as {example}")
+
+
 whole_number = _reader(int, "a whole number")
 
 

@@ -81,6 +81,22 @@ def test_wrong_words_are_refused_in_one_line() -> None:
         assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "name", ["stiffness", "stress", "backlash", "gear", "sensitivity", "diagnose"]
+)
+@pytest.mark.parametrize("given", ["examples/xb1-40.toml", Path("cup.toml"), {"name": "cup"}, None])
+def test_a_path_in_place_of_a_design_is_answered_with_how_to_load_it(
+    name: str, given: object
+) -> None:
+    more = ("sweep.csv",) if name == "diagnose" else ()
+    with pytest.raises(flexspline.FlexsplineError, match=r"flexspline\.load_design") as caught:
+        getattr(flexspline, name)(given, *more)
+    assert isinstance(caught.value, TypeError)
+    assert "\n" not in str(caught.value)
+    if isinstance(given, str | Path):
+        assert f'flexspline.load_design("{given}")' in str(caught.value)
+
+
 def test_changed_is_a_new_design() -> None:
     design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
     longer = design.changed({"flexspline.length_mm": 35.0, "shaft.segment[1].length_mm": 12.0})

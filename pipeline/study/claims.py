@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
-from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.evaluate import Outcome, outcome_of
 from flexspline.pipeline.study.trial_tables import StoredTrial, Values
 
 CLAIM, ROW = "claim", "row"
@@ -91,7 +91,7 @@ class Claims:
                 continue
             claim = Claim(**trial.attributes[CLAIM])
             told = trial.attributes.get(ROW)
-            outcome = Outcome(**told) if told else None
+            outcome = outcome_of(told) if told else None
             if outcome and trial.finished:
                 self.add_row(trial.number, Row(claim.slot, trial.values, outcome))
             else:

@@ -145,7 +145,7 @@ def _outcome(future: Future, pool: WorkerPool) -> Outcome:
     try:
         return future.result()
     except pool.lost:
-        return Outcome(reason=WORKER_DIED)
+        return Outcome(faults=(WORKER_DIED,))
 
 
 def _adopt(source: Source, store: TrialStore) -> None:

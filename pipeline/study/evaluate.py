@@ -49,21 +49,33 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Figures by result.json key, the reason why some or all are missing, and seconds of work."""
+    """Figures by result.json key, the faults for which some or all are missing, and seconds of work."""
 
     figures: Mapping[str, float] = field(default_factory=dict)
-    reason: str = ""
+    faults: tuple[str, ...] = ()
     seconds: float = 0.0
+
+    @property
+    def reason(self) -> str:
+        """All faults in one line; "" where nothing is missing."""
+        return "; ".join(self.faults)
+
+
+def outcome_of(stored: Mapping[str, Any]) -> Outcome:
+    """From its `asdict` as JSON, which has no tuples."""
+    return Outcome(**{**stored, "faults": tuple(stored["faults"])})
 
 
 def evaluate(task: Task) -> Outcome:
-    """Build and solve one design; only our own errors become a reason."""
+    """Build and solve one design; only our own errors become a fault of it."""
     began = time.perf_counter()
     try:
         design = with_values(design_from(task.tables), task.values)
         found = figures_of(design, task.solves, task.holes)
+    except DesignError as fault:
+        found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
     except OUR_ERRORS as fault:
-        found = Outcome(reason=str(fault))
+        found = Outcome(faults=(str(fault),))
     return replace(found, seconds=time.perf_counter() - began)
 
 
@@ -72,7 +84,7 @@ def figures_of(
 ) -> Outcome:
     """All figures that the solves give, and the sizes; K_e of a shaft with holes times `holes`.
 
-    A solve that fails leaves the others' figures; the reason names it.
+    A solve that fails leaves the others' figures; its fault names it.
 
     Raises
     ------
@@ -119,7 +131,7 @@ def figures_of(
         mass.flexspline_g, design.flexspline.length_mm, mass.shaft_g, design.shaft.length,
     )  # fmt: skip
     found |= dict(zip(SIZES, sizes, strict=True))
-    return Outcome(found, "; ".join(f"{name}: {why}" for name, why in missing.items()))
+    return Outcome(found, tuple(f"{name}: {why}" for name, why in missing.items()))
 
 
 def fast_K_e(design: Design) -> Stiffness:

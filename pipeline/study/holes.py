@@ -27,6 +27,13 @@ DRIFT = 0.5
 
 
 @dataclass(frozen=True)
+class UnknownEffect:
+    """The solid solve of the nominal design failed, and why: K_e is that without holes and keyway."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
 class HolesEffect:
     """What the nominal design's holes and keyway do to its K_e.
 
@@ -98,21 +105,21 @@ def holes_of(
     K_e: Callable[[Design], Stiffness],
     say: Callable[[str], None],
     drift: float = DRIFT,
-) -> HolesEffect | None:
+) -> HolesEffect | UnknownEffect | None:
     """That of a nominal design; `K_e` is the fast model's, without the holes.
 
     `drift`: share of the holes' effect, as `DRIFT`; 0 where the study leaves the shaft as it is. None where
-    the shaft has none, or where the solid solve fails, which `say` is told.
+    the shaft has none.
     """
     if not pierced(design):
         return None
     say("the shaft of the nominal design with the solid model, for what its holes do to K_e")
     try:
+        fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
     except ComputationError as fault:
         say(f"K_e stays that of the shaft without holes: {fault}")
-        return None
-    fast = K_e(design)
+        return UnknownEffect(str(fault))
     value = min(1.0, solid.K_Nm_per_rad / fast.K_Nm_per_rad)  # less material is never stiffer
     ends = (
         solid.lower_Nm_per_rad / fast.upper_Nm_per_rad,

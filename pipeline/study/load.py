@@ -54,9 +54,8 @@ def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
 def _translated(error: ValidationError) -> StudyError:
     """The first fault in plain words; unknown keys first, since a misspelt one is also missing."""
     found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    first = _said(found[0])
-    second = _said(found[1]) if len(found) == 2 else None
-    return StudyError(first.key, first.value, first.reason, len(found) - 1, second)
+    first, *others = map(_said, found)
+    return StudyError(first.key, first.value, first.reason, others)
 
 
 def _said(fault: ErrorDetails) -> StudyError:

@@ -29,6 +29,8 @@ class StudyResult:
     """Why a tolerance study tells nothing of its figures."""
     verified: tuple[Verified, ...] = ()
     """Of the best designs, by rank."""
+    no_holes_effect: str = ""
+    """Why it is not known what the shaft's holes and keyway do to K_e."""
     start: Outcome | None = None
     """Of the design that the study began with; None where no design is best."""
 

@@ -13,7 +13,7 @@ from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
-from flexspline.pipeline.study.holes import DRIFT, HolesEffect, drifts, holes_of
+from flexspline.pipeline.study.holes import DRIFT, HolesEffect, UnknownEffect, drifts, holes_of
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.samplers import sampler_of
@@ -41,7 +41,7 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
 
 def nominal_holes(
     study: Study, store: TrialStore, say: Callable[[str], None]
-) -> HolesEffect | None:
+) -> HolesEffect | UnknownEffect | None:
     """What the shaft's holes and keyway do to K_e of the design that the study begins with.
 
     Kept with the study's trials: every row has the same share, whoever makes it and when.
@@ -53,7 +53,9 @@ def nominal_holes(
         if stored is None:
             stored = asdict(found) if found else {}
             store.note(HOLES_NOTE, stored)
-    return HolesEffect(**stored) if stored else None
+    if not stored:
+        return None
+    return UnknownEffect(**stored) if "reason" in stored else HolesEffect(**stored)
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:
@@ -90,8 +92,11 @@ def whole_study(
     """
     run = study.file.run
     pool = partial(worker_pool, run.workers, run.scheduler)
-    holes = nominal_holes(study, store, say)
+    found = nominal_holes(study, store, say)
+    holes = found if isinstance(found, HolesEffect) else None
     result = run_study(study, store, pool, watch, say=say, holes=holes)
+    if isinstance(found, UnknownEffect):
+        result = replace(result, no_holes_effect=found.reason)
     if result.about_scatter or not result.pareto:
         return result
     return replace(result, start=start_outcome(study, store, holes))

@@ -160,6 +160,7 @@ def study_name(study: Study) -> str:
         "design": study.design.model_dump(mode="json"),
         "study": file,
         "holes": "K_b enclosed, K_e by a share of the cut pieces' compliance",
+        "row": "figures, faults, seconds",
         "program": FORMAT,  # what a row means changes with what a stage means
         "method": run.method,
         "seed": run.seed,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict
 
-from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, outcome_of
 from flexspline.pipeline.study.figures import USUAL
 from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.source import solves_of
@@ -27,4 +27,4 @@ def start_outcome(
         tables = study.design.model_dump(mode="json", exclude_none=True)
         stored = asdict(evaluation(Task(tables, {}, solves_of(study, USUAL), holes)))
         store.note(START_NOTE, stored)
-    return Outcome(**stored)
+    return outcome_of(stored)

@@ -12,7 +12,7 @@ from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnes
 from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
-from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
+from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task, outcome_of
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.pipeline.study.local_workers import WORKER_DIED
 from flexspline.pipeline.study.result import StudyResult
@@ -34,7 +34,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
         total = backlash_of(design, found)
     except OUR_ERRORS as fault:
-        return Outcome(reason=str(fault))
+        return Outcome(faults=(str(fault),))
     figures = {
         "backlash_arcsec.shaft": total.shaft_arcsec,
         "backlash_arcsec.flexspline": total.flexspline_arcsec,
@@ -73,10 +73,10 @@ def verify(
         try:
             stored[name] = asdict(future.result())
         except pool().lost:
-            stored[name] = asdict(Outcome(reason=WORKER_DIED))
+            stored[name] = asdict(Outcome(faults=(WORKER_DIED,)))
         store.note(name, stored[name])
     case = result.study.design.solver.load_case
-    return tuple(checked(r, Outcome(**stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
+    return tuple(checked(r, outcome_of(stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
 
 
 def checked(row: Row, solid: Outcome, load_case: str) -> Verified:

@@ -36,7 +36,7 @@ CountsPerTurn = Annotated[
     typer.Option(
         "--counts-per-turn",
         metavar="N",
-        parser=number,
+        parser=number("4096"),
         help="Counts of a turn of the encoder, where an angle is in counts",
     ),
 ]

@@ -49,7 +49,7 @@ TERMS: dict[str, Words] = {
 
 def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
     """Formula, table, waterfall and torque–angle line."""
-    yield Heading("The backlash budget")
+    yield Heading("The backlash budget", "budget")
     yield Paragraph(
         plain(
             "Backlash is the wind-up of shaft and flexspline between the two torques plus the angle "

@@ -13,7 +13,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-STAND_IN = "?"
+STAND_IN = "[U+{:04X}]"
+"""A letter's code, by which character tables list it."""
 _PLAIN = re.compile(r"[\x00-\u024f\u0370-\u03ff\u0400-\u045f\u2000-\u206f]*")
 """Letters that the fonts of typst and matplotlib have for certain, and those without a shape."""
 
@@ -26,12 +27,12 @@ def font_folder() -> Path:
 
 
 def printable(value: Any) -> tuple[Any, int]:
-    """JSON values with a stand-in for each letter that cannot be printed, and how many there were.
+    """JSON values with its code for each letter that cannot be printed, and how many there were.
 
     A letter counts once however often it occurs.
     """
     missing = {c for text in _strings(value) for c in _lacking(text)}
-    table = str.maketrans(dict.fromkeys(missing, STAND_IN))
+    table = str.maketrans({c: STAND_IN.format(ord(c)) for c in missing})
     return (_replaced(value, table) if missing else value), len(missing)
 
 
@@ -40,7 +41,7 @@ def notice(count: int) -> dict[str, Any]:
     letters = "A letter" if count == 1 else f"{count} different letters"
     said = (
         f"{letters} of names or notes cannot be printed, as no font on this computer has them; "
-        f"“{STAND_IN}” stands for each. report.html and the files have them."
+        "each is written by its code. report.html and the files have them."
     )
     spans = [{"style": "", "text": said, "target": ""}]
     return {"kind": "callout", "tone": "amber", "heading": "", "text": spans, "items": []}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
+from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.quantities import quantity
 from flexspline.results.report.content import ReportContent
@@ -93,8 +94,8 @@ def fatigue(content: ReportContent) -> str:
         )
     return (
         f"{said} lies at the border of what is left out, {peak.exclusion_mm:.3g} mm from an edge, towards "
-        "which the stress rises further: whether it keeps to the stated fatigue limit of "
-        f"{limit:g} MPa it cannot say."
+        "which the stress rises further: it does not tell whether the part keeps to the stated fatigue limit "
+        f"of {limit:g} MPa."
     )
 
 
@@ -118,7 +119,7 @@ def _ellipse(content: ReportContent) -> str:
     change = 100 * (half.mises_MPa / content.wave_generator_peak.mises_MPa - 1)
     return (
         f"{said} On a seat half as wide, {width / 2:g} mm in the ring's middle, the peak would be "
-        f"{stress.with_unit(half.mises_MPa)} ({change:+.0f} %; bolt holes left out)."
+        f"{stress.with_unit(half.mises_MPa)} ({signed(change, 0)} %; bolt holes left out)."
     )
 
 

@@ -27,11 +27,12 @@ from flexspline.results.report.document import (
 from flexspline.results.report.issued import issued
 from flexspline.results.report.shown import shown
 from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
+from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.whole_gear import whole_gear
 
 ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
-they follow each other and the report stays within eight pages."""
+they follow each other and the report stays within nine pages."""
 GUARANTEED = bounds_kind(True)
 NBSP = "\N{NO-BREAK SPACE}"
 
@@ -86,21 +87,19 @@ def _summary(content: ReportContent) -> Iterable[Block]:
             beside = row["alarm"] or "von Mises"
             tiles.append(Tile("Peak stress, wave generator", row["value"], row["unit"], beside))
     yield Tiles(tuple(tiles))
+    yield Paragraph(totals_and_terms(content))
 
 
 def _asked(content: ReportContent) -> Iterable[Block]:
     yield Heading("What was asked")
     yield Paragraph(
-        plain(
-            "The torsional stiffness of flexspline and output shaft, their stress, and the backlash at "
-            "the output between "
-        )
+        plain("Torsional stiffness, stress, and backlash at the output between ")
         + symbol("−T_L")
         + plain(" and ")
         + symbol("+T_L")
-        + plain(", with ")
+        + plain(", ")
         + symbol("T_L")
-        + plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m, for this design:")
+        + plain(f"{NBSP}={NBSP}{content.design.load.torque_Nm:g}{NBSP}N·m, wave generator locked:")
     )
     yield Facts(tuple((name, value) for name, value in tables.design_facts(content.design)))
 
@@ -154,12 +153,10 @@ def _which(load_case: str) -> Words:
         *plain("Which stiffness of the flexspline to use: teeth bring the torque in at the two lobes, and "
                "the rim only rests on the wave generator, so "),
         *resting,
-        *plain(" is nearest to a mounted gear. The uniform case is the stiffest; it compares parts. "),
+        *plain(" is nearest to a mounted gear. The uniform case is the stiffest: it compares parts. "),
         *free,
-        *plain(" shows how much the wave generator carries. No case holds the compliance of teeth, "
-               "wave-generator bearing and bolts, which make a gear softer; ")
-        , *ref("gear"), *plain(" has teeth and bearing in it. The backlash sum uses the case "
-               f"“{load_case}” (solver.load_case)."),
+        *plain(" shows how much the wave generator carries. No case includes teeth, wave-generator bearing "
+               f"and bolts. The backlash sum uses the case “{load_case}” (solver.load_case)."),
     )  # fmt: skip
 
 
@@ -234,7 +231,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
         yield Paragraph(
             bold("Elapsed time:")
             + plain(
-                f" {each}; together {sum(stages.values()):.1f} s. Stages that were read from the cache "
+                f" {each}. Stages run side by side, so these do not add up; those read from the cache "
                 "are not listed."
             )
         )

@@ -117,7 +117,6 @@ def design_facts(design: Design) -> list[list[str]]:
             "Clearances",
             f"flanks {flanks} normal, wave-generator bearing {play} radial{spread}",
         ],
-        ["Load torque", f"±{design.load.torque_Nm:g} N·m at the output, wave generator locked"],
     ]
 
 

@@ -106,9 +106,10 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
             Column("Whole gear", "right"), Column("Difference", "right"),
         ),
         rows=tuple(rows),
-        caption="The backlash sum beside the whole gear. In the gear the flexspline’s wind-up has teeth and "
-        "bearing in it, and a clearance is what the free angle loses without it. Without any clearance "
-        "balls, race and rim still give way, so teeth stand short of full depth; the sum has no term for it.",
+        caption="The backlash sum beside the whole gear. The whole gear’s flexspline wind-up includes "
+        "teeth and bearing; the angle of a clearance is by how much the free angle is smaller without that "
+        "clearance. The gap without any clearance: balls, race and rim give way, so that the teeth do not "
+        "reach full depth; the sum has no such term.",
         strong=len(rows) - 1,
     )  # fmt: skip
 

@@ -95,7 +95,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """How K_b and K_e change with every dimension, found in two ways."""
+    """How K_b and K_e change with every dimension, found in two ways; the sum with each clearance."""
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities
@@ -107,4 +107,4 @@ def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None
         slopes = sensitivities(gear, tell)
         said = record(gear, slopes)
         write_sensitivity(folder, said)
-        show(as_json(said) if json else "\n".join(lines(slopes)), json)
+        show(as_json(said) if json else "\n".join(lines(gear, slopes)), json)

@@ -11,10 +11,11 @@ from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import SHOWN
-from flexspline.results.study.why import signed, unfollowed
+from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
@@ -118,24 +119,26 @@ def _holes(result: StudyResult) -> Iterable[str]:
             "holes cut out, one without holes, whatever their number. Stresses are those without holes."
         )
     if pierced(design):
-        yield _shaft_holes(result)
+        yield from _shaft_holes(result)
     if keys := unfollowed(result.study):
         yield f"{keys}: the fast model does not follow these; mass does, and run.verify solves them."
 
 
-def _shaft_holes(result: StudyResult) -> str:
-    """How K_e was corrected, and what that does to its bounds."""
+def _shaft_holes(result: StudyResult) -> Iterable[str]:
+    """How K_e was corrected, and what that does to its bounds; nothing where no design has it."""
+    if result.no_holes_effect:
+        yield (
+            "K_e is that of the shaft without its holes or keyway: the solid solve that would tell their "
+            f"effect failed ({result.no_holes_effect})."
+        )
     key = "K_e_holes_factor"
     factors = [r.outcome.figures[key] for r in result.built if key in r.outcome.figures]
     if not factors:
-        return (
-            "K_e: of the shaft without its holes or keyway, since the solid solve that would tell their "
-            "effect failed."
-        )
+        return
     moved = drifts(result.study.keys)
     share = f" and by {100 * DRIFT:g} % of the correction" if moved else ""
     ends = list(dict.fromkeys(_percent(100 * (f - 1)) for f in (max(factors), min(factors))))
-    return (
+    yield (
         f"Holes and keyway change K_e by {' to '.join(ends)}: as much of the flange's and the keyway's own "
         "compliance as in the design that the study began with (one solid solve). Bounds of K_e are widened "
         f"by what both solves leave open{share}, and are estimates."

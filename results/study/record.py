@@ -11,16 +11,18 @@ from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
+from flexspline.results.numbers import signed
+from flexspline.results.study.failures import Cause, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.why import disagreement, incomplete, misses, signed
+from flexspline.results.study.why import disagreement, incomplete, misses
 
 SHOWN = 5
 """Best designs that the summary lists."""
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
-    """How many designs, how many failed or lack a figure that nothing asks for, the best."""
+    """How many designs, how many failed or lack a figure that nothing asks for, by cause, the best."""
     file = result.study.file
     best = result.pareto if len(result.pareto) >= SHOWN else result.best(SHOWN)
     return {
@@ -31,6 +33,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
         "evaluations": len(result.rows),
         "failed": len(result.rows) - len(result.built),
         "incomplete": len(result.incomplete),
+        **({"causes": [_cause(c) for c in found]} if (found := causes(result)) else {}),
         "feasible": len(result.feasible),
         **({"start": _start(result, result.start)} if result.start else {}),
         "best": [_row(r) for r in best],
@@ -38,6 +41,11 @@ def summary(result: StudyResult) -> dict[str, Any]:
         **({"tolerance": [_scatter(s) for s in result.scatter]} if result.scatter else {}),
         **({"no_tolerance": result.unscattered} if result.unscattered else {}),
     }
+
+
+def _cause(cause: Cause) -> dict[str, Any]:
+    example = {"design": cause.example.slot, "fault": cause.fault}
+    return {"cause": cause.name, "designs": cause.designs, "example": example}
 
 
 def _verified(v: Verified) -> dict[str, Any]:
@@ -126,6 +134,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         lines.append(_line(result, "start", result.start_values, result.start))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
     lines += [f"  {line}" for line in misses(result)]
+    lines += [f"  {line}" for line in failure_lines(result)]
     if result.unscattered:
         lines.append(f"  {result.unscattered}")
     for v in result.verified:

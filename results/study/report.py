@@ -26,12 +26,12 @@ from flexspline.results.report.document import (
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, alarm, bold, plain, worded
 from flexspline.results.study.best_stress import VIEW, BestStress
+from flexspline.results.study.failures import TOLD, causes, untold
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
 from flexspline.results.study.why import (
     disagreement,
-    failures,
     incomplete,
     influences,
     limits,
@@ -141,9 +141,14 @@ def _why(result: StudyResult) -> Iterable[Block]:
 
 
 def _failures(result: StudyResult) -> Iterable[Block]:
-    if failed := tuple(failures(result)):
-        yield Heading("What could not be built or solved")
-        yield Bullets(failed)
+    found = causes(result)
+    if not found:
+        return
+    yield Heading("What could not be built or solved")
+    lines = tuple((str(c.designs), c.name, c.said) for c in found[:TOLD])
+    columns = (Column("Designs", "right"), Column("Cause", grow=1), Column("Example", grow=2))
+    yield Table(columns, lines)
+    yield Paragraph(f"A design may have several causes. {untold(found)}".strip())
 
 
 def _counts(result: StudyResult) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from flexspline.geometry.design import Design
+from flexspline.pipeline.study.clearance_slopes import ClearanceSlope, clearance_slopes
 from flexspline.pipeline.study.sensitivity import Slope
 from flexspline.results.atomic import write_bytes
 from flexspline.results.file_names import SENSITIVITY
@@ -17,7 +18,20 @@ K_OF = {"flexspline": "K_b_Nm_per_rad", "shaft": "K_e_Nm_per_rad"}
 
 def record(design: Design, slopes: Sequence[Slope]) -> dict[str, Any]:
     """What sensitivity.json holds; a way that gave nothing is absent."""
-    return {**heading(design), "sensitivity": [_entry(s) for s in slopes]}
+    return {
+        **heading(design),
+        "sensitivity": [_entry(s) for s in slopes],
+        "clearances": [_clearance(c) for c in clearance_slopes(design)],
+    }
+
+
+def _clearance(c: ClearanceSlope) -> dict[str, Any]:
+    return {
+        "key": c.key,
+        "value_um": c.value_um,
+        "backlash_arcsec": c.arcsec,
+        "backlash_arcsec_per_um": c.arcsec_per_um,
+    }
 
 
 def _entry(s: Slope) -> dict[str, Any]:
@@ -42,8 +56,9 @@ def write_sensitivity(folder: Path, said: dict[str, Any]) -> None:
     write_bytes(folder / SENSITIVITY, (as_json(said) + "\n").encode())
 
 
-def lines(slopes: Sequence[Slope]) -> list[str]:
-    """A table; both ways side by side, and a word where they do not meet."""
+def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
+    """A table of the dimensions, both ways side by side, and a word where they do not meet; one of the
+    clearances."""
     out = [
         f"{'dimension':42} {'mm':>8} {'dK/dp, adjoint':>16} {'by differences':>24} {'%/%':>7} "
         f"{'arcsec/mm':>10}"
@@ -57,4 +72,9 @@ def lines(slopes: Sequence[Slope]) -> list[str]:
             f"{s.backlash_arcsec_per_mm:10.3f}{word}"
         )
     out.append("dK/dp in N·m/rad per mm, of K_b or K_e without bolt holes and keyway")
+    out.append(f"{'clearance':42} {'µm':>8} {'in the sum, arcsec':>20} {'arcsec/µm':>11}")
+    out += [
+        f"{c.key:42} {c.value_um:8.4g} {c.arcsec:20.1f} {c.arcsec_per_um:11.3f}"
+        for c in clearance_slopes(design)
+    ]
     return out

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 
 from flexspline.geometry.ranges import SMALLEST_NUMBER
@@ -12,6 +10,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.schema import Limit
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.verified import STRESS_SHARE, Check
+from flexspline.results.numbers import signed
 from flexspline.results.study.labels import entry, valued
 
 STRONG = 0.3
@@ -168,18 +167,6 @@ def incomplete(result: StudyResult) -> str:
     return f"{lack} a figure that the study does not ask for (column reason)"
 
 
-def failures(result: StudyResult) -> list[str]:
-    """The commonest reasons for figures that are missing, and in how many designs."""
-    reasons = Counter(_stem(r.outcome.reason) for r in result.rows if r.outcome.reason)
-    return [f"{count} ×: {reason}" for reason, count in reasons.most_common(5)]
-
-
-def _stem(reason: str) -> str:
-    """The key that is at fault and why, without the value that differs from design to design."""
-    key, found, rest = reason.partition(" = ")
-    return f"{key}: {rest.partition(': ')[2]}" if found else reason
-
-
 def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
     """Whether x moves y beside the others: by the partial rank correlation, beyond what chance gives."""
     from scipy.stats import rankdata, t
@@ -202,8 +189,3 @@ def _spearman(x: np.ndarray, y: np.ndarray) -> float:
     from scipy.stats import spearmanr
 
     return float(spearmanr(x, y).statistic)
-
-
-def signed(value: float, decimals: int = 2) -> str:
-    """With its sign, a true minus."""
-    return f"{value:+z.{decimals}f}".replace("-", "\N{MINUS SIGN}")

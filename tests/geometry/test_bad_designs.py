@@ -168,7 +168,7 @@ def test_missing_table_is_named(tmp_path: Path) -> None:
     with pytest.raises(DesignError) as caught:
         load_design(path)
     assert "radial_clearance_um" in str(caught.value)  # now an unknown key of [gear]
-    assert caught.value.more == 1
+    assert len(caught.value.others) == 1
     assert "; and bearing is missing: give" in str(caught.value)
 
 

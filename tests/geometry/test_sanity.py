@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from changed_design import EXAMPLES, changed_design
 
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
 
@@ -70,3 +71,18 @@ def test_ring_bending_stress_by_hand() -> None:
     # 206e3/0.91 · 0.275 · 3 · 0.2 / 19.475²
     stress = ring_bending_stress_MPa(load_design(EXAMPLES / "xb1-40.toml"))
     assert stress == pytest.approx(98.48, abs=0.01)  # to the digits worked out
+
+
+@pytest.mark.parametrize("module", ["2.0", "0.02"])
+def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module: str) -> None:
+    """0.2 mm belongs to 200 teeth on a ring of 39.5 mm: 19.75 = 0.2(100 − 1.25)."""
+    changed = {"gear.module_mm": module, "bearing.radial_clearance_um": "1.0"}
+    (line,) = (t for t in warnings(changed_design("xb1-40", changed)) if "tooth-root" in t)
+    assert "gear.module_mm" in line
+    assert "it is 0.2" in line
+    assert "would fit" not in line
+
+
+def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:
+    with pytest.raises(DesignError, match=r"radial_clearance_um.*gear\.module_mm = 0\.02 does not"):
+        changed_design("xb1-40", {"gear.module_mm": "0.02"})

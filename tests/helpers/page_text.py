@@ -9,12 +9,23 @@ _LAYOUT = re.compile(r"[\s\u200b\u00ad\u2010-]")
 """Spaces, break points and hyphens: typesetting may add or move them."""
 
 
+_FOOT = re.compile(r"Page \d+ of \d+$")
+
+
 def letters(text):
     return _LAYOUT.sub("", text)
 
 
 def pdf_letters(path):
-    return letters(" ".join(page.extract_text() for page in PdfReader(path).pages))
+    """All pages; the head that they share stands once, and one foot: a paragraph may go on behind them."""
+    pages = [page.extract_text().splitlines() for page in PdfReader(path).pages]
+    head = 0
+    while len(pages) > 1 and len({tuple(lines[: head + 1]) for lines in pages}) == 1:
+        head += 1
+    body = [lines[head:] for lines in pages]
+    inside = [lines[:-1] if _FOOT.search(lines[-1]) else lines for lines in body[:-1]]
+    every = [pages[0][:head], *inside, body[-1]]
+    return letters(" ".join(line for lines in every for line in lines))
 
 
 class _Reader(HTMLParser):

@@ -113,7 +113,7 @@ def begun(*figures: float) -> StudyResult:
     """A study whose first design had these figures."""
     result = result_of((0.7, 400.0))
     return replace(
-        result, start=Outcome(dict(zip(("K_b_Nm_per_rad",), figures, strict=False)), "no K")
+        result, start=Outcome(dict(zip(("K_b_Nm_per_rad",), figures, strict=False)), ("no K",))
     )
 
 

@@ -197,7 +197,15 @@ def test_every_format_is_named_where_users_look(page: str) -> None:
     assert [f for f in WRITERS if f not in told] == []
 
 
-@pytest.mark.parametrize("word", ["stl", "", "msh,,bdf"])
+@pytest.mark.parametrize("word", ["stl", "step"])
+def test_what_is_written_anyway_needs_no_format(word: str) -> None:
+    with pytest.raises(
+        DesignError, match="is written without this option; for a mesh too, one of msh"
+    ):
+        chosen_formats([word])
+
+
+@pytest.mark.parametrize("word", ["obj", "", "msh,,bdf"])
 def test_an_unknown_format_is_refused_with_those_that_work(word: str) -> None:
     with pytest.raises(DesignError, match=r"--format.*msh, med, bdf, inp, vtu, xdmf"):
         chosen_formats([word])

@@ -113,7 +113,7 @@ def test_parquet_has_the_same_columns_with_types(tmp_path: Path) -> None:
 
     values = {"flexspline.wall_thickness_mm": 0.4, "flexspline.diaphragm_thickness_mm": 0.5}
     figures = {"K_b_Nm_per_rad": 3.0, "flexspline_mass_g": 1.0, "backlash_arcsec.total": 90.0}
-    rows = (Row(0, values, Outcome(figures)), Row(1, values, Outcome(reason="too thin, it is")))
+    rows = (Row(0, values, Outcome(figures)), Row(1, values, Outcome(faults=("too thin, it is",))))
     table = table_of(StudyResult(load_study(written(tmp_path)), rows))
     write_csv(tmp_path / "study.csv", table)
     write_parquet(tmp_path / "study.parquet", table)

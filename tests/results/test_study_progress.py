@@ -37,7 +37,7 @@ def test_rate_best_and_time_left() -> None:
     study = study_from(tomllib.loads(STUDY), Path(__file__).parents[2] / "examples", "test")
     figures = ({"K_b_Nm_per_rad": 30e3}, {"K_b_Nm_per_rad": 31e3}, {"K_b_Nm_per_rad": 29e3})
     rows = [Row(i, {WALL: 0.4}, Outcome(f)) for i, f in enumerate(figures)]
-    rows.append(Row(3, {WALL: 0.9}, Outcome(reason="too thick")))
+    rows.append(Row(3, {WALL: 0.9}, Outcome(faults=("too thick",))))
     said = line(study, Progress(rows, 2, 4.0, 10)).replace("\N{NARROW NO-BREAK SPACE}", " ")
     assert said.split(" · ") == [
         "4 of 10 designs", "0.50 per s", "1 cannot be built or solved", "best 31 000 N·m/rad",

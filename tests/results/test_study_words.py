@@ -147,7 +147,7 @@ def test_an_alarm_says_what_may_be_behind_it(check: Check, said: str) -> None:
 
 
 def test_the_report_says_how_holes_entered() -> None:
-    """The example has holes in both parts; a factor that no row has was not found."""
+    """The example has holes in both parts."""
     result = result_of()
     rows = tuple(
         replace(r, outcome=Outcome({**r.outcome.figures, "K_e_holes_factor": 0.97}))
@@ -155,8 +155,11 @@ def test_the_report_says_how_holes_entered() -> None:
     )
     with_factor = " ".join(notes(replace(result, rows=rows)))
     assert "change K_e by −3.0 %" in with_factor
-    assert "K_e: of the shaft without its holes" not in with_factor
-    assert "K_e: of the shaft without its holes" in " ".join(notes(result))
+    assert "shaft without its holes" not in with_factor
+    assert "shaft without its holes" not in " ".join(notes(result))  # K_e was in no row
+    failed = " ".join(notes(replace(result, no_holes_effect="the keyway has no mesh")))
+    assert "shaft without its holes or keyway" in failed
+    assert "failed (the keyway has no mesh)" in failed
     assert "K_b of every design with bolt holes lies between" in with_factor
 
 

@@ -15,6 +15,7 @@ WRONG = {
     "stifness cup.toml": "stifness",
     "--foo": "--foo",
     "init cup --size abc": '"abc"',
+    "init cup --size 20mm": '"20mm" must be a number without a unit, such as 25',
     "init cup --size 25 --ratio 1.5": '"1.5"',
     "init cup --size 25 --rated 10Nm": '"10Nm"',
     "studio --port eighty": '"eighty"',

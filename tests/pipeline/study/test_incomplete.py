@@ -31,7 +31,7 @@ REASON = "K_b_lobes_contact: no equilibrium after 60 rounds"
 
 def without_lift_off(task: Task) -> Outcome:
     """Every figure but lift-off's, which failed."""
-    return Outcome(FIGURES, REASON)
+    return Outcome(FIGURES, (REASON,))
 
 
 def result_of(text: str, folder: Path) -> StudyResult:

@@ -1,0 +1,40 @@
+"""What is given in place of a design: a path, say, where a function wants the design itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import FlexsplineError, short
+
+
+class NoDesignError(FlexsplineError, TypeError):
+    """A function was given something else than a design; `given` is that."""
+
+    def __init__(self, given: object) -> None:
+        self.given = given
+        if isinstance(given, str | Path):
+            name = short(str(given))
+            said = f"{name} is a name; load the design first: flexspline.load_design({name})"
+        else:
+            said = f"a {type(given).__name__} is no design; flexspline.load_design reads one from a file"
+        super().__init__(f"design: {said}")
+
+
+def require_design(given: object) -> None:
+    """Refuse what is no design.
+
+    Raises
+    ------
+    NoDesignError
+
+    Examples
+    --------
+    >>> try:
+    ...     require_design("cup.toml")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    design: "cup.toml" is a name; load the design first: flexspline.load_design("cup.toml")
+    """
+    if not isinstance(given, Design):
+        raise NoDesignError(given)

@@ -1,0 +1,44 @@
+"""What each total of a report contains, so that none is taken for another."""
+
+from __future__ import annotations
+
+from flexspline.results.quantities import quantity
+from flexspline.results.report.content import ReportContent
+from flexspline.results.report.spans import Words, bold, plain, ref, symbol, worded
+
+_SERIES = quantity("K_series_Nm_per_rad")
+_SUM = quantity("backlash_arcsec.total")
+_FIRST = quantity("K1_Nm_per_rad")
+
+
+def totals_and_terms(content: ReportContent) -> Words:
+    """The series stiffness, the backlash sum and, where it was found, K1 of the whole gear."""
+    said = (
+        bold("Totals and terms. ")
+        + symbol(_SERIES.symbol)
+        + plain(
+            f" = {_SERIES.with_unit(content.K_series_Nm_per_rad)} is of flexspline and shaft alone (1/"
+        )
+        + symbol(_SERIES.symbol)
+        + worded(" = 1/K_b + 1/K_e); the backlash of ")
+        + plain(
+            f"{_SUM.with_unit(content.backlash.total_arcsec)} adds both clearances to their wind-up ("
+        )
+        + ref("budget")
+        + plain("). ")
+    )
+    curve = content.gear
+    if curve is None:
+        return said + plain("Neither includes bolts, housing or friction.")
+    return (
+        said
+        + symbol(_FIRST.symbol)
+        + plain(f" = {_FIRST.with_unit(curve.K1_Nm_per_rad)} of the whole gear (")
+        + ref("gear")
+        + plain(") includes teeth, rim contact and bearing, but no clearance: compare it, not ")
+        + symbol(_SERIES.symbol)
+        + plain(
+            ", with a catalogue. Its lost motion includes the clearances. Bolts, "
+            "housing and friction are in none of these."
+        )
+    )

@@ -1,0 +1,82 @@
+"""Why designs of a study could not be built or solved: by cause, how many, and one of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.result import StudyResult
+
+TOLD = 8
+"""Causes that a report or the terminal lists, the commonest first."""
+_NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What keeps designs from being built or solved.
+
+    Attributes
+    ----------
+    name : the key of the design file that cannot be what it is, or what failed, its numbers left out.
+    designs : how many have this fault; a design may have several.
+    example : the first of them.
+    fault : the example's, with its numbers.
+    """
+
+    name: str
+    designs: int
+    example: Row
+    fault: str
+
+    @property
+    def said(self) -> str:
+        """The example in words, beside the cause's name."""
+        design, key = f"design {self.example.slot}", f"{self.name} = "
+        if self.fault.startswith(key):
+            return f"{design} has {self.fault.removeprefix(key)}"
+        return f"{design}: {self.fault}"
+
+
+def causes(result: StudyResult) -> list[Cause]:
+    """Of all missing figures, the commonest first."""
+    found: dict[str, dict[int, tuple[Row, str]]] = {}
+    for row in result.rows:
+        for fault in row.outcome.faults:
+            found.setdefault(_cause(fault), {}).setdefault(row.slot, (row, fault))
+    told = [Cause(name, len(each), *next(iter(each.values()))) for name, each in found.items()]
+    return sorted(told, key=lambda cause: -cause.designs)
+
+
+def _cause(fault: str) -> str:
+    """The key at fault, whatever its value; of other faults the words."""
+    key, equals, _ = fault.partition(" = ")
+    if equals and " " not in key:
+        return key
+    return _NUMBER.sub("…", fault)
+
+
+def failure_lines(result: StudyResult) -> Iterator[str]:
+    """For the terminal."""
+    found = causes(result)
+    if not found:
+        return
+    count = sum(bool(row.outcome.faults) for row in result.rows)
+    yield (
+        f"{count} of {len(result.rows)} designs could not be built, or not be solved in full, by cause (a "
+        "design may have several):"
+    )
+    for cause in found[:TOLD]:
+        yield f"  {cause.designs} × {cause.name}: {cause.said}"
+    if more := untold(found):
+        yield f"  {more}"
+
+
+def untold(found: list[Cause]) -> str:
+    """Of causes beyond those that are listed."""
+    left = len(found) - TOLD
+    if left <= 0:
+        return ""
+    return f"and {left} more cause{'s' * (left > 1)} (column reason of study.csv)"
