@@ -22,6 +22,7 @@ from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cases import lobes
 from flexspline.fea.solid.column import INTERFACE
+from flexspline.fea.solid.cyclic import half_repeat, larger_deg
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import EFFICIENCY, level_of
 from flexspline.fea.solid.stress import energy_error
@@ -89,6 +90,7 @@ def lobe_stiffness(
 ) -> Stiffness:
     """K_b = T²/(2·strain energy) with its bounds, on one mesh after the other until they meet `tolerance`.
 
+    The meshes are of half a repeat of the part, the levels those of its quarter or half, as `symmetry` says.
     A given load stores too little energy on a mesh, so K_h is an upper bound here too. The recovery
     estimate times a scale is taken off it: the one that comes with the first mesh, then what the last
     two say (see `fea.solid.stiffness`). Where a mesh after the first fails, or would end `limit_s` seconds
@@ -134,12 +136,12 @@ class _SolidLobes:
     estimate: ScaledEstimate
 
     def solve(self, mesh: TetMesh) -> None:
-        with alone(mesh.elements):
-            solved = lobes(Model.of(mesh, self.material), self.supported)
-            error = energy_error(mesh, solved.displacement, self.material)
+        with alone(round(mesh.elements * larger_deg(mesh) / mesh.sector_deg)):
+            solved = lobes(Model.of(half_repeat(mesh), self.material), self.supported)
+            error = energy_error(solved.mesh, solved.displacement, self.material)
         self.estimate.add(level_of(solved), error.relative)
         self.progress(
-            f"{mesh.elements} elements, {self.symmetry} of the part, K ± {self.estimate.relative:.2%}"
+            f"{solved.mesh.elements} elements, {self.symmetry} of the part, K ± {self.estimate.relative:.2%}"
         )
 
     @property

@@ -41,9 +41,9 @@ def model(folder: Path, design: Design = WIDE) -> PartModel:
 
 
 def first_elements(part: PartModel, supported: bool, known: float = 1.0) -> int:
-    sector = solid_lobes.sector_of(part.part, "lobes")
-    mesh, _ = next(solid_lobes._meshes(part, sector, supported, known))
-    return mesh.elements
+    """Of the part's quarter."""
+    mesh, _ = next(solid_lobes._meshes(part, supported, known))
+    return copies_in_rim(part) * mesh.elements
 
 
 def test_a_held_rim_begins_on_the_mesh_of_torsion_where_that_promises_enough(
