@@ -163,25 +163,36 @@ class WaveSupports:
 
 def _places(unknowns: int, first: int) -> np.ndarray:
     """Numbers (2, unknowns) of two fields' unknowns in one vector: the `first` of each come first."""
-    own = np.arange(unknowns)
+    own = np.arange(unknowns, dtype=np.int32)
     later = own >= first
-    return np.stack([own + later * first, own + np.where(later, unknowns, first)])
+    return np.stack([own + later * first, own + np.where(later, unknowns, first)], dtype=np.int32)
 
 
 def _real_form(matrix: csr_matrix, rows: np.ndarray, columns: np.ndarray, first: int) -> csr_matrix:
     """D* K D of phases D of rows and columns, as a real matrix of two fields, in the order of `_places`."""
-    entries = matrix.tocoo()
-    value = entries.data * (rows.conjugate()[entries.row] * columns[entries.col])
-    row, column = _places(len(rows), first), _places(len(columns), first)
-    couples = np.flatnonzero(value.imag)
-    r, c, im = entries.row[couples], entries.col[couples], value.imag[couples]
-    return coo_matrix(
+    starts, column = matrix.indptr, matrix.indices
+    turned = np.repeat(rows.imag != 0, np.diff(starts)) != (columns.imag != 0)[column]
+    mixed = np.flatnonzero(turned)  # between the plane and the rest
+    r, c = np.searchsorted(starts, mixed, side="right") - 1, column[mixed]
+    value = matrix.data[mixed] * (rows[r].conjugate() * columns[c])
+    real = matrix.data.copy()
+    real[mixed] = value.real
+    (x, y), (u, v) = _places(len(columns), first), _places(len(rows), first)
+    shape, half = (2 * len(rows), 2 * len(columns)), starts[first]
+    both = csr_matrix(
         (
-            np.concatenate([value.real, value.real, -im, im]),
-            (
-                np.concatenate([*row[:, entries.row], row[0, r], row[1, r]]),
-                np.concatenate([*column[:, entries.col], column[1, c], column[0, c]]),
-            ),
+            np.concatenate([real[:half], real[:half], real[half:], real[half:]]),
+            np.concatenate([x[column[:half]], y[column[:half]], x[column[half:]], y[column[half:]]]),
+            np.concatenate([starts[:first], starts[: first + 1] + half,
+                            starts[first + 1 :] + half, starts[first + 1 :] + starts[-1]]),
         ),
-        shape=(row.size, column.size),
-    ).tocsr()
+        shape=shape,
+    )  # fmt: skip
+    coupling = coo_matrix(
+        (
+            np.concatenate([-value.imag, value.imag]),
+            (np.concatenate([u[r], v[r]]), np.concatenate([y[c], x[c]])),
+        ),
+        shape=shape,
+    )
+    return both + coupling.tocsr()

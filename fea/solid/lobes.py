@@ -24,7 +24,7 @@ from flexspline.fea.solid.cases import lobes
 from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.cyclic import half_repeat, larger_deg
 from flexspline.fea.solid.model import Model
-from flexspline.fea.solid.stiffness import EFFICIENCY, level_of
+from flexspline.fea.solid.stiffness import EFFICIENCY, USUAL_EFFICIENCY, level_of
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
@@ -34,9 +34,9 @@ STEP = 0.37
 elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six
 first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 15 and 11 s of the
 processor."""
-MERIDIAN_SHARE = 0.25
-"""Of the tolerance: what the harmonics' estimate of the meridian's error may be. The usual scale of 2 makes
-half of the tolerance of it; the steps take about half as much."""
+MERIDIAN_SHARE, STEP_SHARE = 0.25, 0.25
+"""Of the tolerance: what the harmonics' estimate of the meridian's error may be, and about what the steps
+take. The usual scale of 2 makes half of the tolerance of the first."""
 BULK = 0.4
 """Share of that error whose triangles are refined each round: more rounds, fewer triangles too many."""
 TAIL = 1e-3
@@ -58,6 +58,12 @@ def finer_mesh(
         return meridian.mesh
 
     return Finer(step, adapted=adapted, even=True)
+
+
+def promised(tolerance: float, number: int) -> float:
+    """Relative bounds ± of K that the mesh of that number is made for."""
+    meridian = USUAL_EFFICIENCY * MERIDIAN_SHARE * NEXT_SHARE**number
+    return tolerance * (meridian + STEP_SHARE * NEXT_STEP ** (4 * number))
 
 
 class _FreeRim:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.fea.solid.errors import NoBetterMeshError
+from flexspline.fea.solid.lobes import promised
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, solid_lobes
@@ -65,6 +66,20 @@ def test_a_first_mesh_of_its_own_may_be_coarser(
     usual = first_elements(part, supported=False)
     monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
     assert first_elements(part, supported=False) < usual
+
+
+def test_a_coarser_mesh_is_made_only_where_it_promises_half_of_what_is_known(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = model(folder)
+    usual = first_elements(part, supported=False)
+    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
+    # 1 % asked; on steps 1/0.7 times as long the fourth power is 4.2 times as large
+    expected = promised(0.01, solid_lobes.COARSER)
+    assert 0.02 < expected < 0.03
+    assert first_elements(part, False, known=2.01 * expected) < usual
+    with pytest.raises(NoBetterMeshError):
+        first_elements(part, False, known=min(1.99 * expected, 0.9 * solid_lobes.LEAST_OF_FREE))
 
 
 @pytest.mark.parametrize("supported", [True, False])
