@@ -9,11 +9,11 @@ from typing import Any
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.cases import ellipse
+from flexspline.fea.solid.cyclic import half_repeat
 from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.swept_sizing import Finer
-from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
@@ -121,12 +121,13 @@ def _solved(flexspline: PartModel, meshed: MeshedPart, w0: float) -> SolidField:
     progress = flexspline.context.progress
     sector = sector_of(flexspline.part, "ellipse")
     with progress.stage("wave generator"):
-        whole = unfolded(meshed.mesh, sector.degrees)
-        progress.note(f"  {len(whole.cells)} elements, {sector.label} of the part")
-        with alone(whole.elements):
+        elements = meshed.mesh.elements * copies_in_rim(flexspline)
+        progress.note(f"  {elements} elements, {sector.label} of the part")
+        with alone(elements):
+            solved = ellipse(Model.of(half_repeat(meshed.mesh), flexspline.material), w0)
             return stress_field(
-                whole,
-                ellipse(Model.of(whole, flexspline.material), w0).displacement,
+                solved.mesh,
+                solved.displacement,
                 flexspline.material,
                 f"wave generator, w0 = {w0:g} mm",
                 sharp_edges(flexspline, meshed),

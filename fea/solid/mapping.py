@@ -9,10 +9,26 @@ from skfem.mapping import MappingIsoparametric
 
 
 class KeptMapping(MappingIsoparametric):  # type: ignore[misc]
-    """The isoparametric map that keeps its last inverse Jacobians.
+    """The isoparametric map that finds all slopes ∂x/∂ξ at once, and keeps them and their inverse.
 
-    A basis of ten functions asks for them ten times: 0.1 s of 0.2 for 12 000 tetrahedra.
+    A basis of ten functions asks for the inverse ten times, and scikit-fem finds each slope by itself: of
+    stresses that was a third of the time.
     """
+
+    def J(self, i: int, j: int, X: np.ndarray, tind: Any = None) -> np.ndarray:
+        """∂x_i/∂ξ_j (m, q) at points X (d, q) of the elements `tind`."""
+        kept = getattr(self, "_slopes", None)
+        if kept is None or kept[0] is not X or kept[1] is not tind:
+            kept = self._slopes = X, tind, self._all_slopes(X, tind)
+        return kept[2][i, j]
+
+    def _all_slopes(self, X: np.ndarray, tind: Any) -> np.ndarray:
+        nodes = self.mesh.dofs.element_dofs
+        places = self.mesh.doflocs[:, nodes if tind is None else nodes[:, tind]]
+        d, k, m = places.shape
+        local = np.stack([self.elem.lbasis(X, number)[1] for number in range(k)])
+        found = places.swapaxes(1, 2).reshape(d * m, k) @ local.reshape(k, -1)
+        return np.ascontiguousarray(found.reshape(d, m, d, -1).swapaxes(1, 2))
 
     def invDF(self, X: np.ndarray, tind: Any = None) -> np.ndarray:
         """∂ξ/∂x (d, d, m, q) at points X (d, q) of the elements `tind`."""

@@ -16,6 +16,7 @@ from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
+PLANES = (SYMMETRY_START, SYMMETRY_END)
 
 
 @dataclass(frozen=True)
@@ -53,21 +54,21 @@ class Model:
 
 
 class Supports:
-    """Prescribed components; what is set later wins."""
+    """Prescribed components (n, 3): whether by `mask`, and by `value` [mm]; what is set later wins."""
 
     def __init__(self, model: Model) -> None:
         n = len(model.mesh.nodes)
-        self._mask = np.zeros((n, 3), bool)
-        self._value = np.zeros((n, 3))
+        self.mask = np.zeros((n, 3), bool)
+        self.value = np.zeros((n, 3))
         self._model = model
 
     def set(self, nodes: np.ndarray, component: int, value: np.ndarray | float = 0.0) -> None:
-        self._mask[nodes, component] = True
-        self._value[nodes, component] = value
+        self.mask[nodes, component] = True
+        self.value[nodes, component] = value
 
-    def symmetry(self, antisymmetric: bool) -> None:
+    def symmetry(self, antisymmetric: bool, planes: tuple[str, ...] = PLANES) -> None:
         mesh = self._model.mesh
-        for patch in (SYMMETRY_START, SYMMETRY_END):
+        for patch in planes:
             nodes = self._model.on(patch)
             if antisymmetric:
                 self.set(nodes, RADIAL)
@@ -86,13 +87,13 @@ class Supports:
             self.set(nodes, component)
 
     def solve(self, load: np.ndarray, iteration_energy: float = ITERATION_ENERGY) -> Solution:
-        fixed = np.flatnonzero(self._mask.ravel())
+        fixed = np.flatnonzero(self.mask.ravel())
         model = self._model
         return solve(
             model.matrix,
             load,
             fixed,
-            self._value.ravel()[fixed],
+            self.value.ravel()[fixed],
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
             iteration_energy,

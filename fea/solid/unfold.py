@@ -51,8 +51,11 @@ class Unfolding:
     sector_deg: float
 
     def vectors(self, values: np.ndarray, parity: Parity) -> np.ndarray:
-        """A vector field (n, 3), Cartesian, from the sector's; `parity`: what a reflection does to it."""
-        found = values[self.node]
+        """A vector field (n, 3), Cartesian, from the sector's; `parity`: what a reflection does to it.
+
+        `values` (copies, n, 3) are the copies' own, each as it is before that is turned and reflected.
+        """
+        found = values[self.node] if values.ndim == 2 else values[self.copy, self.node]
         odd = self.copy % 2 == 1
         found[odd] *= [1.0, -1.0, 1.0] if parity == "symmetric" else [-1.0, 1.0, -1.0]
         turn = np.radians((self.copy + odd) * self.sector_deg)

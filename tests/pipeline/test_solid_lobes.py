@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.fea.solid.errors import NoBetterMeshError
+from flexspline.fea.solid.lobes import promised
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, solid_lobes
@@ -41,9 +42,9 @@ def model(folder: Path, design: Design = WIDE) -> PartModel:
 
 
 def first_elements(part: PartModel, supported: bool, known: float = 1.0) -> int:
-    sector = solid_lobes.sector_of(part.part, "lobes")
-    mesh, _ = next(solid_lobes._meshes(part, sector, supported, known))
-    return mesh.elements
+    """Of the part's quarter."""
+    mesh, _ = next(solid_lobes._meshes(part, supported, known))
+    return copies_in_rim(part) * mesh.elements
 
 
 def test_a_held_rim_begins_on_the_mesh_of_torsion_where_that_promises_enough(
@@ -65,6 +66,20 @@ def test_a_first_mesh_of_its_own_may_be_coarser(
     usual = first_elements(part, supported=False)
     monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
     assert first_elements(part, supported=False) < usual
+
+
+def test_a_coarser_mesh_is_made_only_where_it_promises_half_of_what_is_known(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = model(folder)
+    usual = first_elements(part, supported=False)
+    monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
+    # 1 % asked; on steps 1/0.7 times as long the fourth power is 4.2 times as large
+    expected = promised(0.01, solid_lobes.COARSER)
+    assert 0.02 < expected < 0.03
+    assert first_elements(part, False, known=2.01 * expected) < usual
+    with pytest.raises(NoBetterMeshError):
+        first_elements(part, False, known=min(1.99 * expected, 0.9 * solid_lobes.LEAST_OF_FREE))
 
 
 @pytest.mark.parametrize("supported", [True, False])
