@@ -9,7 +9,8 @@ from dataclasses import asdict
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
-from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
+from flexspline.pipeline.load_cases import CASES
+from flexspline.pipeline.rim_case import RIM_CASES, figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task
