@@ -53,7 +53,7 @@ def rim_cases(flexspline: PartModel) -> tuple[tuple[RimCase, ...], ...]:
     """
     if flexspline.axisymmetric or may_answer(flexspline):
         return ("lobes", "lobes_contact"), ("lobes_unsupported",)
-    return (tuple(case for case in RIM_CASES if CASES[case].solid is not None),)
+    return (SOLID_CASES,)
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
@@ -137,3 +137,4 @@ CASES: Mapping[RimCase, LoadCase] = {
     ),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
+SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)
