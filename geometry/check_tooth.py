@@ -24,7 +24,7 @@ def ring_ends(design: Design) -> tuple[float, float]:
     The root circle lies within the pitch circle, and the flanks leave a gap there.
     """
     f, gear = design.flexspline, design.gear
-    pitch, land = gear.module_mm * gear.teeth_flexspline / 2, SMALLEST_LAND * gear.module_mm
+    pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
     if f.teeth == "none" or pitch - land <= f.wall_radius + SAME:
         return 0.0, inf
     margin = 1e-6 * gear.module_mm  # below the digits in which the ends are told
@@ -43,7 +43,7 @@ def tooth_faults(design: Design) -> Iterator[DesignError]:
     if design.flexspline.teeth == "none":
         return
     f, gear = design.flexspline, design.gear
-    pitch, land = gear.module_mm * gear.teeth_flexspline / 2, SMALLEST_LAND * gear.module_mm
+    pitch, land = gear.pitch_radius_mm, SMALLEST_LAND * gear.module_mm
     if pitch - land <= f.wall_radius + SAME:
         least = f.wall_radius / (gear.teeth_flexspline / 2 - SMALLEST_LAND)
         room = span(least * (1 + 1e-6) + SAME, MODULE_mm.high, 4)

@@ -75,6 +75,11 @@ class Gear(Table):
     )
 
     @property
+    def pitch_radius_mm(self) -> float:
+        """m z1/2 [mm], of the flexspline."""
+        return self.module_mm * self.teeth_flexspline / 2
+
+    @property
     def centre_distance_mm(self) -> float:
         """a = m(z2 − z1)/2 [mm], which is also w0, the wave generator's radial stroke."""
         return self.module_mm * (self.teeth_circular_spline - self.teeth_flexspline) / 2

@@ -34,7 +34,7 @@ def rated_in_proportion(pitch_radius_mm: float) -> float:
 
 def rated_warnings(design: Design) -> Iterator[str]:
     """A rated torque that no catalogue gear of that pitch diameter has."""
-    stated, radius = design.gear.rated_torque_Nm, _pitch_radius_mm(design)
+    stated, radius = design.gear.rated_torque_Nm, design.gear.pitch_radius_mm
     most = STRONGEST_Nm_per_mm3 * radius**3
     if stated is not None and stated > UNUSUAL * most:
         yield (
@@ -49,14 +49,14 @@ def rated_torque(design: Design) -> tuple[float, tuple[Assumed, ...]]:
     stated = design.gear.rated_torque_Nm
     if stated is not None:
         return stated, ()
-    value = rated_in_proportion(_pitch_radius_mm(design))
+    value = rated_in_proportion(design.gear.pitch_radius_mm)
     return value, (Assumed("gear.rated_torque_Nm", value, RATED_WHY),)
 
 
 def rated_faults(design: Design) -> Iterator[DesignError]:
     """A rated torque that no gear of that size can have: a slip of the unit."""
     stated = design.gear.rated_torque_Nm
-    usual = rated_in_proportion(_pitch_radius_mm(design))
+    usual = rated_in_proportion(design.gear.pitch_radius_mm)
     low, high = (share * usual for share in RATED_SHARES)
     if stated is not None and not low <= stated <= high:
         yield DesignError(
@@ -64,7 +64,3 @@ def rated_faults(design: Design) -> Iterator[DesignError]:
             stated,
             f"must be {span(low, high, 4)} N·m: a gear of this pitch radius has some {usual:.3g}",
         )
-
-
-def _pitch_radius_mm(design: Design) -> float:
-    return design.gear.module_mm * design.gear.teeth_flexspline / 2

@@ -8,6 +8,7 @@ import tomllib
 from typing import Any
 
 from flexspline.geometry.errors import FlexsplineError
+from flexspline.geometry.full_width import narrow
 
 DEEPEST_KEY = 50
 """Parts of a dotted key; the files of this program have four. `tomllib` takes time with the square of it."""
@@ -18,8 +19,6 @@ _WITH_UNIT = re.compile(
 """A number, and what may be the unit behind it."""
 _VALUE = re.compile(r"=\s*([^#]*)")
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
-_FULL_WIDTH = str.maketrans("，。．＝＂“”＃［］｛｝－　", ',..="""#[]{}- ')
-"""Signs of a Chinese or Japanese keyboard, and TOML's."""
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
 
@@ -68,7 +67,7 @@ def _help(text: str, fault: ValueError) -> str:
     if at is None or int(at[1]) > len(lines):
         return ""
     written = lines[int(at[1]) - 1]
-    line = written.translate(_FULL_WIDTH)
+    line = narrow(written)
     if number := _COMMA.search(line):
         return f"; write {number[1]}.{number[2]} with a point"
     if line != written:

@@ -44,12 +44,10 @@ def _faults(design: Design) -> Iterator[DesignError]:
             f"must be {span(low, high, 4)} mm: {z1} teeth of that module do not stand on the ring, whose "
             f"outer radius is {ring:.4g} mm",
         )
-    stated = design.wave_generator.deflection_mm
-    deflection = stroke if stated is None else stated
     play = design.bearing.radial_clearance_um
-    if play / 1e3 >= 2 * deflection:
+    if play / 1e3 >= 2 * design.w0_mm:
         yield DesignError(
             "bearing.radial_clearance_um",
             play,
-            f"must be below {2e3 * deflection:.4g} µm: twice the wave generator's stroke",
+            f"must be below {2e3 * design.w0_mm:.4g} µm: twice the wave generator's stroke",
         )

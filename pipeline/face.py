@@ -23,18 +23,16 @@ from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.gear_chain import chain_of
-from flexspline.pipeline.load_cases import (
-    RIM_CASES,
-    RimCase,
-    rim_stiffness,
-)
+from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.no_design import require_design
 from flexspline.pipeline.part_stiffness import part_stiffness
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import trial_store_of, whole_study
-from flexspline.pipeline.study.sensitivity import Slope, sensitivities
+from flexspline.pipeline.study.sensitivity import sensitivities
+from flexspline.pipeline.study.slope import Slope
 
 StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
 

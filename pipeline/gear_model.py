@@ -71,7 +71,7 @@ def gear_model(
     play = design.bearing.radial_clearance_um / 1e3
     shape = flexspline.shape
     assert not isinstance(shape, Shaft)
-    pitch = gear.module_mm * gear.teeth_flexspline / 2
+    pitch = gear.pitch_radius_mm
     middle = (shape.inner_radius + shape.ring_radius) / 2
     more = gear.teeth_circular_spline - gear.teeth_flexspline
     mesh = Mesh(
@@ -173,7 +173,7 @@ def drawn_flanks(design: Design) -> DrawnFlanks:
         return np.array([r * angle(r) for r in radii.tolist()])
 
     module = gear.module_mm
-    pitch = module * gear.teeth_flexspline / 2
+    pitch = gear.pitch_radius_mm
     root = max(design.flexspline.ring_radius - pitch, -ADDENDUM * module)
     heights = np.linspace(root, ADDENDUM * module, FLANK_POINTS)
     levels = np.linspace(-ADDENDUM * module, DEDENDUM * module, FLANK_POINTS)
@@ -184,7 +184,7 @@ def drawn_flanks(design: Design) -> DrawnFlanks:
 def pair_compliance(design: Design) -> float:
     """Of a tooth of the flexspline and one as large of the circular spline, at the pitch point [mm/N]."""
     f, gear = design.flexspline, design.gear
-    pitch = gear.module_mm * gear.teeth_flexspline / 2
+    pitch = gear.pitch_radius_mm
     of = design.material
     materials = Elastic.of(of.flexspline), Elastic.of(of.circular_spline or of.flexspline)
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)

@@ -17,9 +17,10 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
 from flexspline.pipeline.gear import GearCurve, curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.load_cases import CASES, RimCase
+from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
+from flexspline.pipeline.rim_case import RimCase
 
 View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Literal, get_args
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
@@ -27,11 +26,8 @@ from flexspline.pipeline.enclosed_part import (
 from flexspline.pipeline.enclosure import answered_within
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, lobes
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
-
-RimCase = Literal["lobes", "lobes_contact", "lobes_unsupported"]
-RIM_CASES: tuple[RimCase, ...] = get_args(RimCase)
-"""In the order of the reports; each is solved as `CASES` (below) says."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +45,6 @@ class LoadCase:
     fast: Callable[[Part, float], Stiffness]
 
 
-def figure_of(case: RimCase) -> str:
-    """result.json's name of a case's stiffness, without its unit."""
-    return f"K_b_{case}"
-
-
 def rim_cases(flexspline: PartModel) -> tuple[tuple[RimCase, ...], ...]:
     """The cases that are answered by the model of the part's stiffness, those together that share solves.
 
@@ -62,7 +53,7 @@ def rim_cases(flexspline: PartModel) -> tuple[tuple[RimCase, ...], ...]:
     """
     if flexspline.axisymmetric or may_answer(flexspline):
         return ("lobes", "lobes_contact"), ("lobes_unsupported",)
-    return (tuple(case for case in RIM_CASES if CASES[case].solid is not None),)
+    return (SOLID_CASES,)
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
@@ -146,3 +137,4 @@ CASES: Mapping[RimCase, LoadCase] = {
     ),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""
+SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)

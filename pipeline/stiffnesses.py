@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-from flexspline.fea.types import Stiffness, StressPeak
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import series_stiffness
-from flexspline.pipeline.load_cases import RIM_CASES, figure_of
+from flexspline.pipeline.rim_case import RIM_CASES, figure_of
+
+if TYPE_CHECKING:
+    from flexspline.fea.toothed_ring.equivalent import EquivalentRing
+    from flexspline.fea.types import Stiffness, StressPeak
+    from flexspline.geometry.design import Design
 
 FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
 """In the order of the reports."""

@@ -152,7 +152,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
     from flexspline.pipeline.backlash import backlash as total
     from flexspline.pipeline.backlash import series_stiffness
     from flexspline.pipeline.linear_limit import linear_limit
-    from flexspline.pipeline.stiffness_pair import stiffness_pair
+    from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
     from flexspline.results.records import (
         backlash_record,
         heading,
@@ -161,7 +161,7 @@ def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, 
     )
 
     record = {**heading(job.design), "warnings": list(warnings(job.design))}
-    used = stiffness_pair(job.context, kb, ke)
+    used = given_pair(kb, ke) or stiffness_pair(job.context, kb, ke)
     if used.solved is not None:
         record |= stiffness_record(job.design, used.solved, job.wall_s)
         warn(job.design, used.solved)

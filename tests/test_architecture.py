@@ -69,6 +69,20 @@ def test_a_diagnosis_with_given_stiffnesses_loads_no_solver() -> None:
     assert out.stdout.strip() == "[]"
 
 
+def test_a_backlash_with_given_stiffnesses_loads_no_solver(tmp_path: Path) -> None:
+    """They are half of its time."""
+    ask = ["backlash", "examples/xb1-40.toml", "--Kb", "3e4", "--Ke", "2e4", "--out", str(tmp_path)]
+    code = (
+        "import sys; from flexspline.results.cli import app\n"
+        f"app({ask}, standalone_mode=False)\n"
+        "print(sorted({'scipy', 'skfem', 'flexspline.pipeline.analysis'} & set(sys.modules)))"
+    )
+    out = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert out.stdout.splitlines()[-1] == "[]"
+
+
 def test_help_loads_nothing_heavy() -> None:
     code = (
         "import sys, flexspline.results.cli\n"

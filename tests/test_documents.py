@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from finished_run import finished_run
-from known_slopes import once_in_a_suite
 from opengl import why_no_pictures
 
 from flexspline.geometry.load import load_design
@@ -41,8 +40,6 @@ def test_docstring_examples(
     monkeypatch.chdir(ROOT)
     if name == "flexspline.pipeline.face":  # its examples ask for the cup's K, stress and slopes
         request.getfixturevalue("finished_cup")
-        suite = request.getfixturevalue("suite_folder")
-        once_in_a_suite(f"{name}.sensitivities", suite, monkeypatch)
     outcome = doctest.testmod(importlib.import_module(name))
     assert outcome.attempted
     assert not outcome.failed

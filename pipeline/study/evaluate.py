@@ -23,9 +23,10 @@ from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_s
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
-from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
+from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
+from flexspline.pipeline.rim_case import RIM_CASES, figure_of
 from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
 from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Literal
 
-from flexspline.pipeline.load_cases import RIM_CASES, RimCase, figure_of
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 
 Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
 

@@ -9,7 +9,8 @@ from dataclasses import asdict
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
-from flexspline.pipeline.load_cases import CASES, RIM_CASES, figure_of
+from flexspline.pipeline.load_cases import SOLID_CASES
+from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task, outcome_of
@@ -20,7 +21,6 @@ from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.verified import Check, Verified
 
 VERIFIED = "verified"
-SOLID_CASES = tuple(case for case in RIM_CASES if CASES[case].solid is not None)
 RIM = {key for case in SOLID_CASES for key in GIVEN_BY[case]} | {*GIVEN_BY["ellipse"]}
 
 

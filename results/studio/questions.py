@@ -18,8 +18,8 @@ from flexspline.pipeline.live import (
     rim,
     torsion,
 )
-from flexspline.pipeline.load_cases import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.revolved import revolved
+from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.records import bounded_record, gear_figures, peak_record
 from flexspline.results.studio.shape import field_message, profile_message

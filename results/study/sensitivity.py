@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.study.clearance_slopes import ClearanceSlope, clearance_slopes
-from flexspline.pipeline.study.sensitivity import Slope
+from flexspline.pipeline.study.slope import Slope
 from flexspline.results.atomic import write_bytes
 from flexspline.results.file_names import SENSITIVITY
 from flexspline.results.records import as_json, heading

@@ -17,9 +17,10 @@ from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import FIRST, SHARE, TOO_FAR, enclosure_of
 from flexspline.pipeline.enclosure import NestingError, enclosed
-from flexspline.pipeline.load_cases import RIM_CASES, rim_stiffness
+from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.rim_case import RIM_CASES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CUP = load_design(EXAMPLES / "xb1-40.toml")

@@ -14,8 +14,8 @@ from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
 from flexspline.pipeline import live
 from flexspline.pipeline.ellipse_peak import STRESS_TOLERANCE
-from flexspline.pipeline.load_cases import RIM_CASES
 from flexspline.pipeline.revolved import revolved
+from flexspline.pipeline.rim_case import RIM_CASES
 
 CUP = revolved(design_from(tomllib.loads(template("cup"))))
 

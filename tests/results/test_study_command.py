@@ -7,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from known_slopes import once_in_a_suite
 from opengl import why_no_pictures
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -167,12 +166,7 @@ def test_a_wrong_study_leaves_nothing(
     assert not out.exists()
 
 
-def test_sensitivity_prints_its_table_as_json(
-    tmp_path: Path, suite_folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    once_in_a_suite(
-        "flexspline.pipeline.study.sensitivity.sensitivities", suite_folder, monkeypatch
-    )
+def test_sensitivity_prints_its_table_as_json(tmp_path: Path) -> None:
     done = CliRunner().invoke(
         app, ["sensitivity", str(DESIGN), "--out", str(tmp_path), "--json"]
     )  # fmt: skip

@@ -52,6 +52,10 @@ def test_a_crack_like_edge_gives_a_peak_of_the_rule(record) -> None:
     [
         ("even stress", lambda d: 100.0),
         ("a hill beside the border", lambda d: 100 - 50 * (d - 1.1 * FAR) ** 2 / FAR**2),
+        (
+            "a solid mesh near the border",
+            lambda d: 100 - 4.4 * min(d / FAR, 1) - 25 * max(d / FAR - 1, 0),
+        ),
         ("a hill far from a weak edge", lambda d: 60 / sqrt(d) + 200 * (abs(d - 3) < 0.1)),
     ],
 )

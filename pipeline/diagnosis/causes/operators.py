@@ -101,9 +101,14 @@ def rising(history: History, width_Nm: float) -> np.ndarray:
     out = np.zeros(len(moved))
     for rows in history.unit_slices:
         step = np.sign(np.diff(moved[rows], prepend=moved[rows[0]]))
-        last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
-        out[rows] = step[last]
+        out[rows] = last_way(step)
     return out
+
+
+def last_way(step: np.ndarray) -> np.ndarray:
+    """(n,) the last of the steps that was not 0, so far; 0 before the first."""
+    last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
+    return np.asarray(step[last])
 
 
 def direction_of_loading(history: History) -> np.ndarray:

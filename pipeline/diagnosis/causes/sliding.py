@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import wrightomega
 
-from flexspline.pipeline.diagnosis.causes.operators import steadied
+from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 
@@ -59,8 +59,7 @@ def carried_share(
     for rows in history.unit_slices:
         moved = np.r_[0.0, torque[rows]]
         step = np.sign(np.diff(moved))
-        last = np.maximum.accumulate(np.where(step != 0, np.arange(len(step)), 0))
-        way = step[last]
+        way = last_way(step)
         starts = np.flatnonzero(np.diff(way, prepend=np.nan) != 0)
         time = None if history.time_s is None else history.time_s[rows]
         left, turn = 1.0, 0.0

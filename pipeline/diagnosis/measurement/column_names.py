@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from flexspline.geometry.full_width import narrow
 from flexspline.pipeline.diagnosis.measurement.time_stamps import without_form
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES, UNITS, unit_named
 from flexspline.pipeline.diagnosis.measurement.vocabulary import (
@@ -30,8 +31,6 @@ DESIGN_KEY = re.compile(r"[a-z]\w*(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)+", re.ASCII)
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|(?<![^\s(\[_])[+\-−](?![^\s)\]_])|\+")
 """Words, figures, and signs that stand alone: a hyphen inside a word is none."""
 _BRACKETS = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|<([^>]*)>|\{([^}]*)\}")
-_FULL_WIDTH = str.maketrans("（）［］：／", "()[]:/")
-"""Signs as wide as a Chinese letter, and ours."""
 _SCALE = re.compile(r"[*×÷/=]\s*\d|\d[.,]\d|\d\s*[*×÷/=]|^\s*[-−–]")
 """A factor beside the quantity, or a sign before it: the readings are then not in the unit beside it."""
 _HALF = re.compile(r"^[^\[({<]*[\])}>]")
@@ -60,7 +59,7 @@ class ColumnName:
 
 def column_name(head: str) -> ColumnName | None:
     """What a head says; None where it is no quantity of ours."""
-    text = without_form(head.translate(_FULL_WIDTH)).strip()
+    text = without_form(narrow(head)).strip()
     if text in LABELS or text in PLAIN or DESIGN_KEY.fullmatch(text):
         return ColumnName(text, ours=True)
     for quantity in sorted(QUANTITIES, key=len, reverse=True):

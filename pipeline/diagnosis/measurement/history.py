@@ -49,6 +49,17 @@ class History:
         """The true torque, where the reading is `offset_Nm` too high."""
         return replace(self, torque_Nm=self.torque_Nm - offset_Nm)
 
+    def timed(self) -> History:
+        """With time; rows are seconds where it was not recorded."""
+        if self.time_s is not None:
+            return self
+        return replace(self, time_s=np.arange(len(self), dtype=float))
+
+    @property
+    def cycle_count(self) -> int:
+        """Load cycles of all units."""
+        return sum(len(np.unique(self.cycle[rows])) for rows in self.unit_slices)
+
     @property
     def sign(self) -> np.ndarray:
         """(n,) on which side of the gap the teeth bear: −1, 0 or 1."""

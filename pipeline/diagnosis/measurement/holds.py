@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.ramps import (
     ramp_rate,
     rates_of,
 )
+from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.torque_noise import DEADBAND_SIGMAS, torque_noise_Nm
 
 STILL = 0.08
@@ -53,10 +54,8 @@ def _holds(history: History) -> list[np.ndarray]:
         t = history.time_s[rows]
         floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
         limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
-        edges = np.diff(np.r_[0, (rate < limit).astype(int), 0])
-        runs = zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
         torque = history.torque_Nm[rows]
-        for i, j in _joined([(int(i), int(j)) for i, j in runs], torque, t, width, noise, fast):
+        for i, j in _joined(runs(rate < limit), torque, t, width, noise, fast):
             before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
             hold = rows[i : j + width]

@@ -11,6 +11,7 @@ from scipy.optimize import nnls
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
+from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -176,8 +177,7 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
     if not far.any():
         return far
     out = far.copy()
-    edges = np.diff(np.r_[0, far.astype(int), 0])
-    for a, b in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+    for a, b in runs(far):
         if b - a > LONGEST_OUTLIER:
             out[a:b] = False
     rows = np.flatnonzero(out)

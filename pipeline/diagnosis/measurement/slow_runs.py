@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 
 SPAN = 0.005
@@ -27,16 +28,15 @@ def resting(history: History) -> list[np.ndarray]:
         free[rows] = False
     torque = less_jitter(history).torque_Nm
     span = SPAN * float(np.abs(history.torque_Nm).max())
-    runs: list[np.ndarray] = []
+    pieces: list[np.ndarray] = []
     for rows in history.unit_slices:
-        cuts = np.flatnonzero(np.diff(np.r_[False, free[rows], False].astype(int)))
-        for first, end in cuts.reshape(-1, 2):
+        for first, end in runs(free[rows]):
             piece = rows[first:end]
-            runs += [piece[a:b] for a, b in _longest(torque[piece], span)]
-    if not runs:
+            pieces += [piece[a:b] for a, b in _longest(torque[piece], span)]
+    if not pieces:
         return held
-    fewest = max(FEWEST, SLOWER * float(np.median([len(run) for run in runs])))
-    slow = [run for run in runs if len(run) >= fewest]
+    fewest = max(FEWEST, SLOWER * float(np.median([len(p) for p in pieces])))
+    slow = [p for p in pieces if len(p) >= fewest]
     return sorted([*held, *slow], key=lambda rows: int(rows[0]))
 
 

@@ -68,8 +68,7 @@ def _ways(
 
 def widest(history: History) -> int:
     """Rows on either side that many rows a cycle allow."""
-    cycles = sum(len(np.unique(history.cycle[rows])) for rows in history.unit_slices)
-    return int(np.clip(len(history) / cycles / PART, USUAL, WIDEST))
+    return int(np.clip(len(history) / history.cycle_count / PART, USUAL, WIDEST))
 
 
 def less_jitter(history: History) -> History:

@@ -53,6 +53,12 @@ class GaussianEvidence:
         block = max(1, int(self.kept.sum()) // MOST_ROWS)
         return _summed(self.noise.whitened(values[self.kept].astype(float), stretches), block)
 
+    def base_with(self, blocks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Columns (r, p) of the base and of blocks of unit prior; inverse variances (p,) of their priors."""
+        x = np.hstack([self.base, *blocks])
+        own = np.ones(x.shape[1] - self.base.shape[1])
+        return x, np.concatenate([self.columns.base_prior**-2, own])
+
     @property
     def terms(self) -> tuple[Regressor, ...]:
         return self.columns.terms

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -83,9 +83,7 @@ class PreparedSweep:
 def true_history(sweep: Sweep, offset_Nm: float = 0.0) -> History:
     """What the rig did, a shifted torque reading put right; rows are seconds where time was not recorded."""
     history = sweep.history.shifted(offset_Nm) if offset_Nm else sweep.history
-    if history.time_s is None:
-        history = replace(history, time_s=np.arange(len(history), dtype=float))
-    return history
+    return history.timed()
 
 
 def prepare(
@@ -106,8 +104,7 @@ def prepare(
     target = sweep.angle_arcsec - prediction.angle_arcsec(history)
     band = crossing_band_Nm(history)
     kept = naming_rows(history, band)
-    count = sum(len(np.unique(history.cycle[rows])) for rows in history.unit_slices)
-    per_cycle = len(history) / count
+    per_cycle = len(history) / history.cycle_count
     wanted = FEWEST_KEPT + PER_UNIT * (len(history.unit_slices) - 1)
     if int(kept.sum()) < wanted:
         raise TooFewRowsError(int(kept.sum()), wanted)

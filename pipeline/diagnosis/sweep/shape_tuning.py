@@ -77,10 +77,7 @@ def _block(evidence: GaussianEvidence, term: Regressor, shape: Shape) -> np.ndar
 
 def _value(evidence: GaussianEvidence, blocks: list[np.ndarray]) -> float:
     """Log evidence of base and blocks, up to a constant."""
-    x = np.hstack([evidence.base, *blocks])
-    prior = np.concatenate(
-        [evidence.columns.base_prior**-2, np.ones(x.shape[1] - evidence.base.shape[1])]
-    )
+    x, prior = evidence.base_with(blocks)
     matrix = x.T @ x + np.diag(prior)
     right = x.T @ evidence.y
     return float(right @ np.linalg.solve(matrix, right) / 2 - np.linalg.slogdet(matrix)[1] / 2)
@@ -105,8 +102,7 @@ def _step(
 ) -> np.ndarray:  # fmt: skip
     """Change of the log of each tunable parameter."""
     b = evidence.base.shape[1]
-    x = np.hstack([evidence.base, *blocks])
-    prior = np.concatenate([evidence.columns.base_prior**-2, np.ones(x.shape[1] - b)])
+    x, prior = evidence.base_with(blocks)
     amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
     whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
     found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)

@@ -57,10 +57,7 @@ def unit_amplitudes(identified: Identification, cause: str) -> UnitAmplitudes:
         for i in fit.posterior.terms
         if evidence.terms[i].owner != cause
     ]
-    rest = np.hstack([evidence.base, *others])
-    prior = np.concatenate(
-        [evidence.columns.base_prior**-2, np.ones(rest.shape[1] - evidence.base.shape[1])]
-    )
+    rest, prior = evidence.base_with(others)
     apart = evidence.prepared(np.column_stack([effect * (unit == u) for u in range(count)]))
     common = apart.sum(axis=1, keepdims=True)
     found, separate = _fit(evidence.y, rest, prior, apart)

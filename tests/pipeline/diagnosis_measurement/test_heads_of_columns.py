@@ -37,6 +37,7 @@ SAID = {
     "Vstupní úhel [°]": ("input_angle", "deg"), "Čas [s]": ("time", "s"),
     "Teplota [°C]": ("temperature", "C"),
     "扭矩（N·m）": ("torque", "Nm"), "输出转角 [°]": ("angle", "deg"), "输入角度[°]": ("input_angle", "deg"),
+    "扭矩［Ｎｍ］": ("torque", "Nm"),
     "时间/s": ("time", "s"), "温度(℃)": ("temperature", "C"), "循环": ("cycle", None),
     "ねじれ角 (arcsec)": ("angle", "arcsec"), "入力軸回転角 (deg)": ("input_angle", "deg"),
     "波发生器角度 (deg)": ("input_angle", "deg"), "输出端角位移 (arcsec)": ("angle", "arcsec"),

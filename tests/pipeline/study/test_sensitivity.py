@@ -2,6 +2,7 @@
 
 from functools import cache
 from itertools import groupby
+from pathlib import Path
 
 import pytest
 from study_bench import EXAMPLES
@@ -13,12 +14,16 @@ from flexspline.fea.axisymmetric.shape_slope import (
     moved_stiffness,
     twist,
 )
+from flexspline.fea.shortfall import NOT_FINISHED
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.study.sensitivity import Slope, sensitivities, slope_with_field_held
+from flexspline.pipeline.study import two_ways
+from flexspline.pipeline.study.sensitivity import sensitivities
+from flexspline.pipeline.study.slope import Slope, Slopes
+from flexspline.pipeline.study.two_ways import slope_with_field_held
 
 
 @cache
@@ -99,3 +104,50 @@ def test_one_side_does_where_the_other_cannot_be_built(barred: tuple[int, ...]) 
 
     # one-sided: off by half the second derivative times the step, 6 · 2e-4
     assert slope_with_field_held(K, "p", 2.0) == pytest.approx(12.0, abs=2e-3)
+
+
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
+FOUND = (Slope("shaft.fillet_mm", "shaft", 0.5, 447.6, None, 0.0, 43275.0, -0.046, "no room"),)
+
+
+@pytest.fixture
+def solves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
+    """The designs whose slopes are solved, each with the same answer, on an empty cache."""
+    asked: list[Design] = []
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path))
+    monkeypatch.setattr(
+        two_ways,
+        "slopes",
+        lambda design, say: asked.append(design) or Slopes(FOUND, {"shaft.grip_length_mm": "none"}),
+    )
+    return asked
+
+
+def test_slopes_are_solved_once_and_missing_ones_said_again(solves: list[Design]) -> None:
+    for _ in range(2):
+        said: list[str] = []
+        assert sensitivities(DESIGN, said.append) == FOUND
+        assert said == ["no dK/dp of shaft.grip_length_mm: none"]
+    assert len(solves) == 1
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "again"),
+    [("name", "another", False), ("load.torque_Nm", 0.7, True), ("shaft.fillet_mm", 0.6, True)],
+)
+def test_slopes_are_solved_again_where_they_may_change(
+    key: str, value: object, again: bool, solves: list[Design]
+) -> None:
+    for design in (DESIGN, with_values(DESIGN, {key: value})):
+        sensitivities(design, lambda line: None)
+    assert len(solves) == 1 + again
+
+
+def test_what_more_memory_would_find_is_not_kept(
+    solves: list[Design], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    short = Slopes((), {"shaft.fillet_mm": f"{NOT_FINISHED} not enough memory"})
+    monkeypatch.setattr(two_ways, "slopes", lambda design, say: short)
+    assert sensitivities(DESIGN, lambda line: None) == ()
+    monkeypatch.setattr(two_ways, "slopes", lambda design, say: Slopes(FOUND, {}))
+    assert sensitivities(DESIGN, lambda line: None) == FOUND

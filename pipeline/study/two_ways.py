@@ -1,0 +1,125 @@
+"""dK/dp of every dimension of one design, found in two ways that share no mesh.
+
+First from the energy with the field held (`fea.axisymmetric.shape_slope`), from one solution. Then from
+K solved anew on either side, with two step sizes and Richardson's extrapolation. Both by the axisymmetric
+model: bolt holes and keyway are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
+from flexspline.fea.shortfall import settled
+from flexspline.fea.types import Elastic
+from flexspline.geometry.design import Design
+from flexspline.geometry.errors import DesignError
+from flexspline.geometry.keys import lengths, with_values
+from flexspline.geometry.part import Part, PartName
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.revolved import revolved, torsion
+from flexspline.pipeline.study.evaluate import OUR_ERRORS
+from flexspline.pipeline.study.slope import Slope, Slopes
+
+HELD_STEP = 1e-4
+"""Of the dimension: the energy's difference is smooth, so only rounding limits the step."""
+WIDER = 10
+"""Times HELD_STEP, where the outline cannot follow so small a step."""
+SOLVED_STEP = 0.04
+"""Of the dimension: K is known to half of K_TOLERANCE only, and its difference must stand above that."""
+K_TOLERANCE = 3e-4
+"""Half the bounds over K: with SOLVED_STEP the slope is then off by 1 to 2 % of K per dimension."""
+ENERGY_TOLERANCE = 1e-3
+"""Of the field that is held; the slope is a ratio of energies on one mesh and more accurate than they are."""
+NARROWER = 0.25
+"""Times the step, where a step cannot be built; TRIES of them end at a step of 0.06 %."""
+TRIES = 4
+"""Steps that are tried, each NARROWER than the last."""
+
+
+def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
+    """Of every length above 0 of both parts, the strongest first within a part; `say` is told each.
+
+    Raises
+    ------
+    DesignError, ComputationError
+    """
+    plain = revolved(design)
+    found: list[Slope] = []
+    missing: dict[str, str] = {}
+
+    def changed(values: dict[str, float], name: PartName) -> Part:
+        return with_values(plain, values).part(name)
+
+    for part in plain.parts:
+        material = Elastic.of(part.material)
+        solved = twist(part.meridian, material, part.driven, ENERGY_TOLERANCE)
+
+        def K(v: dict[str, float], name: PartName = part.name) -> float:
+            return settled(torsion(changed(v, name), K_TOLERANCE)).K_Nm_per_rad
+
+        here = K({})
+        own = []
+        for key, p in lengths(part).items():
+            say(f"dK/dp of {key}")
+
+            def moved(v: dict[str, float], part: Part = part, solved: Twist = solved) -> float:
+                return moved_stiffness(solved, changed(v, part.name).meridian)
+
+            held, why = None, ""
+            try:
+                held = slope_with_field_held(moved, key, p)
+            except OUR_ERRORS as fault:
+                why = str(fault)
+            again, error, no_room = _richardson(K, key, p, here)
+            if held is None and again is None:
+                missing[key] = why
+                continue
+            best = held if held is not None else (again or 0.0)
+            windup = -2 * design.load.torque_Nm / here**2 * best * ARCSEC_PER_RAD
+            why = why or no_room
+            own.append(Slope(key, part.name, p, held, again, error, here, windup, why))
+        found += sorted(own, key=lambda s: -abs(s.elasticity))
+    return Slopes(tuple(found), missing)
+
+
+def slope_with_field_held(K: Callable[[dict[str, float]], float], key: str, p: float) -> float:
+    """A difference over a step so small that one side does where the other cannot be built.
+
+    Raises
+    ------
+    DesignError, ComputationError : neither side can, by a wider step either.
+    """
+    for share in (HELD_STEP, WIDER * HELD_STEP):  # a new step in the outline has a least height
+        h, ends = share * p, []
+        for side in (h, -h):
+            try:
+                ends.append((side, K({key: p + side})))
+            except DesignError as fault:
+                refused = fault
+        if ends:
+            (far, high), (near, low) = ends[0], ends[1] if len(ends) > 1 else (0.0, K({}))
+            return (high - low) / (far - near)
+    raise refused
+
+
+def _central(K: Callable[[dict[str, float]], float], key: str, p: float, share: float) -> float:
+    h = share * p
+    return (K({key: p + h}) - K({key: p - h})) / (2 * h)
+
+
+def _richardson(
+    K: Callable[[dict[str, float]], float], key: str, p: float, here: float
+) -> tuple[float | None, float, str]:
+    """Central differences over h and h/2, extrapolated to h = 0; what may be wrong with them, and why
+    there are none."""
+    share, why = SOLVED_STEP, ""
+    for _ in range(TRIES):
+        try:
+            wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
+        except OUR_ERRORS as fault:
+            share, why = share * NARROWER, str(fault)
+            continue
+        noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
+        return (4 * close - wide) / 3, noise + abs(close - wide) / 3, ""
+    return None, 0.0, why
