@@ -82,6 +82,8 @@ class Gain:
     """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
     channel: str = ""
     """Of which a whole level was held out: an amplitude, a rate, a temperature."""
+    stated_std: float = 0.0
+    """Root mean square of the standard deviation that what was learnt states for these rows, noise aside."""
 
 
 Aim = Literal["more_data", "find_structure", "confirm", "separate"]

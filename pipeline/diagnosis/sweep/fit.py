@@ -156,6 +156,14 @@ class SweepFit:
             + self.evidence.columns.base[:, of_noise] @ self.posterior.mean[of_noise]
         )
 
+    def stated_std(self) -> np.ndarray:
+        """(n,) standard deviation [arcsec] of the fitted angle by the posterior of base and amplitudes."""
+        columns = self.evidence.columns
+        chosen = [columns.all[:, self.evidence.terms[i].at] for i in self.posterior.terms]
+        whole = np.hstack([columns.base, *chosen])
+        variance = np.einsum("ij,jk,ik->i", whole, self.posterior.covariance, whole, optimize=True)
+        return np.sqrt(np.maximum(variance, 0.0))
+
 
 def fit_regressors(evidence: GaussianEvidence, terms: Sequence[int]) -> SweepFit:
     """Fit a set of terms."""

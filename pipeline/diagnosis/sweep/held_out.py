@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.prepare import true_history
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, with_tuned_shapes
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
@@ -26,6 +26,9 @@ FEWEST_ROWS = 12
 REFUTED = 2.0
 """Times the error without the causes, at a whole level that was held out, from which they explain nothing:
 half of a true effect would still make it smaller."""
+SURE = 3.0
+"""Deviations that the prediction states, within which an error refutes nothing: what was held out may be what
+tells the sizes."""
 
 
 def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
@@ -47,7 +50,8 @@ def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple
 
 def refuted(levels: Iterable[Gain]) -> Unexplained | None:
     """A level at which the causes learnt on the others are worse than none of them; None where none is so."""
-    worst = max(levels, key=_times_worse, default=None)
+    sure = (g for g in levels if g.rmse_after > SURE * g.stated_std)
+    worst = max(sure, key=_times_worse, default=None)
     if worst is None or _times_worse(worst) < REFUTED:
         return None
     without = min(worst.rmse_before, worst.rmse_calibrated)
@@ -78,7 +82,8 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
         return None
     columns = prepared.columns.untuned.of(causes)
     learnt = gaussian_evidence(columns, prepared.target, train, prepared.noise)
-    after = _predicted(learnt, causes)
+    fit = _learnt(learnt, causes)
+    after = fit.residual_as_read()
     calibrated = calibrated_residual(learnt)
     reading = sweep.angle_arcsec - prepared.prediction.angle_arcsec(sweep.history)
     before = less_zero(reading, train, history)
@@ -93,17 +98,18 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
         left=left,
         channel=split.channel,
+        stated_std=_rms(fit.stated_std()[test]),
     )
 
 
-def _predicted(learnt: GaussianEvidence, causes: Collection[str]) -> np.ndarray:
-    """(n,) residual of the model learnt on the training rows."""
+def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:
+    """The model learnt on the training rows."""
 
     def named(term: Regressor) -> bool:
         return term.cause is not None and term.cause.id in causes
 
     now = with_tuned_shapes(learnt, named)
-    return fit_regressors(now, Search(now, named).run().terms).residual_as_read()
+    return fit_regressors(now, Search(now, named).run().terms)
 
 
 def _rms(values: np.ndarray) -> float:

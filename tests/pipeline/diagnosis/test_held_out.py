@@ -151,12 +151,16 @@ def test_what_is_known_carries_over_to_an_amplitude_not_measured() -> None:
 
 
 def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
-    def level(calibrated: float, after: float) -> Gain:
-        return Gain("rate 0.1 N·m/s", 9.0, calibrated, after, 0.5, channel="torque_rate")
+    def level(calibrated: float, after: float, stated: float = 0.0) -> Gain:
+        return Gain(
+            "rate 0.1 N·m/s", 9.0, calibrated, after, 0.5, channel="torque_rate", stated_std=stated
+        )
 
     assert refuted([]) is None
     assert refuted([level(4.0, 1.0), level(1.0, 1.9)]) is None
-    found = refuted([level(4.0, 1.0), level(1.0, 2.1)])
+    # what only the level held out tells may be missed by as much as was said
+    assert refuted([level(1.0, 2.1, stated=0.8)]) is None
+    found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6)])
     assert found is not None
     assert found.channel == "torque_rate"
     assert "does not hold at rate 0.1 N·m/s" in found.what
