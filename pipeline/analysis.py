@@ -107,18 +107,23 @@ def stiffnesses(
         solved(part)
         return found
 
-    K_b = K_of("K_b", rim_part) if flexspline else None
+    def K_of_parts() -> dict[str, Stiffness | None]:
+        return {
+            "K_b": K_of("K_b", rim_part) if flexspline else None,
+            "K_e": K_of("K_e", shaft_part) if shaft else None,
+        }
+
     if not (flexspline and rim):
-        every = {"K_b": K_b, "K_e": K_of("K_e", shaft_part) if shaft else None}
+        every = K_of_parts()
         ring = context.ring if flexspline else None
         return Stiffnesses(in_order(every), ring=ring, missing=tried.missing)
 
     rim_found = _RimFigures()
     with beside(context.progress, rim_found.tasks(rim_part)) as rest:
-        K_e = K_of("K_e", shaft_part) if shaft else None
+        every = K_of_parts()
         every_tried = [tried, *rest()]
     return Stiffnesses(
-        in_order({"K_b": K_b, "K_e": K_e, **rim_found.K}),
+        in_order({**every, **rim_found.K}),
         rim_found.peaks["wave_generator_peak"],
         rim_found.peaks["half_seat_peak"],
         context.ring,

@@ -14,6 +14,7 @@ import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
+from threading import Lock, RLock
 from typing import Any, TypeVar
 
 from flexspline.geometry.errors import ComputationError
@@ -23,6 +24,18 @@ from flexspline.pipeline.temporary_files import discard, unfinished
 T = TypeVar("T")
 FORMAT = 19
 """Raise when what a stage means changes, so that old entries are not read."""
+
+
+class Turns:
+    """A lock for each key. A value asks only for values of earlier stages, so none waits in a circle."""
+
+    def __init__(self) -> None:
+        self._own = Lock()
+        self._locks: dict[str, RLock] = {}
+
+    def __getitem__(self, key: str) -> RLock:
+        with self._own:
+            return self._locks.setdefault(key, RLock())
 
 
 @dataclass(frozen=True)
@@ -36,6 +49,8 @@ class Cache:
     """What failed since this object was made, by key: nobody waits for the same failure twice."""
     passing: dict[str, Any] = field(default_factory=dict, compare=False)
     """What is not for the disk, or found no room there, by key."""
+    turns: Turns = field(default_factory=Turns, compare=False)
+    """Whose turn it is to make a value, by key."""
     told: set[str] = field(default_factory=set, compare=False)
     """Why results could not be stored: each reason is said once."""
 
@@ -49,12 +64,19 @@ class Cache:
         """The stored value for `inputs`, or `make()`'s, then stored; and whether it was stored.
 
         A value that is not lasting is kept as long as this object and not on disk: another run may do better.
+        Of two threads that ask for one value the second waits for the first.
 
         Raises
         ------
         ComputationError : from `make`, now or when it was asked before.
         """
         key = self._key(stage, inputs)
+        with self.turns[key]:
+            return self._got(stage, key, make, is_lasting)
+
+    def _got(
+        self, stage: str, key: str, make: Callable[[], T], is_lasting: Callable[[T], bool]
+    ) -> tuple[T, bool]:
         path = self._path(stage, key)
         found = self._read(path, key)
         if found is not _MISSING:
