@@ -15,11 +15,12 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.first_values import MODELS, Table, first_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.ranges import Range
 from flexspline.geometry.rated import RATED_SHARES, RATED_WHY, rated_in_proportion
 from flexspline.geometry.schema import Location
-from flexspline.geometry.template import MODELS, Table, first_values, text_of
+from flexspline.geometry.template import text_of
 from flexspline.geometry.wave_generator import flexible_bearing
 
 PITCH_RADIUS_PER_SIZE_mm = 1.27

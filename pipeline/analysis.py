@@ -30,10 +30,11 @@ from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
 from flexspline.pipeline.load_cases import rim_cases, rim_stiffness
 from flexspline.pipeline.part_meshes import MeshedPart
-from flexspline.pipeline.part_stiffness import TwistedPart, part_stiffness, twisted_part
+from flexspline.pipeline.part_stiffness import part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim_case import RimCase, figure_of
+from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF

@@ -13,14 +13,9 @@ from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.enclosed_part import tolerance_of
 from flexspline.pipeline.part_meshes import PartMeshes
-from flexspline.pipeline.part_stiffness import (
-    RIM_ELEMENTS,
-    SOLID_SECONDS,
-    copies_in_rim,
-    rim_mesh,
-    twisted_part,
-)
+from flexspline.pipeline.part_stiffness import rim_mesh, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
+from flexspline.pipeline.solid_torsion import RIM_ELEMENTS, SOLID_SECONDS, copies_in_rim
 
 MOST_ELEMENTS = 100_000
 """Of the quarter or half: 450 000 unknowns. On a thick hat 89 928 took 18 s of the processor for each of the

@@ -18,8 +18,9 @@ from flexspline.fea.types import SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
-from flexspline.pipeline.part_stiffness import copies_in_rim, rim_mesh
+from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.solid_torsion import copies_in_rim
 
 LARGEST_STEP = radians(5)
 EDGE_WALLS, REACH_WALLS = 0.5, 1.5

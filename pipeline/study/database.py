@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.process_id import this_process
-from flexspline.pipeline.study.store import TrialStore, said
+from flexspline.pipeline.study.storage_faults import said
+from flexspline.pipeline.study.store import TrialStore
 
 if TYPE_CHECKING:
     from optuna.samplers import BaseSampler

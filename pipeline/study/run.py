@@ -20,7 +20,8 @@ from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
 from flexspline.pipeline.study.start import start_outcome
-from flexspline.pipeline.study.store import TrialStore, TrialStoreError
+from flexspline.pipeline.study.storage_faults import TrialStoreError
+from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.tolerance import Scattered, scattered
 from flexspline.pipeline.study.verify import verify

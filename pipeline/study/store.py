@@ -9,16 +9,16 @@ on SQLite: two can pop one trial.) A trial whose owner is gone is closed and its
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from flexspline.geometry.errors import ComputationError, one_line
 from flexspline.pipeline.process_id import parsed
 from flexspline.pipeline.study.claims import CLAIM, ROW, Claim, Claims, Row, Try
 from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.storage_faults import storage_faults
 from flexspline.pipeline.study.trial_tables import TrialTables, Values
 
 if TYPE_CHECKING:
@@ -31,35 +31,6 @@ BEAT_S = 10.0
 """How often a process says that it lives."""
 SILENT_S = 60.0
 """A process that cannot be seen from here, and that said nothing for so long, is gone."""
-
-
-class TrialStoreError(ComputationError):
-    """The storage of a study does not work: a full disk, a damaged file, a database gone."""
-
-    def __init__(self, reason: str) -> None:
-        super().__init__(
-            f"the study's storage does not work: {reason}; what is stored is kept: run the same "
-            "command again to resume"
-        )
-
-
-@contextmanager
-def storage_faults() -> Iterator[None]:
-    """What the database and its libraries raise, as a TrialStoreError."""
-    from optuna.exceptions import StorageInternalError
-    from sqlalchemy.exc import SQLAlchemyError
-
-    try:
-        yield
-    except (SQLAlchemyError, StorageInternalError) as fault:
-        raise TrialStoreError(said(fault)) from fault
-
-
-def said(fault: BaseException) -> str:
-    """The database's own words, without the statement and its values."""
-    while isinstance(fault.__cause__, Exception):
-        fault = fault.__cause__
-    return one_line((str(fault) or type(fault).__name__).splitlines()[0])
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline import load_cases, part_stiffness
+from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import FIRST, SHARE, TOO_FAR, enclosure_of
@@ -106,7 +106,7 @@ def test_where_no_mesh_can_be_made_K_b_is_the_enclosures(tmp_path: Path, monkeyp
     def fails(*given: object, **named: object) -> None:
         raise ComputationError("no mesh")
 
-    monkeypatch.setattr(part_stiffness, "solid_stiffness", fails)
+    monkeypatch.setattr(solid_torsion, "solid_stiffness", fails)
     narrow = part_stiffness.part_stiffness(model(CUP, tmp_path))
     assert narrow.guaranteed
     assert not narrow.shortfall
@@ -133,13 +133,13 @@ def test_where_the_enclosure_fails_the_solid_model_stays(tmp_path: Path, monkeyp
 @pytest.mark.parametrize("solver", ["auto", "solid"])
 def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypatch) -> None:
     """A wall a tenth too thick, say: K is 5 % off where ± 0.3 % is claimed, and nothing is answered."""
-    solve = part_stiffness.solid_stiffness
+    solve = solid_torsion.solid_stiffness
 
     def off(*given: object) -> object:
         found = solve(*given)
         return replace(found, stiffness=found.stiffness.times(1.05))
 
-    monkeypatch.setattr(part_stiffness, "solid_stiffness", off)
+    monkeypatch.setattr(solid_torsion, "solid_stiffness", off)
     with pytest.raises(NestingError, match="the solid model"):
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
 

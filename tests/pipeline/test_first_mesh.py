@@ -19,7 +19,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline import part_meshes, part_stiffness, parts
+from flexspline.pipeline import part_meshes, part_stiffness, parts, solid_torsion
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
@@ -39,7 +39,7 @@ def first_elements(design: Design, folder: Path) -> int:
 
 def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     usual = first_elements(DESIGN, tmp_path / "usual")
-    monkeypatch.setattr(part_stiffness, "FIRST_ELEMENTS", usual - 1)
+    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", usual - 1)
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
 
 
@@ -78,7 +78,7 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
 
 def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stated = first_elements(STATED, tmp_path / "stated")
-    monkeypatch.setattr(part_stiffness, "FIRST_ELEMENTS", 0)
+    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", 0)
     assert first_elements(STATED, tmp_path / "again") == stated
 
 
@@ -88,7 +88,7 @@ def test_the_rims_mesh_keeps_within_its_elements(
     cup = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
     usual = part_stiffness.rim_mesh(cup).mesh.elements
     copies = 3  # wedges of 30° in the ellipse's quarter
-    assert part_stiffness.copies_in_rim(cup) == copies
+    assert solid_torsion.copies_in_rim(cup) == copies
     monkeypatch.setattr(part_stiffness, "RIM_ELEMENTS", copies * usual - 1)
     assert part_stiffness.rim_mesh(cup).mesh.elements < usual
 
@@ -144,7 +144,7 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
 
     def slow(surface: object, spec: MeshSpec) -> TetMesh:
         asked.append(spec)
-        if spec.time_limit_s == part_stiffness.ENCLOSED_SECONDS:
+        if spec.time_limit_s == solid_torsion.ENCLOSED_SECONDS:
             raise MesherTimeError("it is slow", "wait")
         mesh = part_meshes.swept_mesh(cup.part, cup.sector.degrees, cup.first_spec)
         assert mesh is not None
@@ -160,7 +160,7 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     assert found.model == "solid"  # as `solver.mesher` asks for it
     solid = part_stiffness.twisted_part(cup).stiffness
     first, second = asked
-    assert second.grading == first.grading.scaled(part_stiffness.ENCLOSED_COARSER)
+    assert second.grading == first.grading.scaled(solid_torsion.ENCLOSED_COARSER)
     assert second.time_limit_s > first.time_limit_s
     assert part_stiffness.rim_mesh(cup).mesh.elements == solid.levels[0].elements
     assert len(asked) == len([first, second])

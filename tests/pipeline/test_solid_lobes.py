@@ -16,9 +16,10 @@ from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import TOO_FAR, enclosure_of
 from flexspline.pipeline.load_cases import CASES, rim_stiffness
-from flexspline.pipeline.part_stiffness import copies_in_rim, rim_mesh
+from flexspline.pipeline.part_stiffness import rim_mesh
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.solid_torsion import copies_in_rim
 
 WIDE = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").changed(
     {

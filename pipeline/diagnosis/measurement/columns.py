@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.grid import Grid, with_unit
+from flexspline.pipeline.diagnosis.measurement.grid import Grid
+from flexspline.pipeline.diagnosis.measurement.head import with_unit
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_day, is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import (
     ARCSEC_PER_TURN,

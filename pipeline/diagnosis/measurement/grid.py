@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from flexspline.geometry.input_file import InputFileError, read_input
-from flexspline.pipeline.diagnosis.measurement.column_names import column_name, is_unit
+from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.file_text import text_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
-from flexspline.pipeline.diagnosis.measurement.number_text import number_of
-from flexspline.pipeline.diagnosis.measurement.time_stamps import is_stamp
-from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
+from flexspline.pipeline.diagnosis.measurement.head import Head, Split, head_of, paired
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
 LARGEST_BYTES = 200_000_000
 """Two million rows of 100 letters; a file beyond this is some other file, or never ends."""
 LARGEST_ROWS = 2_000_000
 """Ten readings a second fill them in two days and a half; a fit takes minutes and GB on them."""
-HEAD_LINES = 300
-"""Lines in which the head is looked for: programs write some 50 above it, one for each channel the most."""
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 SHEET = "cells of a sheet"
 
@@ -57,20 +53,6 @@ class Grid:
         return SEPARATORS.get(self.separator, SHEET)
 
 
-@dataclass(frozen=True)
-class _Head:
-    """A line that may be the head, with its separator and how much of it is known."""
-
-    at: int
-    separator: str
-    cells: list[str]
-    units: list[str]
-    score: float
-
-
-Split = Callable[[int, str], list[str]]
-
-
 def read_grid(path: Path) -> Grid:
     """The cells of a CSV or .xlsx file.
 
@@ -95,7 +77,7 @@ def _of_sheet(path: Path, raw: bytes) -> Grid:
     rows, numbers = [r for _, r in found], [n for n, _ in found]
     _refuse_size(path, rows)
 
-    head = _head_of(len(rows), lambda i, _: [c.strip() for c in rows[i]], ("",))
+    head = head_of(len(rows), lambda i, _: [c.strip() for c in rows[i]], ("",))
     return _grid(path, raw, WORKBOOK, head, rows[head.at :], numbers[head.at :])
 
 
@@ -113,13 +95,13 @@ def _of_text(path: Path, raw: bytes) -> Grid:
             lines.append(row)
             numbers.append(number)
     _refuse_size(path, lines)
-    head = _head_of(len(lines), _splitter(lines), tuple(SEPARATORS)) if lines else None
+    head = head_of(len(lines), _splitter(lines), tuple(SEPARATORS)) if lines else None
     if comments and (head is None or head.score == 0):
-        above = _head_of(len(comments), _splitter([c for _, c in comments]), tuple(SEPARATORS))
+        above = head_of(len(comments), _splitter([c for _, c in comments]), tuple(SEPARATORS))
         if above.score > 0:
             lines.insert(0, comments[above.at][1])
             numbers.insert(0, comments[above.at][0])
-            head = _Head(0, above.separator, above.cells, [], above.score)
+            head = Head(0, above.separator, above.cells, [], above.score)
     if head is None:
         raise MeasurementError(
             path, None, "holds no header line; expected columns such as torque_Nm"
@@ -138,7 +120,7 @@ def _refuse_size(path: Path, rows: Sequence[object]) -> None:
         raise MeasurementError(path, None, f"{len(rows)} rows; at most {LARGEST_ROWS} are read")
 
 
-def _refuse_spaces(path: Path, head: _Head, numbers: list[int]) -> None:
+def _refuse_spaces(path: Path, head: Head, numbers: list[int]) -> None:
     names = [column_name(word) for cell in head.cells for word in cell.split()]
     if head.score == 0 and sum(n is not None and n.ours for n in names) > 1:
         reason = "columns must be separated by commas, semicolons or tabs"
@@ -153,72 +135,6 @@ def _splitter(lines: list[str]) -> Split:
             return [lines[i]]
 
     return split
-
-
-def _head_of(count: int, split: Split, separators: tuple[str, ...]) -> _Head:
-    """The line above the first row of numbers that names the most quantities; the first line for none.
-
-    Of equals the last is taken: notes stand further up.
-    """
-    widest = max(separators, key=lambda s: len(split(0, s)))
-    best = _Head(0, widest, split(0, widest), [], 0.0)
-    for i in range(min(count, HEAD_LINES)):
-        if best.score > 0 and _is_data(best, split(i, best.separator)):
-            break
-        for separator in separators:
-            cells = split(i, separator)
-            below = split(i + 1, separator) if i + 1 < count else []
-            units = below if _are_units(cells, below) else []
-            score = sum(_worth(with_unit(*pair)) for pair in _paired(cells, units))
-            if score >= max(best.score, 0.5):
-                # of equals in one line the first separator stays
-                if score == best.score and best.at == i:
-                    continue
-                best = _Head(i, separator, cells, units, score)
-    return best
-
-
-def with_unit(head: str, unit: str) -> str:
-    """A head with the unit that stands below it."""
-    bare = unit.strip().strip("[](){}<>")
-    return f"{head} [{bare}]" if bare not in ("", "-", "–") else head
-
-
-def _paired(cells: list[str], units: list[str]) -> list[tuple[str, str]]:
-    below = units + [""] * (len(cells) - len(units))
-    return list(zip(cells, below, strict=False))
-
-
-def _worth(head: str) -> float:
-    name = column_name(head)
-    if name is None:
-        return 0.0
-    if name.ours:
-        return 1.5
-    return (1.0 if name.sure else 0.0) + (0.5 if name.unit else 0.0)
-
-
-def _are_units(head: list[str], below: list[str]) -> bool:
-    """Whether a row holds units: one at least is known, and no quantity has a number."""
-    if not 1 < len(below) <= len(head) or not any(is_unit(c) for c in below):
-        return False
-    return not any(
-        number_of(c, mark) is not None or is_stamp(c) for c in below for mark in (".", ",")
-    )
-
-
-def _is_data(head: _Head, cells: list[str]) -> bool:
-    """Whether a row has numbers in the columns that the head says are numbers."""
-    measured = [
-        cell
-        for (name, unit), cell in zip(_paired(head.cells, head.units), cells, strict=False)
-        if (found := column_name(with_unit(name, unit))) is not None
-        and found.quantity in QUANTITIES
-    ]
-    return any(measured) and all(
-        not c or number_of(c, ".") is not None or number_of(c, ",") is not None or is_stamp(c)
-        for c in measured
-    )
 
 
 def _parsed(path: Path, lines: list[str], numbers: list[int], separator: str) -> list[list[str]]:
@@ -237,7 +153,7 @@ def _parsed(path: Path, lines: list[str], numbers: list[int], separator: str) ->
 
 
 def _grid(
-    path: Path, raw: bytes, encoding: str, head: _Head, rows: list[list[str]], numbers: list[int]
+    path: Path, raw: bytes, encoding: str, head: Head, rows: list[list[str]], numbers: list[int]
 ) -> Grid:
     """The body under the head, each row made as long as it, without what is empty and the remarks below."""
     names = [c.strip() for c in rows[0]]
@@ -259,7 +175,7 @@ def _grid(
         if misfit is None and (fields < fewest or any(c.strip() for c in row[width:])):
             misfit = _misfit(path, number, fields, width, head.separator)
         row[:] = (row + [""] * (width - fields))[:width]
-    units = tuple(u for _, u in _paired(names, head.units)) if head.units else ()
+    units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
     return Grid(
         path, raw, encoding, head.separator, tuple(names), numbers[0], units, body, line, misfit, footer
     )  # fmt: skip

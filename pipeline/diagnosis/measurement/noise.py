@@ -1,4 +1,4 @@
-"""The noise of a record: coloured, with outliers, and in the torque too."""
+"""The noise of a record, coloured: what it is, and rows made as if it were white."""
 
 from __future__ import annotations
 
@@ -11,9 +11,6 @@ from scipy.optimize import nnls
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
-from flexspline.pipeline.diagnosis.measurement.runs import runs
-from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
@@ -29,15 +26,6 @@ LAG_0_WEIGHT = 3.0
 """Of the variance against the autocovariances, in matching: it has the largest value and the least error."""
 MEMORIES = 16
 """Correlation times tried, in even steps of their log: up to 50 rows they are 36 % apart."""
-OUTLIER_SIGMAS = 5.0
-"""One row of normal noise in 1.7 million lies further off."""
-SAME_PLACE = 0.01
-"""Of the largest torque: outliers so near to each other, in other cycles, are at one place."""
-LONGEST_OUTLIER = 2
-"""Rows: three in a row are a finding."""
-BAND_SIGMAS, BAND_SHARE = 4.0, 0.035
-"""Half width of the crossing: standard deviations of the torque noise (one row in 16 000 lies further
-off), and at least this share of the largest torque; docs/diagnosis.md, "Which rows"."""
 
 
 @dataclass(frozen=True)
@@ -163,68 +151,6 @@ def _lag_groups(shortest: int, farthest: int) -> np.ndarray:
     count = int(np.ceil(GROUPS_PER_LOG * np.log((farthest + 1) / (shortest + 1))))
     edges = np.geomspace(shortest + 1, farthest + 1, count + 1)[:-1].round().astype(int)
     return np.unique(np.r_[np.arange(shortest + 1), edges])
-
-
-def crossing_band_Nm(history: History) -> float:
-    """|T| below which the side of the gap is not known."""
-    largest = float(np.abs(history.torque_Nm).max())
-    return max(BAND_SIGMAS * torque_noise_Nm(history), BAND_SHARE * largest)
-
-
-def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> np.ndarray:
-    """(n,) rows that stand alone beyond 5σ; three in a row, or one place in several passes, stay."""
-    far = np.abs(residual) > OUTLIER_SIGMAS * sigma
-    if not far.any():
-        return far
-    out = far.copy()
-    for a, b in runs(far):
-        if b - a > LONGEST_OUTLIER:
-            out[a:b] = False
-    rows = np.flatnonzero(out)
-    rising = np.gradient(history.torque_Nm) > 0
-    near = SAME_PLACE * np.abs(history.torque_Nm).max()
-    for i in rows:
-        same = (
-            (np.abs(history.torque_Nm[rows] - history.torque_Nm[i]) < near)
-            & (rising[rows] == rising[i])
-            & (history.cycle[rows] != history.cycle[i])
-            & (np.sign(residual[rows]) == np.sign(residual[i]))
-        )
-        if same.sum() >= 2:
-            out[i] = False
-    return out
-
-
-def rough_residual(
-    angle: np.ndarray, history: History, kept: np.ndarray, rows_per_cycle: float
-) -> np.ndarray:
-    """(kept,) what a local parabola leaves over windows of a twelfth of a cycle: noise and little else."""
-    out = np.empty(int(kept.sum()))
-    width = int(np.clip(rows_per_cycle / 12, 7, 400))
-    y = angle[kept]
-    for s in stretches_of(history, kept):
-        piece = y[s]
-        for a in range(0, len(piece), width):
-            b = min(len(piece), a + width)
-            if b - a < 7 and b == len(piece) and a > 0:
-                a = max(0, b - width)
-            x = np.linspace(-1, 1, b - a)
-            degree = min(2, max(0, b - a - 4))
-            out[s.start + a : s.start + b] = piece[a:b] - _robust_polynomial(x, piece[a:b], degree)
-    return out
-
-
-def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
-    weight = np.ones(len(x))
-    basis = np.vander(x, degree + 1)
-    fitted = y
-    for _ in range(3):
-        coefficients = np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0]
-        fitted = basis @ coefficients
-        off = np.abs(y - fitted)
-        scale = SIGMA_PER_MAD * np.median(off) + 1e-12
-        weight = 1 / np.maximum(1, off / (3 * scale))
-    return fitted
 
 
 def _length(s: slice) -> int:

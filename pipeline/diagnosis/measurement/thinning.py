@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.noise import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.measurement.noise import BAND_SIGMAS
+from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SIGMAS
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.first_offset import first_offset

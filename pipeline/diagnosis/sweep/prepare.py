@@ -10,16 +10,12 @@ from flexspline.geometry.errors import FlexsplineError
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.noise import (
-    Noise,
-    crossing_band_Nm,
-    estimated,
-    isolated_outliers,
-    rough_residual,
-    stretches_of,
-)
+from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
+from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.rough_residual import rough_residual
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.regressors import (

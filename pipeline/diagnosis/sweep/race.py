@@ -17,12 +17,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
-from flexspline.pipeline.diagnosis.measurement.noise import (
-    Noise,
-    estimated,
-    isolated_outliers,
-    stretches_of,
-)
+from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
+from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.evidence import (

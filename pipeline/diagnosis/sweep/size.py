@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SHARE
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.noise import BAND_SHARE, isolated_outliers
+from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 

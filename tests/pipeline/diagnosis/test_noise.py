@@ -7,13 +7,9 @@ import pytest
 from histories import sweep as swept
 from scipy.linalg import cholesky, toeplitz
 
-from flexspline.pipeline.diagnosis.measurement.noise import (
-    Noise,
-    crossing_band_Nm,
-    estimated,
-    isolated_outliers,
-    stretches_of,
-)
+from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
+from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
+from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,18 @@
+"""The torques about zero at which nobody knows on which side of the gap the teeth bear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+
+BAND_SIGMAS, BAND_SHARE = 4.0, 0.035
+"""Half width of the crossing: standard deviations of the torque noise (one row in 16 000 lies further
+off), and at least this share of the largest torque; docs/diagnosis.md, "Which rows"."""
+
+
+def crossing_band_Nm(history: History) -> float:
+    """|T| below which the side of the gap is not known."""
+    largest = float(np.abs(history.torque_Nm).max())
+    return max(BAND_SIGMAS * torque_noise_Nm(history), BAND_SHARE * largest)

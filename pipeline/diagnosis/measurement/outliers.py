@@ -1,0 +1,39 @@
+"""Rows that stand alone, far from their neighbours: a reading that went wrong, and no finding."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.runs import runs
+
+OUTLIER_SIGMAS = 5.0
+"""One row of normal noise in 1.7 million lies further off."""
+SAME_PLACE = 0.01
+"""Of the largest torque: outliers so near to each other, in other cycles, are at one place."""
+LONGEST_OUTLIER = 2
+"""Rows: three in a row are a finding."""
+
+
+def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> np.ndarray:
+    """(n,) rows that stand alone beyond 5σ; three in a row, or one place in several passes, stay."""
+    far = np.abs(residual) > OUTLIER_SIGMAS * sigma
+    if not far.any():
+        return far
+    out = far.copy()
+    for a, b in runs(far):
+        if b - a > LONGEST_OUTLIER:
+            out[a:b] = False
+    rows = np.flatnonzero(out)
+    rising = np.gradient(history.torque_Nm) > 0
+    near = SAME_PLACE * np.abs(history.torque_Nm).max()
+    for i in rows:
+        same = (
+            (np.abs(history.torque_Nm[rows] - history.torque_Nm[i]) < near)
+            & (rising[rows] == rising[i])
+            & (history.cycle[rows] != history.cycle[i])
+            & (np.sign(residual[rows]) == np.sign(residual[i]))
+        )
+        if same.sum() >= 2:
+            out[i] = False
+    return out

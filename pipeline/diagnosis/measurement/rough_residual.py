@@ -1,0 +1,41 @@
+"""What is noise in a record before any model is fitted: what local parabolas leave."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+
+
+def rough_residual(
+    angle: np.ndarray, history: History, kept: np.ndarray, rows_per_cycle: float
+) -> np.ndarray:
+    """(kept,) what a local parabola leaves over windows of a twelfth of a cycle: noise and little else."""
+    out = np.empty(int(kept.sum()))
+    width = int(np.clip(rows_per_cycle / 12, 7, 400))
+    y = angle[kept]
+    for s in stretches_of(history, kept):
+        piece = y[s]
+        for a in range(0, len(piece), width):
+            b = min(len(piece), a + width)
+            if b - a < 7 and b == len(piece) and a > 0:
+                a = max(0, b - width)
+            x = np.linspace(-1, 1, b - a)
+            degree = min(2, max(0, b - a - 4))
+            out[s.start + a : s.start + b] = piece[a:b] - _robust_polynomial(x, piece[a:b], degree)
+    return out
+
+
+def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
+    weight = np.ones(len(x))
+    basis = np.vander(x, degree + 1)
+    fitted = y
+    for _ in range(3):
+        coefficients = np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0]
+        fitted = basis @ coefficients
+        off = np.abs(y - fitted)
+        scale = SIGMA_PER_MAD * np.median(off) + 1e-12
+        weight = 1 / np.maximum(1, off / (3 * scale))
+    return fitted

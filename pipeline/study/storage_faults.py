@@ -1,0 +1,37 @@
+"""What a study's database and its libraries raise, as one error in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from flexspline.geometry.errors import ComputationError, one_line
+
+
+class TrialStoreError(ComputationError):
+    """The storage of a study does not work: a full disk, a damaged file, a database gone."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(
+            f"the study's storage does not work: {reason}; what is stored is kept: run the same "
+            "command again to resume"
+        )
+
+
+@contextmanager
+def storage_faults() -> Iterator[None]:
+    """What the database and its libraries raise, as a TrialStoreError."""
+    from optuna.exceptions import StorageInternalError
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (SQLAlchemyError, StorageInternalError) as fault:
+        raise TrialStoreError(said(fault)) from fault
+
+
+def said(fault: BaseException) -> str:
+    """The database's own words, without the statement and its values."""
+    while isinstance(fault.__cause__, Exception):
+        fault = fault.__cause__
+    return one_line((str(fault) or type(fault).__name__).splitlines()[0])
