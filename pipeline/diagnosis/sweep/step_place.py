@@ -79,6 +79,19 @@ def stiffness_of_positions(history: History) -> np.ndarray:
     return harmonic(shape, history) * (history.torque_Nm / largest)[:, None]
 
 
+def changing_heights(history: History) -> np.ndarray:
+    """(n, m) by what the gap may change, each of mean 0: the cycle, and the temperature where it is recorded.
+
+    A gap that wears or warms has another step in each cycle, and none of one height fits.
+    """
+    found = [history.cycle.astype(float)]
+    if history.temperature_C is not None:
+        found.append(history.temperature_C)
+    columns = np.column_stack(found)
+    columns -= columns.mean(axis=0)
+    return columns / np.maximum(np.abs(columns).max(axis=0), 1e-12)
+
+
 def step_misfit(
     beyond_Nm: np.ndarray,
     smooth: np.ndarray,
@@ -86,15 +99,19 @@ def step_misfit(
     gap_arcsec: float,
     band_Nm: float,
     least: float = LEAST_STEP,
+    heights: np.ndarray | None = None,
 ) -> float:
     """Sum of squares [arcsec²] that smooth functions (n, k) and a step leave; infinite without a step.
 
     `beyond_Nm` (n,) is how far the torque of each row lies beyond the step's place. The step's height is
-    free, but one below `least` times the gap is none.
+    free, but one below `least` times the gap is none. `heights` (n, m), each of mean 0: what it may also be in
+    proportion to.
     """
     every = max(1, len(beyond_Nm) // MOST_FIRST_ROWS)
     rows = np.flatnonzero(np.abs(beyond_Nm) > BESIDE_BAND * band_Nm)[::every]
-    basis = np.column_stack([smooth[rows], np.sign(beyond_Nm[rows])])
+    side = np.sign(beyond_Nm[rows])
+    changing = np.empty((len(rows), 0)) if heights is None else heights[rows] * side[:, None]
+    basis = np.column_stack([smooth[rows], changing, side])
     weight = np.ones(len(rows))
     left = angle_arcsec[rows]
     for _ in range(2):

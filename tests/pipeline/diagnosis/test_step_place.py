@@ -13,6 +13,11 @@ from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE, FINE, first_ahead
 from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST as MOST_FRICTION
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_STEPS, first_offset
+from flexspline.pipeline.diagnosis.sweep.step_place import (
+    changing_heights,
+    step_misfit,
+    zeros_of_cycles,
+)
 from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH
 
 WHOLE = sweep(cycles=7, rows=200, hold=0)
@@ -69,3 +74,21 @@ def test_a_shifted_reading_is_seen_though_the_zero_drifts() -> None:
     found = first_offset(read, angle(HISTORY.torque_Nm) + drift, GAP, BAND)
     spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
     assert found == pytest.approx(offset, abs=spacing + LARGEST / 50)
+
+
+def test_a_step_that_follows_temperature_is_one_step() -> None:
+    """A gap of 20 to 200 arcsec over the cycles, which no step of one height fits."""
+    kelvin = HISTORY.temperature_C
+    assert kelvin is not None
+    gap = 20.0 + 180.0 * (kelvin - kelvin.min()) / np.ptp(kelvin)
+    noise = np.random.default_rng(3).normal(0, 0.5, len(HISTORY))
+    turned = gap / 2 * np.sign(HISTORY.torque_Nm) + noise
+    smooth = np.column_stack([*zeros_of_cycles(HISTORY), HISTORY.torque_Nm])
+    one = step_misfit(HISTORY.torque_Nm, smooth, turned, GAP, BAND)
+    found = step_misfit(
+        HISTORY.torque_Nm, smooth, turned, GAP, BAND, heights=changing_heights(HISTORY)
+    )
+    assert found == pytest.approx(
+        0.25 * len(HISTORY), rel=0.1
+    )  # the noise; rms good to 3 % of 1400 rows
+    assert one > 100 * found
