@@ -87,9 +87,10 @@ def _meshes(
     for number in own:
         try:
             mesh = _own(flexspline, number, begins, known)
-        except SolidError:
+        except SolidError as fault:
             if number == 0 and not begins:
-                yield _of_torsion(flexspline, supported, known)
+                expected = fault.expected if isinstance(fault, NoBetterMeshError) else inf
+                yield _of_torsion(flexspline, supported, known, expected)
             raise
         yield mesh, USUAL_EFFICIENCY
 
@@ -102,10 +103,13 @@ def _half_of_torsion(flexspline: PartModel) -> float:
     return level.K_Nm_per_rad / found.K_Nm_per_rad - 1
 
 
-def _of_torsion(flexspline: PartModel, supported: bool, known: float) -> tuple[TetMesh, float]:
+def _of_torsion(
+    flexspline: PartModel, supported: bool, known: float, other: float = inf
+) -> tuple[TetMesh, float]:
+    """The mesh of torsion with its scale; `other`: bounds expected of one that was not worth its solve."""
     least = LEAST_OVER_TORSION * _half_of_torsion(flexspline) if supported else LEAST_OF_FREE
     if least >= known:
-        raise NoBetterMeshError(least, known)
+        raise NoBetterMeshError(min(least, other), known)
     twisted = twisted_part(flexspline)
     scale = twisted.stiffness.error_scale if supported else COARSE_SCALE
     return rim_mesh(flexspline).mesh, scale
@@ -119,12 +123,14 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
     SolidError : as `_meshes`.
     """
     expected = promised(tolerance_of(flexspline), COARSER)
-    worth = not begun and expected <= WORTH * known
-    for tried in (number, COARSER) if number == 0 and worth else (number,):
+    first, worth = number == 0 and not begun, expected <= WORTH * known
+    for tried in (number, COARSER) if first and worth else (number,):
         try:
             return _finer(flexspline, tried)
         except TooManyElementsError as fault:
             elements = fault.elements
+    if first and not worth:
+        raise NoBetterMeshError(expected, known)
     raise SolidError(f"it would have {elements:.0f} elements, at most {MOST_ELEMENTS}")
 
 

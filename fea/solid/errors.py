@@ -47,7 +47,7 @@ class TooManyElementsError(SolidError):
 
 
 class NoBetterMeshError(SolidError):
-    """No mesh that can be had is expected to tell K better than ± `known`, which is there already."""
+    """No mesh is worth its solve: at best ± `expected` of K, and ± `known` is there already."""
 
     def __init__(self, expected: float, known: float) -> None:
         self.expected, self.known = expected, known
