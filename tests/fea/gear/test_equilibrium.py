@@ -136,6 +136,12 @@ def K_of(model: GearModel) -> np.ndarray:
     return np.diff(torques) / np.diff(angles)
 
 
+@pytest.fixture(scope="module")
+def K(model: GearModel) -> np.ndarray:
+    """Solved once for all that change the model."""
+    return K_of(model)
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -146,14 +152,14 @@ def K_of(model: GearModel) -> np.ndarray:
     ],
 )
 def test_what_is_only_numerical_does_not_show(
-    model: GearModel, monkeypatch: pytest.MonkeyPatch, name: str, value: object
+    K: np.ndarray, monkeypatch: pytest.MonkeyPatch, name: str, value: object
 ) -> None:
     """Twice the harmonics and angles, twice the places, a ball that presses on half the width."""
     monkeypatch.setattr(settings, name, value)
     finer = gear_model(DESIGN, DESIGN.part("flexspline"))
-    assert K_of(finer) == pytest.approx(K_of(model), rel=0.005)  # what K is told to
+    assert K_of(finer) == pytest.approx(K, rel=0.005)  # what K is told to
 
 
-def test_no_play_is_stiffer_at_first_than_play(model: GearModel) -> None:
+def test_no_play_is_stiffer_at_first_than_play(model: GearModel, K: np.ndarray) -> None:
     tight = replace(model, wave_generator=replace(model.wave_generator, play=0.0))
-    assert K_of(tight)[0] > K_of(model)[0]
+    assert K_of(tight)[0] > K[0]
