@@ -15,7 +15,7 @@ from flexspline.results.numbers import signed
 from flexspline.results.study.failures import Cause, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.why import disagreement, incomplete, misses
+from flexspline.results.study.why import disagreement, incomplete, misses, unbeaten_start
 
 SHOWN = 5
 """Best designs that the summary lists."""
@@ -133,7 +133,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     if best and result.start is not None:
         lines.append(_line(result, "start", result.start_values, result.start))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
-    lines += [f"  {line}" for line in misses(result)]
+    lines += [f"  {line}" for line in (*unbeaten_start(result), *misses(result))]
     lines += [f"  {line}" for line in failure_lines(result)]
     if result.unscattered:
         lines.append(f"  {result.unscattered}")

@@ -36,6 +36,7 @@ from flexspline.results.study.why import (
     influences,
     limits,
     misses,
+    unbeaten_start,
 )
 
 COLUMNS = 5
@@ -135,7 +136,7 @@ def _why(result: StudyResult) -> Iterable[Block]:
     if missed := tuple(misses(result)):
         yield Heading("No design keeps to every constraint")
         yield Bullets(missed)
-    if why := (*influences(result), *limits(result)):
+    if why := (*unbeaten_start(result), *influences(result), *limits(result)):
         yield Heading("Why they win" if result.pareto else "What moves what")
         yield Bullets(why)
 

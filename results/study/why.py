@@ -66,14 +66,36 @@ def misses(result: StudyResult) -> list[str]:
     for key, limit in result.study.file.constraint.items():
         q = entry(key)
         kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
-        ends = ((limit.min, "at least"), (limit.max, "at most"))
-        asked = " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
+        asked = _allowed(key, limit)
         said.append(
             f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
     at = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items())
     return [*said, f"Design {row.slot}: {at}."]
+
+
+def _allowed(key: str, limit: Limit) -> str:
+    q = entry(key)
+    ends = ((limit.min, "at least"), (limit.max, "at most"))
+    return " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
+
+
+def unbeaten_start(result: StudyResult) -> list[str]:
+    """A sentence where the design that a study began with keeps to the constraints and beats every other."""
+    file, start = result.study.file, result.start
+    if start is None or len(file.objective) != 1 or not result.pareto:
+        return []
+    (key, goal), figures = next(iter(file.objective.items())), start.figures
+    if any(k not in figures or c.excess(figures[k]) > 0 for k, c in file.constraint.items()):
+        return []
+    best = result.pareto[0].outcome.figures[key]
+    if key not in figures or figures[key] == best or (figures[key] > best) != (goal == "maximize"):
+        return []
+    return [
+        f"No design is better than the start: {entry(key).name} {valued(key, figures)}, of design "
+        f"{result.pareto[0].slot} {valued(key, result.pareto[0].outcome.figures)}."
+    ]
 
 
 def limits(result: StudyResult) -> list[str]:
@@ -98,7 +120,8 @@ def limits(result: StudyResult) -> list[str]:
         if _holds(limit, value):
             q = entry(key)
             said.append(
-                f"Design {best.slot} is held by the constraint on {q.name} ({q.with_unit(value)})."
+                f"Design {best.slot} is held by the constraint on {q.name}: {q.with_unit(value)}, allowed "
+                f"are {_allowed(key, limit)}."
             )
     return said
 
