@@ -15,7 +15,8 @@ from flexspline.results.numbers import signed
 from flexspline.results.study.failures import Cause, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.why import disagreement, incomplete, misses, unbeaten_start
+from flexspline.results.study.unbeaten import unbeaten_start
+from flexspline.results.study.why import disagreement, incomplete, misses
 
 SHOWN = 5
 """Best designs that the summary lists."""
@@ -123,9 +124,10 @@ def _row(row: Row) -> dict[str, Any]:
 
 def words(result: StudyResult, record: dict[str, Any]) -> str:
     """For the terminal."""
+    file = result.study.file
     lines = [
-        f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
-        f"{len(result.feasible)} keep to the constraints"
+        f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved"
+        + (f", {len(result.feasible)} keep to every constraint" if file.constraint else "")
     ]
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")

@@ -30,13 +30,13 @@ from flexspline.results.study.failures import TOLD, causes, untold
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
+from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
     incomplete,
     influences,
     limits,
     misses,
-    unbeaten_start,
 )
 
 COLUMNS = 5

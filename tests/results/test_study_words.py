@@ -17,12 +17,12 @@ from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
 from flexspline.results.study.report import study_document
+from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
     influences,
     limits,
     misses,
-    unbeaten_start,
     unfollowed,
 )
 
