@@ -7,6 +7,9 @@ from math import floor, log10
 THIN = "\N{NARROW NO-BREAK SPACE}"
 """Between groups of three digits, and between a number and its unit."""
 
+MOST_DIGITS = 17
+"""As many as tell any two doubles apart."""
+
 
 def grouped(value: float, decimals: int) -> str:
     """Fixed decimals, true minus sign, groups of three from five digits before the point on."""
@@ -20,6 +23,19 @@ def grouped(value: float, decimals: int) -> str:
 def signed(value: float, decimals: int = 2) -> str:
     """With its sign, a true minus."""
     return f"{value:+z.{decimals}f}".replace("-", "\N{MINUS SIGN}")
+
+
+def beyond(value: float, limit: float, digits: int = 2) -> str:
+    """A value that passes a limit, with as many significant digits as show it.
+
+    >>> beyond(0.503, 0.5), beyond(0.7, 0.5)
+    ('0.503', '0.7')
+    """
+    text = f"{value:.{digits}g}"
+    while float(text) <= limit < value and digits < MOST_DIGITS:
+        digits += 1
+        text = f"{value:.{digits}g}"
+    return text
 
 
 def with_power(value: float, digits: int = 1) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def _wide(design: Design, found: Stiffnesses) -> Iterator[str]:
         if half > asked:
             symbol = quantity(f"{name}_Nm_per_rad").symbol
             yield (
-                f"{symbol} is known to ± {half:.2g} %, wider than the ± {asked:g} % asked for"
+                f"{symbol} is known to ± {beyond(half, asked)} %, wider than the ± {asked:g} % asked for"
                 " (solver.tolerance_pct)"
                 + (f": {stiffness.shortfall}" if stiffness.shortfall else "")
             )

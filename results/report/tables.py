@@ -7,7 +7,7 @@ from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
-from flexspline.results.numbers import grouped, with_power
+from flexspline.results.numbers import beyond, grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.quantity import Quantity
@@ -60,6 +60,7 @@ def solves(content: ReportContent) -> list[Row]:
     rows = []
     for name, s in content.stiffnesses.items():
         last = s.levels[-1]
+        asked = content.design.solver.tolerance_pct
         half, check = 100 * s.half_width, last.K_check_Nm_per_rad
         rows.append(
             {
@@ -69,8 +70,8 @@ def solves(content: ReportContent) -> list[Row]:
                 "meshes": str(len(s.levels)),
                 "elements": quantity("solver.elements").text(last.elements),
                 "dofs": quantity("solver.dofs").text(last.dofs),
-                "half_width": f"±{half:.2g} %",
-                "wide": "yes" if half > content.design.solver.tolerance_pct else "",
+                "half_width": f"±{beyond(half, asked)} %",
+                "wide": "yes" if half > asked else "",
                 "kind": bounds_kind(s.guaranteed),
                 "residual": UNCHECKED if last.residual is None else with_power(last.residual),
                 "energy": UNCHECKED

@@ -15,6 +15,7 @@ from flexspline.results.numbers import signed
 from flexspline.results.study.failures import Cause, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
+from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import disagreement, incomplete, misses
 
 SHOWN = 5
@@ -123,9 +124,10 @@ def _row(row: Row) -> dict[str, Any]:
 
 def words(result: StudyResult, record: dict[str, Any]) -> str:
     """For the terminal."""
+    file = result.study.file
     lines = [
-        f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved, "
-        f"{len(result.feasible)} keep to the constraints"
+        f"{record['study']}: {len(result.built)} of {len(result.rows)} designs built and solved"
+        + (f", {len(result.feasible)} keep to every constraint" if file.constraint else "")
     ]
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")
@@ -133,7 +135,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     if best and result.start is not None:
         lines.append(_line(result, "start", result.start_values, result.start))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
-    lines += [f"  {line}" for line in misses(result)]
+    lines += [f"  {line}" for line in (*unbeaten_start(result), *misses(result))]
     lines += [f"  {line}" for line in failure_lines(result)]
     if result.unscattered:
         lines.append(f"  {result.unscattered}")

@@ -30,6 +30,7 @@ from flexspline.results.study.failures import TOLD, causes, untold
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
+from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
     incomplete,
@@ -135,7 +136,7 @@ def _why(result: StudyResult) -> Iterable[Block]:
     if missed := tuple(misses(result)):
         yield Heading("No design keeps to every constraint")
         yield Bullets(missed)
-    if why := (*influences(result), *limits(result)):
+    if why := (*unbeaten_start(result), *influences(result), *limits(result)):
         yield Heading("Why they win" if result.pareto else "What moves what")
         yield Bullets(why)
 

@@ -66,14 +66,19 @@ def misses(result: StudyResult) -> list[str]:
     for key, limit in result.study.file.constraint.items():
         q = entry(key)
         kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
-        ends = ((limit.min, "at least"), (limit.max, "at most"))
-        asked = " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
+        asked = _allowed(key, limit)
         said.append(
             f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
         )
     at = ", ".join(f"{entry(k).name} {entry(k).with_unit(v)}" for k, v in row.values.items())
     return [*said, f"Design {row.slot}: {at}."]
+
+
+def _allowed(key: str, limit: Limit) -> str:
+    q = entry(key)
+    ends = ((limit.min, "at least"), (limit.max, "at most"))
+    return " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
 
 
 def limits(result: StudyResult) -> list[str]:
@@ -98,7 +103,8 @@ def limits(result: StudyResult) -> list[str]:
         if _holds(limit, value):
             q = entry(key)
             said.append(
-                f"Design {best.slot} is held by the constraint on {q.name} ({q.with_unit(value)})."
+                f"Design {best.slot} is held by the constraint on {q.name}: {q.with_unit(value)}, allowed "
+                f"are {_allowed(key, limit)}."
             )
     return said
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.geometry.load import design_from
-from flexspline.results.numbers import THIN, grouped
+from flexspline.results.numbers import THIN, beyond, grouped
 from flexspline.results.quantities import QUANTITIES, quantity
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contract.md").read_text(encoding="utf-8")
@@ -78,3 +78,11 @@ def test_unequal_bounds_print_unequal():
     low, high = text.split(" to ")
     assert low != high
     assert quantity("K_b_Nm_per_rad").range_text(5.0, 5.0) == "5.0000 to 5.0000"
+
+
+@pytest.mark.parametrize(
+    ("value", "said"), [(0.5031, "0.503"), (0.50001, "0.50001"), (0.72, "0.72"), (0.5, "0.5")]
+)
+def test_what_passes_a_limit_is_not_rounded_to_it(value: float, said: str) -> None:
+    """No line says that ± 0.5 % is wider than ± 0.5 %."""
+    assert beyond(value, 0.5) == said

@@ -75,3 +75,8 @@ def test_many_causes_are_cut_and_counted() -> None:
     assert len(lines) == 1 + TOLD + 1
     assert "and 2 more causes" in lines[-1]
     assert not list(failure_lines(result_of(Outcome({"K_b_Nm_per_rad": 1.0}))))
+
+
+def test_no_word_of_constraints_where_there_are_none() -> None:
+    result = result_of(Outcome({"K_b_Nm_per_rad": 1.0}))
+    assert "constraint" not in words(result, summary(result) | {"files": []})

@@ -17,7 +17,14 @@ from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
 from flexspline.results.study.report import study_document
-from flexspline.results.study.why import disagreement, influences, limits, misses, unfollowed
+from flexspline.results.study.unbeaten import unbeaten_start
+from flexspline.results.study.why import (
+    disagreement,
+    influences,
+    limits,
+    misses,
+    unfollowed,
+)
 
 WALL = "flexspline.wall_thickness_mm"
 LENGTH = "flexspline.length_mm"
@@ -57,6 +64,25 @@ def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
 
 def test_where_something_is_allowed_nothing_is_missed() -> None:
     assert misses(result_of(STUDY.replace("300.0", "310.0"))) == []
+
+
+@pytest.mark.parametrize(
+    ("K_start", "stress", "said"),
+    [(3.2e4, 300.0, True), (2.9e4, 300.0, False), (3.2e4, 311.0, False)],
+)
+def test_a_start_that_nothing_beats_is_said(K_start: float, stress: float, said: bool) -> None:
+    """The stiffest allowed design has 30 000 N·m/rad; a start above 310 MPa is not allowed."""
+    result = result_of(STUDY.replace("300.0", "310.0"))
+    began = replace(result, start=Outcome({K: K_start, STRESS: stress, TOTAL: 85.0}))
+    text = str(study_document(began, ()).payload())
+    assert ("No design is better than the start" in text) is said
+    assert bool(unbeaten_start(began)) is said
+
+
+def test_a_constraint_that_holds_is_said_with_its_limit() -> None:
+    (line,) = (t for t in limits(result_of(STUDY.replace("300.0", "310.0"))) if "is held by" in t)
+    assert "310" in line.partition("allowed are")[0]
+    assert "at most 310" in line
 
 
 def at_an_end(objective: str) -> StudyResult:
