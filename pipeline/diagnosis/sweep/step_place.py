@@ -104,8 +104,8 @@ def step_misfit(
     """Sum of squares [arcsec²] that smooth functions (n, k) and a step leave; infinite without a step.
 
     `beyond_Nm` (n,) is how far the torque of each row lies beyond the step's place. The step's height is
-    free, but one below `least` times the gap is none. `heights` (n, m), each of mean 0: what it may also be in
-    proportion to.
+    free, but one below `least` times the gap is none. `heights` (n, m), each of mean 0: what it may also
+    be in proportion to.
     """
     every = max(1, len(beyond_Nm) // MOST_FIRST_ROWS)
     rows = np.flatnonzero(np.abs(beyond_Nm) > BESIDE_BAND * band_Nm)[::every]
