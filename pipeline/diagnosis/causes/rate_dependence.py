@@ -20,9 +20,9 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 RATE = "rate_dependence"
 """This cause's id."""
-LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
-"""Time constants as shares of a ramp: a longer lag is creep (docs/contract.md), which shows in holds."""
-LONGER_SHARES = (1.6, 2.5, 4.0)
+LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
+"""Time constants as shares of a ramp, where torque is held: a longer lag is creep, which shows in holds."""
+LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
 """The same where torque is never held, up to the slowest cycle's ramp; four of the quickest cycle's are 98 %
 of its twist lost."""
 CLEARED = 0.25

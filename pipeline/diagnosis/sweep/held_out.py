@@ -49,10 +49,21 @@ def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple
 
 
 def refuted(levels: Iterable[Gain]) -> Unexplained | None:
-    """A level at which the causes learnt on the others are worse than none of them; None where none is so."""
-    sure = (g for g in levels if g.rmse_after > SURE * g.stated_std)
-    worst = max(sure, key=_times_worse, default=None)
-    if worst is None or _times_worse(worst) < REFUTED:
+    """The worst of a channel's levels, where at most of them the causes learnt on the others do harm.
+
+    At a single level that alone shows a shape (the only warm cycles, the longest holds) a true cause learnt
+    on the rest fails too. None where no channel is so.
+    """
+    of_channel: dict[str, list[Gain]] = {}
+    for g in levels:
+        of_channel.setdefault(g.channel, []).append(g)
+    failed = {c: [g for g in all_ if _does_harm(g)] for c, all_ in of_channel.items()}
+    worst = max(
+        (g for c, bad in failed.items() if 2 * len(bad) > len(of_channel[c]) for g in bad),
+        key=_times_worse,
+        default=None,
+    )
+    if worst is None:
         return None
     without = min(worst.rmse_before, worst.rmse_calibrated)
     what = (
@@ -60,6 +71,10 @@ def refuted(levels: Iterable[Gain]) -> Unexplained | None:
         f"{worst.rmse_after:.3g} arcsec rms, the simulation without it by {without:.3g}"
     )
     return Unexplained(worst.channel, worst.rmse_after, 0.0, what, limit=True)
+
+
+def _does_harm(gain: Gain) -> bool:
+    return _times_worse(gain) >= REFUTED and gain.rmse_after > SURE * gain.stated_std
 
 
 def _times_worse(gain: Gain) -> float:

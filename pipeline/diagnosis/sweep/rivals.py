@@ -11,10 +11,12 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import LINEAR, SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import SOFT, SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
 
+GAP = "clearance_offset"
+"""No soft wind-up that ends below the least torque recorded is its rival: nobody can say that it is one."""
 MORE_OF_RIVAL = 3
 """Terms that a set with a rival in a cause's place may have more than the best set: another law takes two or
 three elements for one."""
@@ -50,7 +52,7 @@ def rivals_of(
         fit = fit_regressors(evidence, rival.terms)
         if not known_causes()[other].plausible(fit.elements()[other]):
             continue
-        if cause in LINEAR and _is_calibration(fit, other):
+        if (cause, other) == (GAP, SOFT) and _is_calibration(fit, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
@@ -60,10 +62,7 @@ def rivals_of(
 
 
 def _is_calibration(fit: SweepFit, owner: str) -> bool:
-    """Whether the record shows nothing of an owner's effect but a change of zero, compliance and gap.
-
-    A soft wind-up that ends below the least torque recorded is a gap: nothing more is known of it.
-    """
+    """Whether the record shows nothing of an owner's effect but a change of zero, compliance and gap."""
     evidence = fit.evidence
     effect = evidence.prepared(fit.added(owner)[:, None])[:, 0]
     left = effect - evidence.base @ np.linalg.lstsq(evidence.base, effect, rcond=None)[0]

@@ -160,7 +160,9 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     assert refuted([level(4.0, 1.0), level(1.0, 1.9)]) is None
     # what only the level held out tells may be missed by as much as was said
     assert refuted([level(1.0, 2.1, stated=0.8)]) is None
-    found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6)])
+    # and at one level of two, which alone may show a shape
+    assert refuted([level(4.0, 1.0), level(1.0, 2.1)]) is None
+    found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6), level(1.0, 2.05)])
     assert found is not None
     assert found.channel == "torque_rate"
     assert "does not hold at rate 0.1 N·m/s" in found.what
