@@ -23,8 +23,8 @@ RATE = "rate_dependence"
 LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Time constants as shares of a ramp, where torque is held: a longer lag is creep, which shows in holds."""
 LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
-"""The same where torque is never held, up to the slowest cycle's ramp; four of the quickest cycle's are 98 %
-of its twist lost."""
+"""The same where torque is never held and ramps differ, up to half of the slowest cycle's: at one rate so
+long a lag may be friction. Four of the quickest cycle's ramps are 98 % of its twist lost."""
 CLEARED = 0.25
 """Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
@@ -61,7 +61,7 @@ class RateDependence(Cause):
         shares = list(LAG_SHARES)
         if hold_s(rig.history) == 0:
             slowest = slowest_ramp_s(rig.history) / ramp
-            shares += [s for s in LONGER_SHARES if s <= slowest]
+            shares += [s for s in LONGER_SHARES if s <= slowest / 2]
             common["longest_s"] = shares[-1] * ramp
         lags_s = sorted({max(s * ramp, shortest) for s in shares})
         found: list[Shape] = [{"lag_s": lag, "exponent": 1.0, **common} for lag in lags_s]

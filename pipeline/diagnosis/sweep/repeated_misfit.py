@@ -36,14 +36,19 @@ class RepeatedMisfit:
 
 
 def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> RepeatedMisfit | None:
-    """The misfit that comes back; None where there is none beyond doubt, or an encoder's step rounds so."""
+    """The misfit that comes back; None where there is none beyond doubt.
+
+    Nor where an encoder's step or the torque's noise may do as much: a loop in the torque without its noise
+    is a little another one.
+    """
     codes = _places(prepared)
     if codes is None:
         return None
     statistic, freedom, rms = structure_in(prepared, fit, codes)
     p_value = float(chdtrc(freedom, statistic))
     rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
-    if p_value > SURE or rms**2 < rounding:
+    of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
+    if p_value > SURE or rms < max(rounding**0.5, of_torque):
         return None
     return RepeatedMisfit(p_value, rms)
 
