@@ -117,7 +117,7 @@ def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     assert found.verdict == "ambiguous"
     by_name = {cause.id: cause for cause in found.causes}
     assert "friction_hysteresis" in named_or_alternative(found)
-    # the loop comes from friction, lag or both: friction, where it has a size, is at most as wide as all of it
+    # the loop comes from friction, lag or both: friction that has a size is at most as wide as all of it
     widest_arcsec = FIRST_LOOP_MM * ARCSEC_PER_MM
     assert {"friction_hysteresis", "rate_dependence"} & set(by_name)
     if "friction_hysteresis" in by_name:
