@@ -9,11 +9,14 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+CLEARANCE = "clearance_offset"
+"""This cause's id."""
+
 
 class ClearanceOffset(Cause):
     """The gap is `amplitude` [arcsec] wider than simulated, at 20 °C: twist ±½ of it."""
 
-    id = "clearance_offset"
+    id = CLEARANCE
     title = "clearance other than simulated"
     unit = "arcsec"
     exact = True

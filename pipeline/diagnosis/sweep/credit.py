@@ -8,10 +8,10 @@ chapter 6).
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from math import sqrt
 
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, posterior_of
+from flexspline.pipeline.diagnosis.sweep.evidence import posterior_of
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
 TINY = 1e-9
@@ -28,12 +28,7 @@ def unnamed_share(identified: Identification, told: Collection[str]) -> float:
     causes = [i for i in best if evidence.terms[i].owner in {*identified.named, *told}]
     if not causes or len(causes) == len(best) or evidence.columns.ahead is not None:
         return 0.0
-    none, named, whole = (_misfit(evidence, terms) for terms in ((), causes, best))
+    none, named, whole = (
+        posterior_of(evidence, terms).misfit(evidence) for terms in ((), causes, best)
+    )
     return sqrt(max(named - whole, 0.0) / max(none - named, TINY))
-
-
-def _misfit(evidence: GaussianEvidence, terms: Sequence[int]) -> float:
-    """χ² of a set of terms, with what the calibration is off by in its stated deviations."""
-    fit = posterior_of(evidence, terms)
-    off = fit.mean[: fit.base_count] / evidence.columns.base_prior
-    return fit.chi2 + float(off @ off)

@@ -161,6 +161,11 @@ class Posterior:
     base_count: int
     chi2: float
 
+    def misfit(self, evidence: GaussianEvidence) -> float:
+        """χ², with what the calibration is off by in its stated deviations."""
+        off = self.mean[: self.base_count] / evidence.columns.base_prior
+        return self.chi2 + float(off @ off)
+
     def amplitudes(self, evidence: GaussianEvidence) -> list[np.ndarray]:
         """Amplitudes (k,) of each term."""
         at, out = self.base_count, []

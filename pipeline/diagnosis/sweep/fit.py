@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, FrictionHysteresis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -23,7 +24,7 @@ from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, Regres
 
 SOFT = "stiffness_hardening"
 """The elastic cause that is not in the measured compliance."""
-LINEAR = {"series_compliance": 0, "clearance_offset": 1}
+LINEAR = {"series_compliance": 0, CLEARANCE: 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
 

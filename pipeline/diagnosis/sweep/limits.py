@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.plausibility import slope_beyond, slope_words
@@ -16,8 +17,6 @@ MOST = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
 SURE = 3.0
 """Standard deviations below 0 at which a gap is negative: one in 740."""
-WHOLE_GAP = "clearance_offset"
-"""The cause that changes the gap itself."""
 
 
 def broken_limit(
@@ -67,7 +66,7 @@ def _gap(
     fit: SweepFit, causes: tuple[NamedCause, ...], prediction: Prediction
 ) -> tuple[float, float]:
     """The whole gap at 20 °C as the record has it, and its deviation [arcsec]."""
-    changed = next((c for c in causes if c.id == WHOLE_GAP), None)
+    changed = next((c for c in causes if c.id == CLEARANCE), None)
     if changed is not None:
         return prediction.gap_arcsec + changed.magnitude, changed.magnitude_std
     found = fit.calibration.gap_arcsec

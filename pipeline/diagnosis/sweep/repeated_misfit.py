@@ -7,17 +7,19 @@ lack of fit by repeated readings: Draper, Smith, Applied Regression Analysis, 3r
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy.special import chdtrc
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.residual_tests import STEADY_SIGMAS, SURE, structure_in
+from flexspline.pipeline.diagnosis.sweep.residual_tests import (
+    STEADY_SIGMAS,
+    SURE,
+    ChannelTest,
+    Residual,
+)
 
 WIDTHS = (0.01, 0.02, 0.05)
 """Of the largest torque: a place is so wide; the first that gives no more than `MOST_PLACES`."""
@@ -27,15 +29,7 @@ FEWEST_CYCLES = 3
 """In which torque comes to a place: of two cycles one may be the odd one."""
 
 
-@dataclass(frozen=True)
-class RepeatedMisfit:
-    """Its p-value, and its rms over all rows."""
-
-    p_value: float
-    rms_arcsec: float
-
-
-def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> RepeatedMisfit | None:
+def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | None:
     """The misfit that comes back; None where there is none beyond doubt.
 
     Nor where an encoder's step or the torque's noise may do as much: a loop in the torque without its noise
@@ -44,13 +38,12 @@ def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> RepeatedMisfit | 
     codes = _places(prepared)
     if codes is None:
         return None
-    statistic, freedom, rms = structure_in(prepared, fit, codes)
-    p_value = float(chdtrc(freedom, statistic))
+    found = Residual.of(prepared, fit).tested("torque_Nm", codes)
     rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
-    if p_value > SURE or rms < max(rounding**0.5, of_torque):
+    if found.p_value > SURE or found.rms_arcsec < max(rounding**0.5, of_torque):
         return None
-    return RepeatedMisfit(p_value, rms)
+    return found
 
 
 def _places(prepared: PreparedSweep) -> np.ndarray | None:

@@ -9,6 +9,7 @@ from scipy.special import chdtrc
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
@@ -45,38 +46,47 @@ def channel_tests(prepared: PreparedSweep, fit: SweepFit) -> list[ChannelTest]:
     freedom as they have where nothing is left. All is whitened, so coloured noise does not pass for
     structure.
     """
-    left = _unexplained(fit)[1]
-    found = []
-    for channel, values in _channels(prepared).items():
-        codes = _bins(values)
-        if codes.max() < 1:
-            continue
-        statistic, freedom, rms = structure_in(prepared, fit, codes)
-        found.append(ChannelTest(channel, rms, float(chdtrc(freedom, statistic))))
-    return [*found, _wave(prepared, left)]
+    residual = Residual.of(prepared, fit)
+    found = [
+        residual.tested(channel, codes)
+        for channel, values in _channels(prepared).items()
+        if (codes := _bins(values)).max() > 0
+    ]
+    return [*found, _wave(prepared, residual.left)]
 
 
-def structure_in(
-    prepared: PreparedSweep, fit: SweepFit, codes: np.ndarray
-) -> tuple[float, int, float]:
-    """χ² of what a solution leaves in bins (n,) from 0, its degrees of freedom, and its rms [arcsec]."""
-    model, left = _unexplained(fit)
-    bins = fit.evidence.prepared((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
-    bins -= model @ (model.T @ bins)
-    basis, size, _ = np.linalg.svd(bins, full_matrices=False)
-    own = basis[:, size > RANK * size.max()]
-    statistic = float(((own.T @ left) ** 2).sum())
-    freedom = own.shape[1]
-    share = max(0.0, statistic - freedom) / max(1.0, float(left @ left))
-    return statistic, freedom, float(np.sqrt(share)) * prepared.noise.std_arcsec
+@dataclass(frozen=True)
+class Residual:
+    """What a solution leaves of a sweep, whitened.
 
+    Attributes
+    ----------
+    model (r, k) : orthonormal, what its terms can be. left (r,) : what they leave.
+    """
 
-def _unexplained(fit: SweepFit) -> tuple[np.ndarray, np.ndarray]:
-    """Orthonormal columns (r, k) of what the model can be, and what it leaves (r,), whitened."""
-    evidence = fit.evidence
-    chosen = [evidence.x[:, evidence.terms[i].at] for i in fit.posterior.terms]
-    model, _ = np.linalg.qr(np.hstack([evidence.base, *chosen]))
-    return model, evidence.y - model @ (model.T @ evidence.y)
+    prepared: PreparedSweep
+    evidence: GaussianEvidence
+    model: np.ndarray
+    left: np.ndarray
+
+    @classmethod
+    def of(cls, prepared: PreparedSweep, fit: SweepFit) -> Residual:
+        evidence = fit.evidence
+        chosen = [evidence.x[:, evidence.terms[i].at] for i in fit.posterior.terms]
+        model, _ = np.linalg.qr(np.hstack([evidence.base, *chosen]))
+        return cls(prepared, evidence, model, evidence.y - model @ (model.T @ evidence.y))
+
+    def tested(self, channel: str, codes: np.ndarray) -> ChannelTest:
+        """Its structure in bins (n,), numbered from 0."""
+        bins = self.evidence.prepared((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
+        bins -= self.model @ (self.model.T @ bins)
+        basis, size, _ = np.linalg.svd(bins, full_matrices=False)
+        own = basis[:, size > RANK * size.max()]
+        statistic = float(((own.T @ self.left) ** 2).sum())
+        freedom = own.shape[1]
+        share = max(0.0, statistic - freedom) / max(1.0, float(self.left @ self.left))
+        rms = float(np.sqrt(share)) * self.prepared.noise.std_arcsec
+        return ChannelTest(channel, rms, float(chdtrc(freedom, statistic)))
 
 
 def _wave(prepared: PreparedSweep, left: np.ndarray) -> ChannelTest:

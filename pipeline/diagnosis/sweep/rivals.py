@@ -8,6 +8,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
@@ -15,8 +16,6 @@ from flexspline.pipeline.diagnosis.sweep.fit import SOFT, SweepFit, fit_regresso
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
 
-GAP = "clearance_offset"
-"""No soft wind-up that ends below the least torque recorded is its rival: nobody can say that it is one."""
 MORE_OF_RIVAL = 3
 """Terms that a set with a rival in a cause's place may have more than the best set: another law takes two or
 three elements for one."""
@@ -52,7 +51,8 @@ def rivals_of(
         fit = fit_regressors(evidence, rival.terms)
         if not known_causes()[other].plausible(fit.elements()[other]):
             continue
-        if (cause, other) == (GAP, SOFT) and _is_calibration(fit, other):
+        # a soft wind-up that ends below the least torque recorded: nobody can say that it is no gap
+        if (cause, other) == (CLEARANCE, SOFT) and _is_calibration(fit, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):
@@ -77,5 +77,4 @@ def penalised(evidence: GaussianEvidence, terms: tuple[int, ...]) -> float:
     """
     fit = fit_regressors(evidence, terms).posterior
     count = len(fit.mean) - fit.base_count
-    off = fit.mean[: fit.base_count] / evidence.columns.base_prior
-    return -(fit.chi2 + float(off @ off)) / 2 - count * log(max(evidence.rows, 2)) / 2
+    return -fit.misfit(evidence) / 2 - count * log(max(evidence.rows, 2)) / 2

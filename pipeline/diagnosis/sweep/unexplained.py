@@ -8,7 +8,6 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
-from flexspline.pipeline.diagnosis.sweep.repeated_misfit import RepeatedMisfit
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT, ChannelTest
 
 NUISANCE_P = 1e-6
@@ -22,7 +21,7 @@ def unexplained_of(
     identified: Identification,
     tests: Sequence[ChannelTest],
     jumps: Jumps | None = None,
-    again: RepeatedMisfit | None = None,
+    again: ChannelTest | None = None,
     told: Collection[str] = (),
 ) -> tuple[Unexplained, ...]:
     """Nuisance terms and minor causes of the best set, jumps, and channels where the rest is significant.
@@ -42,7 +41,7 @@ def unexplained_of(
     if jumps is not None:
         found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPING))
     if again is not None:
-        found.append(Unexplained("torque_Nm", again.rms_arcsec, again.p_value, COMES_BACK))
+        found.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
     said = {u.channel for u in found}
     for t in sorted(tests, key=lambda t: t.p_value):
         if t.p_value < SIGNIFICANT and t.channel not in said:
