@@ -35,7 +35,13 @@ def simulated(history: History) -> np.ndarray:
 
 def read(history: History, angle_arcsec: np.ndarray, seed: int) -> Sweep:
     """The record, with noise."""
-    noisy = angle_arcsec + np.random.default_rng(seed).normal(0, NOISE, len(history))
+    return as_read(
+        history, angle_arcsec + np.random.default_rng(seed).normal(0, NOISE, len(history))
+    )
+
+
+def as_read(history: History, angle_arcsec: np.ndarray) -> Sweep:
+    """The record of one unit with these readings, its cycles counted from 1, under a head of one line."""
     cycles = (tuple(np.unique(history.cycle) + 1.0),)
     line = np.arange(len(history)) + 2
-    return Sweep(Path("rig.csv"), history, noisy, ("",), cycles, line, True)
+    return Sweep(Path("rig.csv"), history, angle_arcsec, ("",), cycles, line, True)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, triangle
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.backward import backward_loop
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
@@ -62,10 +61,7 @@ def read_late(
 
 
 def said_of(history: History, angle: np.ndarray) -> DiagnosisOutcome:
-    cycles, line = (tuple(np.unique(history.cycle) + 1.0),), np.arange(len(angle)) + 2
-    return diagnose_sweep(
-        Sweep(Path("rig.csv"), history, angle, ("",), cycles, line, True), PREDICTION
-    )[0]
+    return diagnose_sweep(as_read(history, angle), PREDICTION)[0]
 
 
 DELAY_S = 0.4

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, shape_of, sweep
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import GROWING
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
@@ -69,9 +67,7 @@ def test_a_loop_in_proportion_to_load_has_a_doubt_where_it_is_closed() -> None:
     rng = np.random.default_rng(11)
     angle = 10.0 * HISTORY.torque_Nm + 30.0 * HISTORY.sign - 1.5 * np.abs(HISTORY.torque_Nm) * stuck
     angle += rng.normal(0, noise, len(angle))
-    cycles, line = (tuple(np.unique(HISTORY.cycle) + 1.0),), np.arange(len(angle)) + 2
-    record = Sweep(Path("rig.csv"), HISTORY, angle, ("",), cycles, line, True)
-    (cause,) = diagnose_sweep(record, PREDICTION)[0].causes
+    (cause,) = diagnose_sweep(as_read(HISTORY, angle), PREDICTION)[0].causes
     assert cause.id == FRICTION.id
     near = (np.abs(HISTORY.torque_Nm) < 0.15 * LARGEST).sum()
     assert abs(cause.magnitude) < 2 * cause.magnitude_std

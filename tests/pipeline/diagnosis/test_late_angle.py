@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, triangle
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import filtered_side
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
@@ -61,8 +60,7 @@ def rig(
     read = torque_of(time, torque)[rows] + rng.normal(0, TORQUE_NOISE, len(rows))
     history = History(read, none, (rows - 1) // FINE, time[rows])
     angle = angle_of(time, torque)[rows] + rng.normal(0, NOISE, len(rows))
-    cycles, line = (tuple(np.unique(history.cycle) + 1.0),), np.arange(len(angle)) + 2
-    return prepare(Sweep(Path("rig.csv"), history, angle, ("",), cycles, line, True), PREDICTION)
+    return prepare(as_read(history, angle), PREDICTION)
 
 
 @pytest.mark.parametrize("periods_s", [ONE_RATE, FOUR_RATES])

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from histories import PREDICTION, sweep
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes.operators import lags
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
@@ -26,11 +25,7 @@ def lagging(share: float, seed: int) -> DiagnosisOutcome:
     angle = PREDICTION.angle_arcsec(HISTORY) - size * behind / behind.std()
     angle = angle + ANGLE_NOISE * rng.normal(size=len(HISTORY))
     read = replace(HISTORY, torque_Nm=torque + TORQUE_NOISE_Nm * rng.normal(size=len(HISTORY)))
-    cycles = (tuple(np.unique(HISTORY.cycle) + 1.0),)
-    rows = np.arange(len(angle)) + 2
-    return diagnose_sweep(
-        Sweep(Path("rig.csv"), read, angle, ("",), cycles, rows, True), PREDICTION
-    )[0]
+    return diagnose_sweep(as_read(read, angle), PREDICTION)[0]
 
 
 def test_a_tenth_of_the_torque_s_noise_is_no_lag() -> None:

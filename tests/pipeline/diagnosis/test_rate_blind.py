@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
 from histories import LARGEST, PREDICTION, shape_of, sweep
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate, follows_rate
@@ -84,8 +83,7 @@ def test_a_lag_beside_friction_is_found() -> None:
     loop = friction.columns(shape_of("friction_hysteresis", VARIED, loaded=0), VARIED)[:, 0]
     angle = PREDICTION.angle_arcsec(VARIED) + 3.0 * loop + twist / twist.std()
     angle += np.random.default_rng(7).normal(0, NOISE, len(angle))
-    cycles, rows = (tuple(np.unique(VARIED.cycle) + 1.0),), np.arange(len(angle)) + 2
-    record = Sweep(Path("rig.csv"), VARIED, angle, ("",), cycles, rows, True)
+    record = as_read(VARIED, angle)
     named = {c.id for c in diagnose_sweep(record, PREDICTION)[0].causes}
     assert named == {"friction_hysteresis", "rate_dependence"}
 
@@ -126,8 +124,7 @@ def of_sine(added: np.ndarray) -> dict[str, tuple[str, ...]]:
     """Causes found and their rivals in a sine sweep that reads these angles [arcsec] beside the simulated."""
     angle = PREDICTION.angle_arcsec(SINE) + added
     angle = angle + np.random.default_rng(11).normal(0, NOISE, len(angle))
-    cycles, rows = (tuple(np.unique(SINE.cycle) + 1.0),), np.arange(len(angle)) + 2
-    record = Sweep(Path("rig.csv"), SINE, angle, ("",), cycles, rows, True)
+    record = as_read(SINE, angle)
     return {c.id: c.alternatives for c in diagnose_sweep(record, PREDICTION)[0].causes}
 
 

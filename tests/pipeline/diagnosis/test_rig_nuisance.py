@@ -10,6 +10,7 @@ import pytest
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
 from histories import PREDICTION, sweep
+from read_sweep import as_read
 from scipy.signal import lsim, lti
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
@@ -198,6 +199,4 @@ def test_corners_by_a_clock_of_whole_seconds(rows_a_second: int) -> None:
     times = [corner.time_s for corner in corners_of(coarse)]
     assert np.isfinite(times).all()
     angle = line(coarse.torque_Nm) + np.random.default_rng(4).normal(0, 0.3, len(coarse))
-    cycles = ((1.0, 2.0),)
-    record = Sweep(Path("rig.csv"), coarse, angle, ("",), cycles, np.arange(len(angle)) + 2, True)
-    assert diagnose_sweep(record, PREDICTION)[0].verdict == "consistent"
+    assert diagnose_sweep(as_read(coarse, angle), PREDICTION)[0].verdict == "consistent"

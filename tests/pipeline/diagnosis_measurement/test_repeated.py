@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from histories import joined, sweep
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 
 ONCE = sweep(cycles=3)
 TWICE = joined([ONCE, replace(ONCE, cycle=ONCE.cycle + 3)])
-
-
-def record(history: History, angle: np.ndarray) -> Sweep:
-    cycles = (tuple(np.unique(history.cycle) + 1.0),)
-    return Sweep(Path("rig.csv"), history, angle, ("",), cycles, np.arange(len(angle)) + 2, True)
 
 
 def read(history: History, seed: int) -> np.ndarray:
@@ -29,12 +23,12 @@ def read(history: History, seed: int) -> np.ndarray:
 
 def test_a_record_appended_to_itself_is_seen() -> None:
     angle = read(ONCE, 1)
-    assert copied_rows(record(TWICE, np.tile(angle, 2))) == len(ONCE)
+    assert copied_rows(as_read(TWICE, np.tile(angle, 2))) == len(ONCE)
 
 
 def test_the_same_programme_measured_again_is_no_copy() -> None:
-    assert copied_rows(record(TWICE, np.concatenate([read(ONCE, 1), read(ONCE, 2)]))) == 0
+    assert copied_rows(as_read(TWICE, np.concatenate([read(ONCE, 1), read(ONCE, 2)]))) == 0
 
 
 def test_cycles_without_noise_are_no_copies() -> None:
-    assert copied_rows(record(TWICE, 10.0 * TWICE.torque_Nm)) == 0
+    assert copied_rows(as_read(TWICE, 10.0 * TWICE.torque_Nm)) == 0
