@@ -6,7 +6,6 @@ python3 docs/make_architecture.py
 from __future__ import annotations
 
 import ast
-from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -38,38 +37,32 @@ def imported(path: Path) -> Iterator[tuple[str, ...]]:
 
 
 @cache
-def arrows() -> Counter[tuple[str, str]]:
-    """How many import statements lead from one package to another."""
-    known, found = packages(), Counter[tuple[str, str]]()
+def arrows() -> set[tuple[str, str]]:
+    """Which package imports from which other."""
+    known, found = packages(), set[tuple[str, str]]()
     for room in ROOMS:
         for _, path in modules(room):
             here = path.parent.relative_to(ROOT).parts
             for target in imported(path):
                 there = next(target[:n] for n in range(len(target), 0, -1) if target[:n] in known)
                 if there != here:
-                    found[".".join(here), ".".join(there)] += 1
+                    found.add((".".join(here), ".".join(there)))
     return found
 
 
 def between_rooms() -> str:
-    """The four rooms, and how many imports lead from one to another."""
-    total = Counter[tuple[str, str]]()
-    for (here, there), count in arrows().items():
-        total[here.split(".")[0], there.split(".")[0]] += count
-    lines = [f"  {a} -->|{n}| {b}" for (a, b), n in sorted(total.items()) if a != b]
+    """The four rooms, and which imports from which."""
+    found = {(here.split(".")[0], there.split(".")[0]) for here, there in arrows()}
+    lines = [f"  {a} --> {b}" for a, b in sorted(found) if a != b]
     return "\n".join(["```mermaid", "graph RL", *lines, "```", ""])
 
 
 def within(room: str) -> str:
     """The packages of one room, and what each of them imports there."""
-    found = {
-        k: n for k, n in sorted(arrows().items()) if all(name.split(".")[0] == room for name in k)
-    }
+    found = {pair for pair in arrows() if all(name.split(".")[0] == room for name in pair)}
     names = sorted({name for pair in found for name in pair})
     shown = [f'  {n.replace(".", "_")}["{n.removeprefix(room + ".")}"]' for n in names]
-    lines = [
-        f"  {a.replace('.', '_')} -->|{n}| {b.replace('.', '_')}" for (a, b), n in found.items()
-    ]
+    lines = [f"  {a.replace('.', '_')} --> {b.replace('.', '_')}" for a, b in sorted(found)]
     return "\n".join(["```mermaid", "graph LR", *shown, *lines, "```", ""])
 
 
