@@ -28,9 +28,7 @@ def defined(file: Path) -> set[str]:
     """All classes, functions and variables that a file defines, at any depth."""
     nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
     names = {n.name for n in nodes if isinstance(n, ast.ClassDef | ast.FunctionDef)}
-    return names | {
-        n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
-    }
+    return names | {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
 
 
 def test_every_file_that_the_page_names_exists() -> None:

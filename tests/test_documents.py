@@ -14,6 +14,7 @@ from opengl import why_no_pictures
 
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import warnings
+from flexspline.geometry.schema import json_schema
 
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(
@@ -71,6 +72,20 @@ def test_readme_names_every_command() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     for command in app.registered_commands:
         assert f"`flexspline {command.callback.__name__}" in text
+
+
+def test_the_contract_names_every_command_and_every_key_of_a_design() -> None:
+    from flexspline.results.cli import app
+
+    text = (ROOT / "docs" / "contract.md").read_text(encoding="utf-8")
+    for command in app.registered_commands:
+        assert f"`flexspline {command.callback.__name__}" in text
+    schema = json_schema()
+    tables = [schema, *schema["$defs"].values()]
+    keys = {key for table in tables for key in table.get("properties", {})}
+    assert len(keys) > 60
+    named = set(re.findall(r"\w+", text))
+    assert keys <= named, keys - named
 
 
 @pytest.mark.parametrize(
