@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -133,14 +132,23 @@ def test_every_number_of_a_study(tmp_path: Path) -> None:
     link = '"bearing.radial_clearance_um" = { of = "load.torque_Nm", times = 2.0, plus = 1.0 }'
     text = STUDY.replace("DESIGN", str(CUP)).replace("[run]", f"[link]\n{link}\n[run]")
     tables = tomllib.loads(text)
+    study_from(tables, tmp_path, "study")  # as it stands, it is one
     places = list(numeric(tables))
+    assert len(places) > 10
+    accepted = 0
     for table, key in places:
         kept = table[key]
         for number in NUMBERS:
             table[key] = number
-            with suppress(DesignError):
+            try:
                 study_from(tables, tmp_path, "study")
+            except DesignError:
+                continue
+            assert math.isfinite(number), key
+            assert not isinstance(number, bool), key
+            accepted += 1
         table[key] = kept
+    assert accepted > 2 * len(places)  # lower ends down to 0, any factor and shift of the link
 
 
 @pytest.mark.parametrize("amount", ["1e-320", "1e-12", "0.0", "1e5", "nan"])
