@@ -34,11 +34,17 @@ def part_stiffness(model: PartModel) -> Stiffness:
     NestingError : the solid model's K lies outside.
     ComputationError, MemoryError : of the first mesh.
     """
-    found = _revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
+    found = revolved_stiffness(model) if model.axisymmetric else _solid_stiffness(model)
     return of_toothed(found) if model.toothed else found
 
 
-def _revolved_stiffness(model: PartModel) -> Stiffness:
+def revolved_stiffness(model: PartModel) -> Stiffness:
+    """K in torsion of a body of revolution, with its bounds; it goes through the cache.
+
+    Raises
+    ------
+    ComputationError : the mesh failed.
+    """
     part = model.part
 
     def make() -> Stiffness:
@@ -55,7 +61,7 @@ def _revolved_stiffness(model: PartModel) -> Stiffness:
 
 
 def _solid_stiffness(model: PartModel) -> Stiffness:
-    enclosure = enclosure_if_any(model, _revolved_stiffness)
+    enclosure = enclosure_if_any(model, revolved_stiffness)
     if enclosure is not None and may_answer(model):
         tolerance = tolerance_of(model)
         if enclosure.half_width <= tolerance and model.mesher == "auto" and by_fTetWild(model):
@@ -72,7 +78,7 @@ def twisted_part(model: PartModel) -> TwistedPart:
 
     Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
     """
-    enclosure = enclosure_if_any(model, _revolved_stiffness) if may_answer(model) else None
+    enclosure = enclosure_if_any(model, revolved_stiffness) if may_answer(model) else None
     tolerance = tolerance_of(model)
     one_mesh = enclosure is not None and enclosure.half_width <= tolerance
 

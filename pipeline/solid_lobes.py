@@ -57,7 +57,7 @@ def solid_lobes(flexspline: PartModel, supported: bool, known: float = inf) -> S
     def make() -> Stiffness:
         with context.progress.stage("lobes" if supported else "lobes, rim unsupported"):
             return lobe_stiffness(
-                _meshes(flexspline, supported, known),
+                lobe_meshes(flexspline, supported, known),
                 flexspline.material,
                 supported,
                 tolerance,
@@ -70,7 +70,7 @@ def solid_lobes(flexspline: PartModel, supported: bool, known: float = inf) -> S
     return context.cache.get("lobes", inputs, make, is_lasting)[0]
 
 
-def _meshes(
+def lobe_meshes(
     flexspline: PartModel, supported: bool, known: float
 ) -> Iterator[tuple[TetMesh, float]]:
     """Coarse to fine, of half a repeat, at least one; each with its scale of the error estimate.
@@ -120,7 +120,7 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
 
     Raises
     ------
-    SolidError : as `_meshes`.
+    SolidError : as `lobe_meshes`.
     """
     expected = promised(tolerance_of(flexspline), COARSER)
     first, worth = number == 0 and not begun, expected <= WORTH * known

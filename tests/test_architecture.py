@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,70 @@ def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
     bad = tmp_path / "bad.py"
     bad.write_text("def f():\n    from flexspline.results.cli import main\n    import cadquery\n")
     assert [name for name, _ in imports(bad)] == ["results", "cadquery"]
+
+
+def programs(text: str) -> Iterator[ast.Module]:
+    """A test file, and the programs in its strings that it runs in processes of their own."""
+    tree = ast.parse(text)
+    yield tree
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            with suppress(SyntaxError, ValueError):
+                if "flexspline" in node.value:
+                    yield ast.parse(node.value)
+
+
+def is_private(name: str) -> bool:
+    return name.startswith("_") and not name.startswith("__") and name != "_"
+
+
+def private_names(path: Path) -> set[str]:
+    """Private functions, classes, variables, methods and attributes that a file of the program defines."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names.add(node.name)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            names.add(node.attr)
+    return {n for n in names if is_private(n)}
+
+
+PRIVATE = frozenset[str]().union(*map(private_names, FILES))
+
+
+def private_uses(text: str) -> Iterator[str]:
+    """Private names of the program that a test file imports, reads, or names for `monkeypatch`."""
+    for tree in programs(text):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("flexspline"):
+                yield from (alias.name for alias in node.names if is_private(alias.name))
+            elif isinstance(node, ast.Attribute) and node.attr in PRIVATE:
+                if not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")):
+                    yield node.attr
+            elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("setattr"):
+                words = [a.value for a in node.args if isinstance(a, ast.Constant)]
+                yield from (w for w in map(str, words) if w.rpartition(".")[2] in PRIVATE)
+
+
+def test_tests_use_no_private_name_of_the_program() -> None:
+    for path in sorted((ROOT / "tests").rglob("*.py")):
+        found = list(private_uses(path.read_text(encoding="utf-8")))
+        assert not found, f"{path.relative_to(ROOT)}: {', '.join(found)}"
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        "from flexspline.geometry.meridian import {}",
+        "meridian.{}(1)",
+        "monkeypatch.setattr(meridian, '{}', None)",
+        "CODE = 'from flexspline.geometry.meridian import {}'",
+    ],
+)
+def test_the_check_sees_a_private_name(use: str) -> None:
+    assert list(private_uses(use.format("_ring"))) == ["_ring"]
 
 
 def test_a_diagnosis_with_given_stiffnesses_loads_no_solver() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,12 +26,30 @@ def font_folder() -> Path:
     return Path(mpl.get_data_path()) / "fonts" / "ttf"
 
 
-def printable(value: Any) -> tuple[Any, int]:
+def charmaps() -> Iterator[frozenset[int]]:
+    """Codes that each font has; matplotlib's first, as those of the system take time to read."""
+    yield _codes(str(font_folder() / "DejaVuSans.ttf"), 0)
+    from typst import Fonts
+
+    for font in Fonts(include_embedded_fonts=False).fonts():
+        if font.path:
+            yield _codes(str(font.path), font.index)
+
+
+def printable(
+    value: Any, fonts: Callable[[], Iterable[frozenset[int]]] = charmaps
+) -> tuple[Any, int]:
     """JSON values with its code for each letter that cannot be printed, and how many there were.
 
-    A letter counts once however often it occurs.
+    A letter counts once however often it occurs. `fonts`: codes that each font has; asked only where there
+    are letters that need it.
     """
-    missing = {c for text in _strings(value) for c in _lacking(text)}
+    missing = {c for text in _strings(value) for c in _uncertain(text)}
+    if missing:
+        for codes in fonts():
+            missing -= {c for c in missing if ord(c) in codes}
+            if not missing:
+                break
     table = str.maketrans({c: STAND_IN.format(ord(c)) for c in missing})
     return (_replaced(value, table) if missing else value), len(missing)
 
@@ -47,29 +65,15 @@ def notice(count: int) -> dict[str, Any]:
     return {"kind": "callout", "tone": "amber", "heading": "", "text": spans, "items": []}
 
 
-def _lacking(text: str) -> set[str]:
+def _uncertain(text: str) -> set[str]:
+    """Letters that some computer's fonts may lack."""
     if _PLAIN.fullmatch(text):
         return set()
-    return {c for c in text if not _PLAIN.fullmatch(c) and _has_shape(c) and not _covered(ord(c))}
+    return {c for c in text if not _PLAIN.fullmatch(c) and _has_shape(c)}
 
 
 def _has_shape(letter: str) -> bool:
     return unicodedata.category(letter)[0] not in "CZ" and unicodedata.category(letter) != "Mn"
-
-
-@cache
-def _covered(code: int) -> bool:
-    return any(code in found for found in _charmaps())
-
-
-def _charmaps() -> Iterator[frozenset[int]]:
-    """Codes that each font has; matplotlib's first, as those of the system take time to read."""
-    yield _codes(str(font_folder() / "DejaVuSans.ttf"), 0)
-    from typst import Fonts
-
-    for font in Fonts(include_embedded_fonts=False).fonts():
-        if font.path:
-            yield _codes(str(font.path), font.index)
 
 
 @cache

@@ -34,11 +34,11 @@ _DESIGN, _MEASURED, _OUT = "design.toml", "measured.csv", "out"
 
 @dataclass
 class Job:
-    """One running command; `say` gets its lines of progress."""
+    """One running command; `say` gets its lines of progress. `process`: the command, once it has begun."""
 
     kind: Kind
     say: Callable[[str], Awaitable[None]]
-    _process: asyncio.subprocess.Process | None = None
+    process: asyncio.subprocess.Process | None = None
     _stopped: bool = False
     folder: tempfile.TemporaryDirectory[str] = field(
         default_factory=lambda: tempfile.TemporaryDirectory(prefix="flexspline-studio-")
@@ -53,7 +53,7 @@ class Job:
             design = design.model_copy(update={"solver": solid})
         (at / _DESIGN).write_text(design_text(design), encoding="utf-8")
         (at / _MEASURED).write_bytes(measured)
-        self._process = await asyncio.create_subprocess_exec(
+        self.process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", *_COMMANDS[self.kind],
             stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
             stdin=asyncio.subprocess.DEVNULL, cwd=at, start_new_session=True,
@@ -61,9 +61,9 @@ class Job:
         )  # fmt: skip
         if self._stopped:  # while it was being started
             self.stop()
-        assert self._process.stdout is not None
-        lines, printed = await asyncio.gather(self._listen(), self._process.stdout.read())
-        status = await self._process.wait()
+        assert self.process.stdout is not None
+        lines, printed = await asyncio.gather(self._listen(), self.process.stdout.read())
+        status = await self.process.wait()
         if self._stopped:
             return Done("stopped", "stopped")
         if status != 0:
@@ -72,10 +72,10 @@ class Job:
 
     async def _listen(self) -> list[str]:
         """The lines on stderr, the folder's own name taken out."""
-        assert self._process is not None
-        assert self._process.stderr is not None
+        assert self.process is not None
+        assert self.process.stderr is not None
         lines: list[str] = []
-        async for raw in self._process.stderr:
+        async for raw in self.process.stderr:
             line = raw.decode("utf-8", "replace").rstrip()
             line = line.replace(f"{self.folder.name}{os.sep}", "").replace(f"{_DESIGN}: ", "")
             lines.append(line)
@@ -85,18 +85,18 @@ class Job:
     def stop(self) -> None:
         """Interrupt the command and whatever it started; by force if it does not listen."""
         self._stopped = True
-        if self._process is None or self._process.returncode is not None:
+        if self.process is None or self.process.returncode is not None:
             return
         self._signal(signal.SIGINT)
         asyncio.get_running_loop().call_later(GRACE_S, self._signal, FORCE)
 
     def _signal(self, number: signal.Signals) -> None:
-        if self._process is not None and self._process.returncode is None:
+        if self.process is not None and self.process.returncode is None:
             if hasattr(os, "killpg"):
                 with contextlib.suppress(ProcessLookupError):
-                    os.killpg(self._process.pid, number)
+                    os.killpg(self.process.pid, number)
             else:
-                _terminate_tree(self._process.pid)
+                _terminate_tree(self.process.pid)
 
     def files(self) -> list[str]:
         """Names that a tab may fetch, figures in the order in which they were made."""

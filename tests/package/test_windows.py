@@ -61,12 +61,12 @@ START = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import t
 async def stop():
     async def say(line): pass
     job = Job("solid", say)
-    job._process = await asyncio.create_subprocess_exec(sys.executable, "-c", START)
-    tree = psutil.Process(job._process.pid)
+    job.process = await asyncio.create_subprocess_exec(sys.executable, "-c", START)
+    tree = psutil.Process(job.process.pid)
     while not (started := tree.children()):
         await asyncio.sleep(0.05)
     job.stop()
-    await asyncio.wait_for(job._process.wait(), 30)
+    await asyncio.wait_for(job.process.wait(), 30)
     gone, alive = psutil.wait_procs(started, 30)
     assert not alive
     job.close()

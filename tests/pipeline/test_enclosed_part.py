@@ -153,7 +153,7 @@ def test_bodies_that_are_far_apart_are_not_solved_finely(
 
     def solve(body: PartModel) -> Stiffness:
         asked.append(body.context.design.solver.tolerance_pct)
-        return part_stiffness._revolved_stiffness(body)
+        return part_stiffness.revolved_stiffness(body)
 
     part = model(design.changed({"solver.tolerance_pct": 0.1}), tmp_path)
     found = enclosure_of(part, solve)

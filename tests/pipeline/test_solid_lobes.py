@@ -44,7 +44,7 @@ def model(folder: Path, design: Design = WIDE) -> PartModel:
 
 def first_elements(part: PartModel, supported: bool, known: float = 1.0) -> int:
     """Of the part's quarter."""
-    mesh, _ = next(solid_lobes._meshes(part, supported, known))
+    mesh, _ = next(solid_lobes.lobe_meshes(part, supported, known))
     return copies_in_rim(part) * mesh.elements
 
 
