@@ -3,4 +3,4 @@
 ADDENDUM = 1.0
 """From the pitch circle to the tip."""
 DEDENDUM = 1.25
-"""From the pitch circle to the root, or to the ground of a space."""
+"""From the pitch circle to the root circle."""

@@ -19,7 +19,7 @@ OUTER_SHARE = 1.35
 """Outer over pitch diameter: median of one maker's component sets (CSF, sizes 14 to 58: 50, 60, 70, 85, 110,
 135, 170, 195 mm, that is 1.32 to 1.41)."""
 THINNEST_RIM = 0.02
-"""Of the pitch radius, outside the ground of the spaces: below, it is a foil."""
+"""Of the pitch radius, outside the root circle: below, it is a foil."""
 DEEPEST = 1.34
 """Of m(z2 − z1)/2: the withdrawal at 55°, where plain flanks of 20° begin to cut into each other."""
 SHALLOWEST = 0.1
@@ -35,12 +35,12 @@ class CircularSpline:
 
     Attributes
     ----------
-    ground : radius of the ground of the tooth spaces.
+    root : radius of the root circle.
     outer : radius.
     working_depth : largest withdrawal from full depth at which teeth touch.
     """
 
-    ground: float
+    root: float
     outer: float
     working_depth: float
     assumed: tuple[Assumed, ...]
@@ -60,17 +60,17 @@ def circular_spline(design: Design) -> CircularSpline:
     depth = taken(
         "working_depth_mm", DEEPEST * stroke, f"{DEEPEST:g} m(z2 - z1)/2, teeth of full height"
     )
-    return CircularSpline(_ground(design), diameter / 2, depth, tuple(assumed))
+    return CircularSpline(_root_radius(design), diameter / 2, depth, tuple(assumed))
 
 
-def _ground(design: Design) -> float:
+def _root_radius(design: Design) -> float:
     gear = design.gear
     return gear.module_mm * (gear.teeth_circular_spline / 2 + DEDENDUM)
 
 
 def _least_outer(design: Design) -> float:
     gear = design.gear
-    return _ground(design) + THINNEST_RIM * gear.module_mm * gear.teeth_circular_spline / 2
+    return _root_radius(design) + THINNEST_RIM * gear.module_mm * gear.teeth_circular_spline / 2
 
 
 def circular_spline_faults(design: Design) -> Iterator[DesignError]:
@@ -83,8 +83,8 @@ def circular_spline_faults(design: Design) -> Iterator[DesignError]:
         yield DesignError(
             "gear.circular_spline_diameter_mm",
             outer,
-            f"must be {span(least, LENGTH_mm.high, 4)} mm: the ground of the tooth spaces has a diameter of "
-            f"{2 * _ground(design):.4g} mm",
+            f"must be {span(least, LENGTH_mm.high, 4)} mm: the root circle's diameter is "
+            f"{2 * _root_radius(design):.4g} mm",
         )
     depth, stroke = gear.working_depth_mm, gear.centre_distance_mm
     low, high = SHALLOWEST * stroke, DEEPEST * stroke * (1 + ROUNDED)

@@ -27,7 +27,7 @@ RACE_SHARE = 0.04
 """Outer race's thickness at the groove's bottom over the tube's inner radius: some 1.2 mm at 30 mm, read off
 drawings in papers. Not standardised; makers keep it to themselves."""
 DEFLECTION_SHARES = (0.5, 1.5)
-"""Of m(z2 − z1)/2: with less the teeth hardly meet, with more they stand on the ground of their spaces."""
+"""Of m(z2 − z1)/2: with less the teeth hardly meet, with more their tips touch the root circle."""
 RACE_SHARES = (0.01, 0.25)
 """Of the inner radius: balls dent a thinner race, and K moves by more than 2 % with twice as many harmonics;
 a thicker one is no flexible ring."""

@@ -98,7 +98,7 @@ def gear_model(
         _wave_generator(bearing, shape.inner_radius, play, races),
         _rim(flexspline.without_holes(), pitch, ring, count, face),
         _race(shape.inner_radius, bearing.race_thickness, races, ring, groove, count),
-        _spline(spline.ground, spline.outer, rigid, inside, ring, face),
+        _spline(spline.root, spline.outer, rigid, inside, ring, face),
         pair_compliance(design),
         gear.teeth_flexspline,
         MOST_STATIONS,
@@ -117,14 +117,14 @@ def _rim(
 
 @lru_cache(KEPT)
 def _spline(
-    ground: float,
+    root: float,
     outer: float,
     material: Elastic,
     pitch_radius: float,
     ring: tuple[float, float],
     face_count: int,
 ) -> Condensed:
-    outline, face = spline_outline(ground, outer, *ring), places_along(*ring, face_count)
+    outline, face = spline_outline(root, outer, *ring), places_along(*ring, face_count)
     with one_thread():
         return condensed_spline(outline, material, pitch_radius, face, LAST_HARMONIC)
 

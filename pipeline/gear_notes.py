@@ -37,7 +37,7 @@ LEAST_ANGLE = 0.1
 SAME_TORQUE = 0.01
 """A difference of less is rounding of a design file: `init` writes three digits."""
 ACT_TOGETHER = 0.2
-"""Of the play's own effect: a smaller difference of the two orders is a matter of taste."""
+"""Of the play's own effect: a smaller difference of the two orders is not worth a note."""
 
 
 def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
@@ -164,8 +164,8 @@ def of_play(
     warned, noted = [], []
     if play.last_tenth < -LEAST_ANGLE:
         warned.append(
-            "more bearing play makes the free angle smaller here: the rim stands so low on its balls that "
-            "teeth off the major axis touch first. That is no better gear: take less play"
+            "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
+            "teeth beside the major axis touch first. The gear is no better for it: reduce the play"
         )
     term = terms_arcsec["bearing_play"]
     if term < -LEAST_ANGLE and not full_stroke:

@@ -20,7 +20,7 @@ class DrawnFlanks:
     Attributes
     ----------
     heights, tooth : (h,), (h,) of the tooth's flank up to its tip.
-    levels, space : (l,), (l,) of the space, from the circular spline's tip to the ground; both rise.
+    levels, space : (l,), (l,) of the space, from the circular spline's tip to the root; both rise.
     pressure_angle : of the flanks at the pitch circle [rad].
     """
 

@@ -60,18 +60,18 @@ def chance(best: float, without: Iterable[float]) -> float:
     return exp(min(0.0, max(without) - best))
 
 
-def is_any(cause: NamedCause) -> bool:
-    """Whether a cause's size is beyond `SIZE_KNOWN` of its deviations from none.
+def is_significant(cause: NamedCause) -> bool:
+    """Whether a cause's size differs from none by more than `SIZE_KNOWN` of its deviations.
 
     Sweeps ask it of each fit (`sweep/size_doubt.py`), end points and specimens of the best explanation.
     """
-    return is_beyond_none(cause.id, cause.deviations)
+    return differs_from_none(cause.id, cause.deviations)
 
 
-def is_beyond_none(cause_id: str, deviations: float) -> bool:
-    """Whether a size so many of its deviations from none is any.
+def differs_from_none(cause_id: str, deviations: float) -> bool:
+    """Whether a size that is so many of its standard deviations from none differs from it significantly.
 
-    The amplitude of a wave is never none by chance; its evidence decides.
+    Noise alone gives a wave an amplitude above 0; its evidence decides.
     """
     known = known_causes().get(cause_id)
     return (known is not None and not known.passes_none) or deviations >= SIZE_KNOWN
@@ -92,13 +92,13 @@ def decided(
     named_rms, unnamed_rms : of what the causes and what the terms without a name explain, in one unit.
     structure : whether the residual tests leave no doubt of structure, where nothing was found.
     sure : whether the best explanation beats the simulation by enough, and its sizes are known well enough
-        (`is_any`), to be named.
+        (`is_significant`), to be named.
     """
     found = tuple(sorted(causes, key=lambda c: -c.rms_arcsec))
     left = tuple(unexplained)
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
         # beside what has no name a mere suspicion is none
-        return Decision("unknown", tuple(c for c in found if is_any(c)), left)
+        return Decision("unknown", tuple(c for c in found if is_significant(c)), left)
     if not found:
         return Decision("unknown", (), left) if structure else Decision("consistent")
     open_ = not sure or any(c.alternatives for c in found)

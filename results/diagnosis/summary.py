@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexspline.geometry.listed import listed
-from flexspline.pipeline.diagnosis.decision import is_any
+from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
@@ -158,7 +158,7 @@ def _rivals(causes: Sequence[NamedCause]) -> str:
     told += [
         f"{cause_title(c)}, {magnitude_words(c)}, is only a suspicion"
         for c in causes
-        if not is_any(c)
+        if not is_significant(c)
     ]
     return "; ".join(told)
 

@@ -58,9 +58,9 @@ def sure_words(cause: NamedCause) -> str:
     """How sure a cause is, in words, from its evidence; rivals lower it."""
     if cause.alternatives:
         return "not decided"
-    # that something is there may be sure, but how much is not
+    # the evidence may be strong that there is an effect, its size nevertheless uncertain
     words = next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
-    return words if cause.deviations >= SIZE_KNOWN else f"{words}, its size is not"
+    return words if cause.deviations >= SIZE_KNOWN else f"{words}, size uncertain"
 
 
 def odds_words(nats: float) -> str:

@@ -93,7 +93,7 @@ class Formula:
 
     nodes: tuple[Node, ...]
     spoken: str
-    """The same in words, for those who listen."""
+    """The same in words, for screen readers."""
 
 
 @dataclass(frozen=True)

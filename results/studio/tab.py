@@ -1,6 +1,6 @@
-"""One browser tab: its newest design, what is known of it, and who is asked next.
+"""One browser tab: its newest design, what is known of it, and what is asked next.
 
-Three lanes run side by side, each with a worker of its own: the stiffnesses that follow the hand, the
+Three lanes run side by side, each with a worker of its own: the stiffnesses that follow a slider, the
 picture, and what takes longer. A lane drops what a newer design has made stale, so the newest wins.
 """
 
@@ -25,7 +25,7 @@ from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
 STILL_S = 0.35
-"""The slow questions wait until the hand has rested so long: they would only delay the others."""
+"""The slow questions wait until no slider has moved for so long: they would only delay the others."""
 QUICK = ("torsion", "K_b_lobes")
 ROUGH = f"{PEAK_OF['wave_generator']}_rough"
 

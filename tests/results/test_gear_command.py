@@ -318,7 +318,7 @@ def test_straight_teeth_touch_at_the_open_end_first(curve: GearCurve) -> None:
     ("key", "value", "says"),
     [
         ("working_depth_mm", 0.3, "to 0.2682 mm"),
-        ("circular_spline_diameter_mm", 40.0, "the ground of the tooth spaces"),
+        ("circular_spline_diameter_mm", 40.0, "the root circle's diameter"),
         ("tooth_face", "crowned", "relieved"),
     ],
 )
@@ -374,8 +374,8 @@ def test_play_that_closes_the_gap_is_warned_of() -> None:
     loose, looser, tight = (low_ratio(play) for play in (95.0, 116.0, 32.0))
     assert looser.lost_motion_arcsec < loose.lost_motion_arcsec
     for found in (loose, looser):
-        assert any("take less play" in line for line in found.warnings)
-    assert not any("take less play" in line for line in tight.warnings)
+        assert any("reduce the play" in line for line in found.warnings)
+    assert not any("reduce the play" in line for line in tight.warnings)
     assert any("act together" in line for line in tight.notes)
     assert any("below a ratio of 45" in line for line in tight.notes)
 

@@ -16,9 +16,9 @@ HARDENING = NamedCause("stiffness_hardening", 0.99, (), 1.03, 0.02, "1", 12.0, 4
 @pytest.mark.parametrize(
     ("cause", "said"),
     [
-        (DRIFT, "beyond doubt, its size is not"),  # 1.8 deviations from none
+        (DRIFT, "beyond doubt, size uncertain"),  # 1.8 deviations from none
         (replace(DRIFT, magnitude_std=5.0), "beyond doubt"),
-        (HARDENING, "beyond doubt, its size is not"),  # a ratio of 1 is no hardening
+        (HARDENING, "beyond doubt, size uncertain"),  # a ratio of 1 is no hardening
         (replace(HARDENING, magnitude=1.2), "beyond doubt"),
         (replace(DRIFT, alternatives=("creep",)), "not decided"),
     ],

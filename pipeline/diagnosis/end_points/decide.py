@@ -14,8 +14,8 @@ from flexspline.pipeline.diagnosis.decision import (
     Decision,
     chance,
     decided,
-    is_any,
     is_rival,
+    is_significant,
     probability,
 )
 from flexspline.pipeline.diagnosis.end_points.evidence import UnitEvidence
@@ -58,7 +58,7 @@ def decide(
             () if best.own is None else (names[best.own],),
         ))  # fmt: skip
     rms = hypot(*(c.rms_arcsec for c in found))
-    sure = best.score > NAMING_NATS and all(map(is_any, found))
+    sure = best.score > NAMING_NATS and all(map(is_significant, found))
     return decided(found, (), named_rms=rms, unnamed_rms=0.0, sure=sure)
 
 

@@ -70,7 +70,7 @@ def diagnose_end_points(
     if best.score > NAMING_NATS or not all(u.within for u in units):
         beyond = [u for u in units if not u.within]
         if best.score <= NAMING_NATS and len(beyond) == 1 and len(names) > 1:
-            # one unit is what is to be explained, whatever suits the fleet a little better
+            # one unit is what is to be explained, even where another cause fits all units a little better
             alone = raced.index(beyond[0].unit)
             hypotheses = [h for h in hypotheses if not h.causes or h.own == alone]
         decision = decide(hypotheses, rig, raced, prediction)

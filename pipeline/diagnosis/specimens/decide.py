@@ -23,8 +23,8 @@ from flexspline.pipeline.diagnosis.decision import (
     Decision,
     chance,
     decided,
-    is_any,
     is_rival,
+    is_significant,
     probability,
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
@@ -71,7 +71,7 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
         unexplained,
         named_rms=hypot(*(100 * _rms(race, best, (c,)) for c in best.named)),
         unnamed_rms=hypot(*(u.rms for u in unexplained)),
-        sure=all(map(is_any, found)),
+        sure=all(map(is_significant, found)),
     )
     return SpecimenExplanation(decision, best, tuple(rivals))
 

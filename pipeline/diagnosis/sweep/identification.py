@@ -81,7 +81,11 @@ def identify(search: Search, beside: bool = False) -> Identification:
     largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
     doubt = SizeDoubt.of(fit)
     named = sorted(
-        (c for c in held if c in ahead or (rms[c] >= MINOR_SHARE * largest and doubt.is_any(c))),
+        (
+            c
+            for c in held
+            if c in ahead or (rms[c] >= MINOR_SHARE * largest and doubt.is_significant(c))
+        ),
         key=lambda c: -rms[c],
     )
     rivals: dict[str, tuple[str, ...]] = {}

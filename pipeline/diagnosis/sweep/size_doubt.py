@@ -1,4 +1,4 @@
-"""How well the size of a cause is known by one set of shapes, and whether it is any."""
+"""How well the size of a cause is known by one set of shapes, and whether it differs from none."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import hypot, inf
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.decision import is_beyond_none
+from flexspline.pipeline.diagnosis.decision import differs_from_none
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leakage import leaked
 from flexspline.pipeline.diagnosis.sweep.shape_posterior import magnitude_stds
@@ -45,7 +45,7 @@ class SizeDoubt:
         }
         return cls(fit, magnitude, std)
 
-    def is_any(self, cause: str) -> bool:
+    def is_significant(self, cause: str) -> bool:
         """Whether a size is far enough from none (`../decision.py`).
 
         That a term helps is sure by its evidence; that it is this cause, and not what others' shapes miss, is
@@ -53,7 +53,7 @@ class SizeDoubt:
         """
         size = self.fit.widest_loop_arcsec() if cause == FRICTION else self.magnitude[cause]
         off, std = abs(size - known_causes()[cause].none), self.std[cause]
-        return is_beyond_none(cause, off / std if std > 0 else inf)
+        return differs_from_none(cause, off / std if std > 0 else inf)
 
 
 def _cancelled(fit: SweepFit, cause: str, magnitude: float) -> float:

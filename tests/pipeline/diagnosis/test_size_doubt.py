@@ -45,22 +45,24 @@ def test_a_spring_beside_friction_is_one_where_it_exceeds_what_friction_leaves_u
     """Whether friction takes torque at the ends of its loop is a spring more or less: 10 of 20 arcsec."""
     added = friction(10.0) + share * PREDICTION.compliance * HISTORY.torque_Nm
     doubt = SizeDoubt.of(fitted(added, FRICTION, SPRING))
-    assert doubt.is_any(SPRING) == (100 * share > SIZE_KNOWN * doubt.std[SPRING])
-    assert doubt.is_any(FRICTION)
+    assert doubt.is_significant(SPRING) == (100 * share > SIZE_KNOWN * doubt.std[SPRING])
+    assert doubt.is_significant(FRICTION)
 
 
 def test_the_doubt_is_the_other_cause_s() -> None:
     """A spring of 5 %: alone it is many deviations of its fit, beside large friction it is none."""
     spring = 0.05 * PREDICTION.compliance * HISTORY.torque_Nm
-    assert SizeDoubt.of(fitted(spring, SPRING)).is_any(SPRING)
-    assert not SizeDoubt.of(fitted(friction(10.0) + spring, FRICTION, SPRING)).is_any(SPRING)
+    assert SizeDoubt.of(fitted(spring, SPRING)).is_significant(SPRING)
+    assert not SizeDoubt.of(fitted(friction(10.0) + spring, FRICTION, SPRING)).is_significant(
+        SPRING
+    )
 
 
 def test_hardening_of_one_is_none() -> None:
     nothing = np.zeros(len(HISTORY))
     doubt = SizeDoubt.of(fitted(nothing, "stiffness_hardening"))
     assert doubt.magnitude["stiffness_hardening"] == pytest.approx(1.0, abs=1e-6)
-    assert not doubt.is_any("stiffness_hardening")
+    assert not doubt.is_significant("stiffness_hardening")
 
 
 def test_an_amplitude_of_waves_is_no_question_of_its_deviation() -> None:
@@ -74,4 +76,4 @@ def test_an_amplitude_of_waves_is_no_question_of_its_deviation() -> None:
     evidence = gaussian_evidence(columns, added, kept, Noise(NOISE**2, 0.0, 0.5))
     doubt = SizeDoubt.of(fit_regressors(evidence, [two]))
     assert doubt.magnitude[WAVE] < SIZE_KNOWN * doubt.std[WAVE]
-    assert doubt.is_any(WAVE)
+    assert doubt.is_significant(WAVE)
