@@ -283,7 +283,7 @@ def four_terms(name: str, design: Design, chain: Chain, K_b: float) -> str:
         ("flexspline", "flexspline, 2T/K_b; in the model with teeth and bearing"),
         ("flank_clearance", "flank clearance"),
         ("bearing_play", "bearing play"),
-        (TIGHT, "gap of the tight gear: balls and rim give way, the rim is no ideal ellipse"),
+        (TIGHT, "gap of the tight gear: balls and rim yield, the rim is no ideal ellipse"),
         ("total", "sum"),
     ):
         theirs = 0.0 if key == TIGHT else getattr(total, f"{key}_arcsec")

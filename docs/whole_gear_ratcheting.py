@@ -31,7 +31,7 @@ CHANGED = (
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the catalogue [N·m], and where the model's teeth let go."""
+    """One line of the catalogue [N·m], and the model's ratcheting torque."""
 
     size: float
     ratio: int

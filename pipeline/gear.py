@@ -125,7 +125,7 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             terms = gear_terms(chain, load.torque_Nm, start)
             play = play_effect(chain.model, start)
             curve = curve_of(design, chain, start)
-        with context.progress.stage("torque at which no tooth is left in its space"), one_thread():
+        with context.progress.stage("ratcheting torque"), one_thread():
             limit = Engagement(chain.model).limit(rated_in_proportion(design.gear.pitch_radius_mm))
         tube = tube_of(design)
         full = chain.model.wave_generator.deflection == design.gear.centre_distance_mm

@@ -30,7 +30,7 @@ def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str,
 
     `start`: the gear at its `small_torque`. "flexspline" is the wind-up of flexspline, teeth and bearing
     together. A clearance is what the free angle loses when first the flanks', then the bearing's is taken
-    away; "tight_gear" is what is left: balls and rim give way, and the rim is no ideal ellipse.
+    away; "tight_gear" is what is left: balls and rim yield, and the rim is no ideal ellipse.
 
     Raises
     ------

@@ -15,14 +15,14 @@ def tube_of(design: Design) -> Tube | None:
 def largest_torques(
     engaged_Nm: float | None, tube: Tube | None, rated_Nm: float
 ) -> tuple[list[str], list[str]]:
-    """Warnings and notes; `engaged_Nm`: where no tooth is left. Catalogues': docs/whole-gear.md."""
+    """Warnings and notes; `engaged_Nm`: the ratcheting torque. Catalogues': docs/whole-gear.md."""
     warned, noted = [], []
     if engaged_Nm is None:
-        noted.append("no torque was found at which teeth let go")
+        noted.append("no torque was found at which the gear ratchets")
     else:
         if engaged_Nm < rated_Nm:
             warned.append(
-                f"teeth let go at some {rounded(engaged_Nm)} N·m, below the rated torque of "
+                f"the gear ratchets at some {rounded(engaged_Nm)} N·m, below the rated torque of "
                 f"{rated_Nm:.4g} N·m"
             )
         noted.append(
@@ -39,8 +39,8 @@ def largest_torques(
             )
         noted.append(
             f"the flexspline's tube buckles at some {rounded(buckles)} N·m, the lower edge of tests, at a "
-            f"shear stress of {rounded(tube.stress_MPa(buckles))} MPa; a wall that yields below that "
-            "gives way earlier"
+            f"shear stress of {rounded(tube.stress_MPa(buckles))} MPa; a wall whose yield stress is "
+            "lower fails earlier"
         )
     return warned, noted
 

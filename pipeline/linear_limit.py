@@ -64,7 +64,8 @@ def _limit(design: Design, part: PartName) -> tuple[float, str]:
     stated = design.part(part).material.fatigue_limit_MPa
     if stated is not None and stated <= HIGHEST_STRENGTH_MPA:
         return stated, f"the fatigue limit of {stated:g} MPa"
-    return HIGHEST_STRENGTH_MPA, f"{HIGHEST_STRENGTH_MPA:g} MPa, more than any metal of gears bears"
+    highest = f"{HIGHEST_STRENGTH_MPA:g} MPa, above the strength of any metal used in gears"
+    return HIGHEST_STRENGTH_MPA, highest
 
 
 def _nominal_mises(design: Design) -> Iterator[tuple[PartName, str, float]]:

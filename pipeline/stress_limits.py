@@ -63,8 +63,8 @@ class PassedLimit:
         if self.key:
             return f"above the fatigue limit of {self.limit_MPa:g} MPa"
         return (
-            f"beyond {self.limit_MPa:g} MPa, where no metal of gears is elastic: the linear model does not "
-            "hold"
+            f"beyond {self.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model "
+            "does not hold"
         )
 
     @property

@@ -3,10 +3,10 @@
 A tooth's withdrawal is y = stroke − u_r of the rim + u_r of the circular spline. Beyond the working depth it
 is out, the others take its load, and they are pressed out in turn. At the torque where none is left the
 flexspline jumps to its next spaces. So it does where a tooth is bent by half its thickness, or pressed
-beyond the root circle of its space: a soft circular spline gives way so, and small displacements would let
+beyond the root circle of its space: a soft circular spline ends so, and small displacements would let
 teeth pass through each other. Teeth are loaded evenly along their faces: place by place the torque
 moves by less than WITHIN. Elastic, without friction, and nothing but rim, race, balls, teeth and
-circular spline yields: a real gear gives way before.
+circular spline yields: a real gear ratchets earlier.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ class Engagement:
         return None
 
     def limit(self, first_Nm: float) -> float | None:
-        """Torque [N·m] at which teeth let go, sought both ways from a torque; None: far beyond it."""
+        """Ratcheting torque [N·m], sought both ways from a torque; None: far beyond it."""
         low, holds = first_Nm, self.held(first_Nm)
         for _ in range(MOST_DOUBLINGS):
             if holds:

@@ -36,7 +36,7 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
     for slot, lines in said[:1]:
         yield from (f"design {slot}: {line}" for line in lines)
     if others := [str(slot) for slot, lines in said[1:] if lines]:
-        yield f"of the other best designs {', '.join(others)}: warnings too, which flexspline run says"
+        yield f"warnings also of design {', '.join(others)}: flexspline run gives them"
 
 
 def _warnings(result: StudyResult, row: Row) -> Iterable[str]:

@@ -94,7 +94,8 @@ def write_pareto(path: Path, result: StudyResult) -> None:
             bar = figure.colorbar(dots, cax=figure.add_axes((0.86, 0.22, 0.02, 0.68)))
             bar.set_label(axis_label(more[0]))
         axes.set_title(
-            f"{len(front)} {'design' if len(front) == 1 else 'designs'} that none beats", color=INK
+            f"{len(front)} {'design' if len(front) == 1 else 'designs'} on the Pareto front",
+            color=INK,
         )
         figure.legend(*axes.get_legend_handles_labels(), loc="lower center", ncols=3)
         save_png(figure, path)

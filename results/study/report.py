@@ -52,7 +52,7 @@ WIDTHS = {
 }  # fmt: skip
 """Percent of the page's width."""
 CAPTIONS = {
-    "pareto.png": "Every design built, and the front that none beats.",
+    "pareto.png": "Every design that was built, and the Pareto front.",
     "parallel.png": "Every design as a line over the varied dimensions and its figures; a bar marks what a "
     "constraint allows.",
     "convergence.png": "Every design in the order chosen, and the best so far.",

@@ -69,7 +69,7 @@ def test_without_a_fatigue_limit_the_highest_strength_stands_in() -> None:
     )
     stated, found = linear_limit(cup(), STIFF), linear_limit(bare, STIFF)
     assert found.torque_Nm == pytest.approx(stated.torque_Nm * 2000 / 500)
-    assert "more than any metal of gears bears" in found.reason
+    assert "above the strength of any metal used in gears" in found.reason
 
 
 def test_a_limit_beyond_every_metal_counts_no_further() -> None:

@@ -72,7 +72,7 @@ def test_a_ring_whose_teeth_do_not_fit_is_said_of_the_best() -> None:
     tooth, others = best_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
     assert tooth.startswith("design 1: tooth-root radius")
     assert "others" not in tooth
-    assert others.startswith("of the other best designs 2: ")
+    assert others.startswith("warnings also of design 2: ")
     assert not list(best_warnings(result_of((0.55, 400.0))))
 
 
@@ -106,7 +106,7 @@ def test_rows_of_a_program_that_means_something_else_are_not_resumed(
 def test_a_peak_that_no_metal_bears_is_said_as_in_a_run() -> None:
     (fatigue, elastic) = best_warnings(result_of((0.55, 2500.0)))
     assert "fatigue_limit_MPa" in fatigue
-    assert "where no metal of gears is elastic" in elastic
+    assert "where no metal used in gears is elastic" in elastic
 
 
 def begun(*figures: float) -> StudyResult:

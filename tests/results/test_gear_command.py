@@ -39,7 +39,7 @@ def curve() -> GearCurve:
 
 
 def alone(design: Design) -> GearCurve:
-    """The curve without the terms at the load and without the torque at which teeth let go: half the work."""
+    """The curve without the terms at the load and without the ratcheting torque: half the work."""
     return curve_of(design, chain_of(analysis_context(design)))
 
 
@@ -328,7 +328,7 @@ def test_a_circular_spline_that_cannot_be_is_refused(key: str, value: object, sa
 
 
 def test_a_rated_torque_that_the_teeth_do_not_hold_is_warned_of(curve: GearCurve) -> None:
-    """The torque at which they let go does not hang on the rated torque that is stated."""
+    """The ratcheting torque does not depend on the rated torque that is stated."""
     assert curve.ratcheting_torque_Nm is not None
     beyond = 1.2 * curve.ratcheting_torque_Nm
     strong = flexspline.gear(DESIGN.changed({"gear.rated_torque_Nm": beyond}))

@@ -135,7 +135,7 @@ def test_a_passed_limit_is_a_warning() -> None:
     assert "still rises" in line
     kept = replace(found, wave_generator_peak=peak(490.0, border=True))
     assert shortfalls(limited(500.0), kept) == ()
-    assert "no metal of gears is elastic" in " ".join(
+    assert "no metal used in gears is elastic" in " ".join(
         shortfalls(limited(None), replace(found, wave_generator_peak=peak(2858.0, border=True)))
     )
 
