@@ -13,7 +13,7 @@ from flexspline.fea.gear.condensed import Condensed
 from flexspline.fea.gear.drawn_flanks import DrawnFlanks
 from flexspline.fea.gear.kinematics import Mesh
 from flexspline.fea.gear.model import GearModel
-from flexspline.fea.gear.plug import WaveGenerator
+from flexspline.fea.gear.plug import Plug
 from flexspline.fea.gear.race import condensed_race, race_outline
 from flexspline.fea.gear.rim import Rim, condensed_rim, places_along
 from flexspline.fea.gear.tooth_pair import flank_contact, tooth
@@ -146,11 +146,11 @@ def _race(
 
 def _wave_generator(
     bearing: FlexibleBearing, inner_radius: float, play: float, material: Elastic
-) -> WaveGenerator:
+) -> Plug:
     hertz = ball_between_races(
         bearing.ball_diameter, inner_radius - bearing.race_thickness, CONFORMITY, material
     )
-    return WaveGenerator(bearing.deflection, play, even(bearing.ball_count), hertz)
+    return Plug(bearing.deflection, play, even(bearing.ball_count), hertz)
 
 
 def even(balls: int) -> int:

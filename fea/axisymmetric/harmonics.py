@@ -6,7 +6,7 @@ For harmonic n the displacement is u_r = U cos nφ, u_θ = V sin nφ, u_z = W co
     × sin nφ:   γ_rθ = V,r - (V + nU)/r    γ_θz = V,z - nW/r
 
 The other symmetry (u_r = U sin nφ, u_θ = -V cos nφ, u_z = W sin nφ) is the same body turned by
-π/2n: same numbers, same energy. For n = 0 it is pure torsion, V alone (`Wave.torsion`).
+π/2n: same numbers, same energy. For n = 0 it is pure torsion, V alone (`Harmonic.torsion`).
 Harmonics do not couple. Source: Wilson, AIAA J. 3 (1965) 2269-2274.
 """
 
@@ -49,7 +49,7 @@ unsupported thin cup), so the residual is judged by the energy it carries: there
 
 
 @dataclass(frozen=True)
-class Wave:
+class Harmonic:
     """A harmonic: its number, and for n = 0 whether it is torsion (V only) or not (U and W)."""
 
     n: int
@@ -136,7 +136,7 @@ class HarmonicModel:
         """What all harmonics of this mesh are made of."""
         return Couplings(self.space, self.material)
 
-    def stiffness(self, wave: Wave) -> csr_matrix:
+    def stiffness(self, wave: Harmonic) -> csr_matrix:
         """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.
 
         Components that the harmonic does not have are left empty.
@@ -151,7 +151,7 @@ class HarmonicModel:
         """All components 0 on a patch."""
         return [Fixed(self.on(patch), c) for c in (RADIAL, TANGENTIAL, AXIAL)]
 
-    def solve(self, wave: Wave, fixed: list[Fixed], load: np.ndarray) -> Amplitudes:
+    def solve(self, wave: Harmonic, fixed: list[Fixed], load: np.ndarray) -> Amplitudes:
         """Amplitudes under nodal forces `load` (3·count,) [N]; a later `fixed` wins.
 
         Raises
@@ -176,7 +176,7 @@ class HarmonicModel:
         residual = relative_residual(inside, u[free], right)
         return Amplitudes(u, twice_energy, float(u @ load), residual, len(right))
 
-    def prescribed(self, wave: Wave, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
+    def prescribed(self, wave: Harmonic, fixed: list[Fixed]) -> tuple[np.ndarray, np.ndarray]:
         """Mask of the free unknowns, and all unknowns with the values prescribed, else 0."""
         count = self.space.count
         axis = np.flatnonzero(self.space.places[:, 0] < SAME)
@@ -189,7 +189,7 @@ class HarmonicModel:
             value[f.numbers, f.component] = f.value
         return ~mask.ravel(), value.ravel()
 
-    def pressed(self, patch: str, component: int, wave: Wave) -> np.ndarray:
+    def pressed(self, patch: str, component: int, wave: Harmonic) -> np.ndarray:
         """Nodal forces (3·count,) [N] of a traction of amplitude 1 MPa on a straight patch."""
         load = np.zeros((self.space.count, 3))
         load[:, component] = wave.around * self._pressure(patch)

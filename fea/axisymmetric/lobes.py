@@ -16,7 +16,7 @@ from math import pi, sin
 import numpy as np
 
 from flexspline.fea.axisymmetric.bisection import refined_twice
-from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import RADIAL, TANGENTIAL, Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
@@ -173,7 +173,7 @@ def solve_lobes(
     error = np.zeros(len(model.mesh.triangles))
     worst, unknowns, work = 0.0, 0, 0.0
     for n in range(0, 2 * MOST_HARMONICS, 2):
-        wave = Wave(n, torsion=n == 0)
+        wave = Harmonic(n, torsion=n == 0)
         coefficient = lobe_coefficient(n)
         load = peak * model.pressed("mesh", TANGENTIAL, wave)
         fixed = [f for patch in held for f in model.held(patch)]

@@ -29,7 +29,7 @@ class StressError(ComputationError):
 
 
 @dataclass(frozen=True)
-class Peak:
+class MeridianPeak:
     """Largest von Mises stress that counts.
 
     Attributes
@@ -60,7 +60,7 @@ class _Found:
     counts: np.ndarray
 
 
-def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) -> Peak:
+def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) -> MeridianPeak:
     """Search all angles and all points at least `exclusion_mm` from sharp corners and patch edges.
 
     The squared stress is A cos² nφ + B sin² nφ, so the largest over φ is the larger of A and B.
@@ -104,7 +104,7 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
         other = search(distance_mm, peak_at, within_mm)
         return None if other is None else float(np.sqrt(other.square))
 
-    return Peak(
+    return MeridianPeak(
         float(np.sqrt(found.square)),
         (float(found.place[0]), float(found.place[1])),
         found.at_sine,

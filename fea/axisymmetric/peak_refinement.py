@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import cos, inf, pi, sin
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.harmonics import Amplitudes, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import Amplitudes, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.peak import coarse_at_border, peak_stress
 from flexspline.fea.axisymmetric.recovery import recovered
@@ -35,7 +35,7 @@ QUIET_ROUNDS = 2
 class HarmonicLoad:
     """One harmonic's load case: its wave, and how it is solved on a mesh."""
 
-    wave: Wave
+    wave: Harmonic
     solve: Callable[[HarmonicModel], Amplitudes]
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.harmonics import HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.space import interpolated
 from flexspline.fea.types import Elastic
 
@@ -39,7 +39,7 @@ class Recovered:
     misfit: np.ndarray
 
 
-def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Recovered:
+def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) -> Recovered:
     """Smooth the stresses of solved amplitudes (3·count,)."""
     s, material = model.space, model.material
     raw = stress(wave, material, s.basis, displacement)
@@ -61,7 +61,7 @@ def recovered(model: HarmonicModel, wave: Wave, displacement: np.ndarray) -> Rec
     )
 
 
-def stress(wave: Wave, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
+def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarray) -> Parts:
     """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
     lam, mu, n = material.lam, material.mu, wave.n
     r = np.asarray(basis.global_coordinates())[0]

@@ -17,8 +17,8 @@ from flexspline.fea.axisymmetric.harmonics import (
     RADIAL,
     TANGENTIAL,
     Fixed,
+    Harmonic,
     HarmonicModel,
-    Wave,
 )
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
 from flexspline.fea.axisymmetric.space import factorised
@@ -83,14 +83,14 @@ def seat_compliance(model: HarmonicModel, angles: int, most_places: int) -> Seat
     work = 0.0
     for n in range(0, angles + 1, 2):
         # a force of 1 N/rad times cos nφ has the nodal amplitude ∫cos² nφ dφ
-        wave = Wave(n, torsion=n == 0)
+        wave = Harmonic(n, torsion=n == 0)
         twist = (peak * lobe_coefficient(n) * model.pressed("mesh", TANGENTIAL, wave))[:, None]
         if n:
             both = responses(model, wave, np.column_stack([push, twist]))
             pushed, u = both[:, :-1], both[:, -1]
         else:
-            pushed, u = responses(model, Wave(0), push), responses(model, wave, twist)[:, 0]
-        radial = Wave(n).around * spread.T @ pushed[3 * seat + RADIAL]
+            pushed, u = responses(model, Harmonic(0), push), responses(model, wave, twist)[:, 0]
+        radial = Harmonic(n).around * spread.T @ pushed[3 * seat + RADIAL]
         harmonics.append((radial + radial.T) / 2)
         work += float(u @ twist[:, 0])
         # the load varies as cos nφ, so u_r as −sin nφ (the twin symmetry of `harmonics`)
@@ -110,12 +110,12 @@ def _spread(model: HarmonicModel, seat: np.ndarray, most: int) -> np.ndarray:
     share = (1 - np.cos(np.linspace(0, pi, most))) / 2
     at = np.sort(along)[np.unique(((len(seat) - 1) * share).round().astype(int))]
     hats = np.stack([np.interp(along, at, one) for one in np.eye(len(at))], axis=1)
-    hats *= model.pressed("seat", RADIAL, Wave(0))[3 * seat + RADIAL][:, None]
+    hats *= model.pressed("seat", RADIAL, Harmonic(0))[3 * seat + RADIAL][:, None]
     return hats / hats.sum(axis=0)
 
 
 def responses(
-    model: HarmonicModel, wave: Wave, loads: np.ndarray, also: list[Fixed] | None = None
+    model: HarmonicModel, wave: Harmonic, loads: np.ndarray, also: list[Fixed] | None = None
 ) -> np.ndarray:
     """Displacements (3·count, k) under nodal forces (3·count, k), `mount` held, and what is `also` fixed."""
     free, _ = model.prescribed(wave, [*model.held("mount"), *(also or [])])

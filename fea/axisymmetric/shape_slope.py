@@ -18,7 +18,7 @@ from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import spsolve
 
 from flexspline.fea.axisymmetric.bisection import refined
-from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
@@ -33,7 +33,7 @@ BULK = 0.6
 """As for the lobes."""
 LAYER_POINTS = 16
 """On each edge: a layer may end within it."""
-TWIST = Wave(0, torsion=True)
+TWIST = Harmonic(0, torsion=True)
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from flexspline.fea.axisymmetric.harmonics import (
     TANGENTIAL,
     Amplitudes,
     Fixed,
+    Harmonic,
     HarmonicModel,
-    Wave,
 )
 from flexspline.fea.axisymmetric.peak_refinement import HarmonicLoad, StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
@@ -57,7 +57,7 @@ def torsion_stress(
 
 def ellipse(w0_mm: float) -> HarmonicLoad:
     """`mount` held and `seat` moved radially by w0 cos 2φ, otherwise free."""
-    wave = Wave(2)
+    wave = Harmonic(2)
 
     def solve(model: HarmonicModel) -> Amplitudes:
         fixed = [Fixed(model.on("seat"), RADIAL, w0_mm), *model.held("mount")]
@@ -68,7 +68,7 @@ def ellipse(w0_mm: float) -> HarmonicLoad:
 
 def torque(driven: str, torque_Nm: float) -> HarmonicLoad:
     """`mount` held and `driven` turned rigidly by a torque."""
-    wave = Wave(0, torsion=True)
+    wave = Harmonic(0, torsion=True)
 
     def solve(model: HarmonicModel) -> Amplitudes:
         on = model.on(driven)

@@ -15,7 +15,7 @@ from math import pi
 import numpy as np
 
 from flexspline.fea.axisymmetric.couplings import RADIAL, TANGENTIAL
-from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.seat import responses
 
 
@@ -91,7 +91,7 @@ def condensed(
         loads[port.component :: 3, column] = port.weights
     found = []
     for n in range(0, last + 1, 2):
-        waves = [Wave(n)] if n else [Wave(0), Wave(0, torsion=True)]
+        waves = [Harmonic(n)] if n else [Harmonic(0), Harmonic(0, torsion=True)]
         matrix = np.zeros((len(ports), len(ports)))
         for wave in waves:
             mine = np.ones(len(ports), bool) if n else tangential == wave.torsion
@@ -109,7 +109,7 @@ def condensed(
 
 def even(model: HarmonicModel, patch: str, component: int) -> Port:
     """An even traction on a straight patch; its displacement is the patch's mean."""
-    own = model.pressed(patch, RADIAL, Wave(0))[RADIAL::3]
+    own = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
     return Port(component, own / own.sum())
 
 
@@ -131,7 +131,7 @@ def shares_along(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray
 
 def _hats(model: HarmonicModel, patch: str, at: np.ndarray) -> np.ndarray:
     """(m, count) area [mm²] under each hat by P2 number; together they are the patch."""
-    own = model.pressed(patch, RADIAL, Wave(0))[RADIAL::3]
+    own = model.pressed(patch, RADIAL, Harmonic(0))[RADIAL::3]
     z = model.space.places[:, 1]
     hats = np.array([own * np.interp(z, at, one) for one in np.eye(len(at))])
     if not (hats.sum(axis=1) > 0).all():

@@ -9,8 +9,8 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class WaveGenerator:
-    """Of the plug and of each ball.
+class Plug:
+    """The plug of the wave generator and its balls.
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
 from flexspline.fea.solid.solver import Solution
 from flexspline.fea.solid.unfold import Parity, unfolding
-from flexspline.fea.solid.waves import Wave, waves
+from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM, TetMesh
 
 BALANCE_LIMIT = 1e-6
@@ -89,7 +89,7 @@ def lobes(model: Model, supported: bool) -> Solved:
     return _of_waves(model, found, "antisymmetric", scale / stored, scale / work)
 
 
-def _lobe_loads(model: Model) -> tuple[dict[Wave, np.ndarray], float]:
+def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:
     """Nodal forces (n, 3) of a unit lobe traction [MPa] by wave, and its torque on the whole part [N·mm]."""
     facets = model.mesh.on("mesh")
     # of the torque on the example's ring degree 4 lacks 2e-9, 6 lacks 1e-11, against degree 12
@@ -102,7 +102,7 @@ def _lobe_loads(model: Model) -> tuple[dict[Wave, np.ndarray], float]:
         forces = np.einsum("kq,qi->ki", traction * rule.weights, rule.values)
         loads[wave] = np.zeros((len(model.mesh.nodes), 3), forces.dtype)
         np.add.at(loads[wave][:, TANGENTIAL], facets, forces)
-    mean = Wave(0, repeats).of(_lobe_traction, phi)
+    mean = CyclicWave(0, repeats).of(_lobe_traction, phi)
     radius = np.hypot(rule.points[..., 0], rule.points[..., 1])
     return loads, float((mean * radius * rule.weights).sum()) * model.copies
 

@@ -34,7 +34,7 @@ within, they would have the sector's angle, a needle's."""
 
 
 @dataclass(frozen=True)
-class Column:
+class HoledColumn:
     """The column from radius `inner` to `outer` [mm], one of which is the interface.
 
     Attributes
@@ -129,7 +129,7 @@ class Column:
         return found
 
 
-def column_of(part: Part) -> Column | None:
+def column_of(part: Part) -> HoledColumn | None:
     """The column around the bolt circle; None where the meridian is no plain rectangle there.
 
     That is where a step or an arc of it lies over the holes, where it has steps to both sides of them,
@@ -161,7 +161,7 @@ def column_of(part: Part) -> Column | None:
     if land < max(NARROW_OF_RADIUS * hole, NARROW_OF_HEIGHT * (z[1] - z[0])):
         return None
     depth = min(part.hole_depth, z[1])
-    return Column(inner, outer, interface, z[0], z[1], depth, circle, hole)
+    return HoledColumn(inner, outer, interface, z[0], z[1], depth, circle, hole)
 
 
 def _radii(outline: Meridian) -> np.ndarray:

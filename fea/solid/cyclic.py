@@ -23,7 +23,7 @@ from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Support
 from flexspline.fea.solid.solver import Solution, solve
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.solid.unfold import unfolded
-from flexspline.fea.solid.waves import Wave
+from flexspline.fea.solid.waves import CyclicWave
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
@@ -60,7 +60,7 @@ class SolvedWave:
         of its load, of the wave and its conjugate on the whole part [N·mm].
     """
 
-    wave: Wave
+    wave: CyclicWave
     values: np.ndarray
     stored: float
     work: float
@@ -75,7 +75,7 @@ class WaveSupports:
     `antisymmetric`: the load is that of torsion under a reflection at angle 0, else that of the ellipse.
     """
 
-    def __init__(self, model: Model, wave: Wave, antisymmetric: bool) -> None:
+    def __init__(self, model: Model, wave: CyclicWave, antisymmetric: bool) -> None:
         self._model, self._wave = model, wave
         self._parts = [Supports(model) for _ in range(wave.times)]
         if wave.is_real:

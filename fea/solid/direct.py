@@ -46,7 +46,7 @@ FACTORED_STEPS = 30
 diameter, 24 000 to 216 000 unknowns)."""
 
 
-class Factors:
+class PardisoFactors:
     """Pardiso's factors of a matrix, until they are released."""
 
     def __init__(self, matrix: csr_matrix, single: bool) -> None:
@@ -118,11 +118,11 @@ def factorised(matrix: csr_matrix, single: bool = False) -> Iterator[Back]:
         yield _superlu(matrix)
         return
     try:
-        factors = Factors(matrix, single)
+        factors = PardisoFactors(matrix, single)
     except SolveError:
         if not single:
             raise
-        factors = Factors(matrix, single=False)
+        factors = PardisoFactors(matrix, single=False)
     try:
         yield factors.solve
     finally:

@@ -13,7 +13,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from flexspline.fea.solid.fillets import Fillet, fillets_of
-from flexspline.fea.solid.plan import Plan, triangulated
+from flexspline.fea.solid.plan import PlanMesh, triangulated
 from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
@@ -104,7 +104,7 @@ class Layers:
             found.append(Line((floor, half), (sqrt(outer**2 - half**2), half)))
         return found
 
-    def plan(self, smallest_mm: float) -> Plan:
+    def plan(self, smallest_mm: float) -> PlanMesh:
         """Its triangles; with a fan about the axis where material reaches it.
 
         Raises
@@ -119,9 +119,9 @@ class Layers:
         axis = np.full(len(rim) - 1, len(made.points))
         fan = np.column_stack([axis, rim[:-1], rim[1:]])
         # φ of a point on the axis is any
-        return Plan(np.vstack([made.points, (0.0, 0.0)]), np.vstack([made.triangles, fan]))
+        return PlanMesh(np.vstack([made.points, (0.0, 0.0)]), np.vstack([made.triangles, fan]))
 
-    def within(self, plan: Plan, low: float, high: float) -> np.ndarray:
+    def within(self, plan: PlanMesh, low: float, high: float) -> np.ndarray:
         """Mask (m,) of the plan's triangles that the layer from `low` to `high` [mm] is made of.
 
         Corners' mean coordinates decide: a triangle of a line's chord and a point beyond lies beyond.

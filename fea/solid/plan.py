@@ -34,14 +34,14 @@ MOST_POINTS = 4_000
 
 
 @dataclass(frozen=True)
-class Plan:
+class PlanMesh:
     """Points (n, 2) as (r, φ) and triangles (m, 3), counter-clockwise in (r, φ)."""
 
     points: np.ndarray
     triangles: np.ndarray
 
 
-def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> Plan:
+def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> PlanMesh:
     """The sector from angle 0 to `sector` [rad], between the least and the largest radius of its lines.
 
     Of `curves`, the bounds of the sector are some. Triangles whose sides are below `smallest_mm` may be poor.
@@ -150,7 +150,7 @@ def _circumcentres(corner: np.ndarray) -> np.ndarray:
     return np.asarray(corner[:, 0] + off / twice[:, None])
 
 
-def _checked(own: PlanEdges, triangles: np.ndarray) -> Plan:
+def _checked(own: PlanEdges, triangles: np.ndarray) -> PlanMesh:
     """Refuse a plan that lacks an edge of a line, or does not fill its rectangle."""
     n = len(own.points)
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]]
@@ -159,4 +159,4 @@ def _checked(own: PlanEdges, triangles: np.ndarray) -> Plan:
     covered = signed_areas(own.points, triangles).sum()
     if missing.any() or not abs(covered / span - 1) < 1e-9:  # rounding of a few thousand areas
         raise MeshingError(f"the plan lacks {int(missing.sum())} edges of its lines")
-    return Plan(np.column_stack([np.exp(own.points[:, 0]), own.points[:, 1]]), triangles)
+    return PlanMesh(np.column_stack([np.exp(own.points[:, 0]), own.points[:, 1]]), triangles)

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.solid.column import HOLE, INTERFACE, Column
+from flexspline.fea.solid.column import HOLE, INTERFACE, HoledColumn
 from flexspline.geometry.outline import SAME
 
 FILLED = (0.6, 0.25)
@@ -49,7 +49,7 @@ def revolved(rest: MeridianMesh, angles: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def extruded(
-    plan: MeridianMesh, column: Column, rest: MeridianMesh, seam: np.ndarray, offset: int
+    plan: MeridianMesh, column: HoledColumn, rest: MeridianMesh, seam: np.ndarray, offset: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """The column's nodes, numbered from `offset`, and its prisms, which use the interface's nodes."""
     line = along(rest, INTERFACE)
@@ -69,7 +69,7 @@ def extruded(
     return polar, np.vstack(prisms)
 
 
-def _filled_hole(plan: MeridianMesh, column: Column) -> tuple[np.ndarray, np.ndarray]:
+def _filled_hole(plan: MeridianMesh, column: HoledColumn) -> tuple[np.ndarray, np.ndarray]:
     """Plan points (n, 2) with those inside a blind hole's half circle, and its triangles there."""
     if not column.blind:
         return plan.points, np.empty((0, 3), np.int64)

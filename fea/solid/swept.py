@@ -16,7 +16,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, Column, column_of
+from flexspline.fea.solid.column import INTERFACE, LARGEST_ARC, HoledColumn, column_of
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.facet_surfaces import surfaces_of
@@ -89,7 +89,7 @@ def swept_mesh(
 
 def _prisms(
     outline: Meridian,
-    column: Column | None,
+    column: HoledColumn | None,
     block: Block | None,
     wedge: float,
     copies: int,
@@ -146,7 +146,7 @@ def _prisms(
 
 def _curved(
     part: Part,
-    column: Column | None,
+    column: HoledColumn | None,
     block: Block | None,
     sector_deg: float,
     polar: np.ndarray,
@@ -175,7 +175,7 @@ def _unbent(polar: np.ndarray) -> np.ndarray:
     return polar
 
 
-def _check(mesh: TetMesh, part: Part, column: Column | None, block: Block | None) -> None:
+def _check(mesh: TetMesh, part: Part, column: HoledColumn | None, block: Block | None) -> None:
     """Compare volume and patch areas with Pappus' theorems less holes, which start in `mount`, and slot."""
     share = mesh.sector_deg / 360
     outline = part.meridian

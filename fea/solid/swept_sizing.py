@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.triangulate import triangulate
-from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, Column
+from flexspline.fea.solid.column import CORE_RIM, LARGEST_ARC, HoledColumn
 from flexspline.fea.solid.errors import MeshQualityError, TooManyElementsError
 from flexspline.fea.solid.sizing import Grading
 from flexspline.geometry.outline import Meridian
@@ -65,7 +65,7 @@ def graded_mesh(
 
 
 def plan_mesh(
-    column: Column, sector: float, far: float, arc_rad: float = LARGEST_ARC
+    column: HoledColumn, sector: float, far: float, arc_rad: float = LARGEST_ARC
 ) -> MeridianMesh:
     """The column's plan, finer beside the hole; a core on the axis is a fan."""
     centre, hole = np.array([column.bolt_circle, 0.0]), column.hole_radius

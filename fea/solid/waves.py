@@ -15,7 +15,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Wave:
+class CyclicWave:
     """Number p of the waves of a part with n repeats, 0 ≤ p ≤ n/2; with it, where it is another, n − p."""
 
     number: int
@@ -55,7 +55,7 @@ class Wave:
         return self.times * (values * (turned.conjugate() if reflected else turned)).real
 
 
-def waves(orders: Iterable[int], repeats: int) -> tuple[Wave, ...]:
+def waves(orders: Iterable[int], repeats: int) -> tuple[CyclicWave, ...]:
     """The waves that hold circumferential orders ±k, from p = 0 up."""
     numbers = {min(k % repeats, -k % repeats) for k in orders}
-    return tuple(Wave(p, repeats) for p in sorted(numbers))
+    return tuple(CyclicWave(p, repeats) for p in sorted(numbers))

@@ -25,13 +25,13 @@ def beam(n: int, soft: float = 0.0) -> csr_matrix:
 def spied(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
     """Whether each factorisation that follows is in single precision."""
     asked: list[bool] = []
-    make = module.Factors
+    make = module.PardisoFactors
 
     def spy(matrix: csr_matrix, single: bool) -> object:
         asked.append(single)
         return make(matrix, single)
 
-    monkeypatch.setattr(module, "Factors", spy)
+    monkeypatch.setattr(module, "PardisoFactors", spy)
     return asked
 
 

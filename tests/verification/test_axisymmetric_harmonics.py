@@ -15,9 +15,9 @@ from flexspline.fea.axisymmetric.harmonics import (
     AXIAL,
     RADIAL,
     Fixed,
+    Harmonic,
     HarmonicError,
     HarmonicModel,
-    Wave,
 )
 from flexspline.fea.axisymmetric.lobes import (
     LOBE_HALF_WIDTH,
@@ -48,7 +48,7 @@ def model_of(shape: Meridian, refinements: int) -> HarmonicModel:
     return HarmonicModel(mesh, STEEL)
 
 
-def stored(model: HarmonicModel, wave: Wave, field: np.ndarray) -> float:
+def stored(model: HarmonicModel, wave: Harmonic, field: np.ndarray) -> float:
     """∫σ:ε over the whole body of given amplitudes (count, 3) [N·mm]."""
     return float(field.ravel() @ (model.stiffness(wave) @ field.ravel()))
 
@@ -61,7 +61,7 @@ def test_lame_thick_cylinder(record):
     for refinements in (1, 2, 3):
         model = model_of(block(a, b, 4.0), refinements)
         ends = [Fixed(model.on("mount"), AXIAL), Fixed(model.on("top"), AXIAL)]
-        found = model.solve(Wave(0), ends, p * model.pressed("seat", RADIAL, Wave(0)))
+        found = model.solve(Harmonic(0), ends, p * model.pressed("seat", RADIAL, Harmonic(0)))
         exact = factor * (0.4 * a + b**2 / a)
         energy = p * exact * 2 * pi * a * 4.0
         errors.append(1 - found.twice_energy / energy)
@@ -79,8 +79,8 @@ def test_lame_hoop_stress_at_the_bore(record):
     for refinements in (2, 3, 4):
         model = model_of(block(5.0, 10.0, 4.0), refinements)
         ends = [Fixed(model.on("mount"), AXIAL), Fixed(model.on("top"), AXIAL)]
-        found = model.solve(Wave(0), ends, model.pressed("seat", RADIAL, Wave(0)))
-        hoop = recovered(model, Wave(0), found.values).nodal[model.on("seat"), 1]
+        found = model.solve(Harmonic(0), ends, model.pressed("seat", RADIAL, Harmonic(0)))
+        hoop = recovered(model, Harmonic(0), found.values).nodal[model.on("seat"), 1]
         errors.append(np.abs(hoop / (125 / 75) - 1).max())
     worst = hoop[np.abs(hoop - 125 / 75).argmax()]
     record("Lamé cylinder, hoop stress over pressure at the bore", "Lamé 1852", 125 / 75, worst)
@@ -89,16 +89,16 @@ def test_lame_hoop_stress_at_the_bore(record):
     assert errors[-1] < 2e-3
 
 
-@pytest.mark.parametrize("wave", [Wave(0), Wave(0, torsion=True), Wave(1)])
+@pytest.mark.parametrize("wave", [Harmonic(0), Harmonic(0, torsion=True), Harmonic(1)])
 def test_rigid_motions_carry_no_energy(wave):
     """Axial shift, rotation about z, sideways shift (u_r = cos φ, u_θ = -sin φ)."""
     model = model_of(cup_meridian(MODEL_CUP), 0)
     r = model.space.places[:, 0]
     zero, one = np.zeros_like(r), np.ones_like(r)
     rigid = {
-        Wave(0): [zero, zero, one],
-        Wave(0, torsion=True): [zero, r, zero],
-        Wave(1): [one, -one, zero],
+        Harmonic(0): [zero, zero, one],
+        Harmonic(0, torsion=True): [zero, r, zero],
+        Harmonic(1): [one, -one, zero],
     }[wave]
     field = np.column_stack(rigid)
     bent = field * (1 + model.space.places[:, 1:] / 30)
@@ -135,7 +135,7 @@ def test_strains_of_a_harmonic_against_cartesian_gradients(record):
     strain = (grad + grad.swapaxes(0, 1)) / 2
     trace = np.trace(strain)
     density = STEEL.lam * trace**2 + 2 * STEEL.mu * (strain**2).sum(axis=(0, 1))
-    found = stored(model, Wave(n), field)
+    found = stored(model, Harmonic(n), field)
     exact = float((density * volume).sum())
     source = "x, y, z gradients by differences"
     record("Energy of a known field, n = 3", source, exact, found, "N·mm", digits=6)
@@ -157,8 +157,8 @@ def test_ring_bent_to_an_ellipse(record):
         Fixed(model.on("mount"), AXIAL),
         Fixed(model.on("top"), AXIAL),
     ]
-    found = model.solve(Wave(2), fixed, np.zeros(3 * model.space.count))
-    hoop = recovered(model, Wave(2), found.values).nodal[:, 1]
+    found = model.solve(Harmonic(2), fixed, np.zeros(3 * model.space.count))
+    hoop = recovered(model, Harmonic(2), found.values).nodal[:, 1]
     outside = hoop[model.space.places[:, 0] > radius + wall / 2 - 1e-9]
     expected = 200e3 / (1 - 0.3**2) * wall / 2 * 3 * w0 / radius**2
     mean = np.abs(outside).mean()
@@ -255,6 +255,6 @@ def test_lobe_bounds_contain_a_ten_times_finer_solution_in_100_designs(record):
 
 def test_an_unheld_body_is_refused():
     model = model_of(block(5.0, 10.0, 4.0), 0)
-    load = model.pressed("top", AXIAL, Wave(0))
+    load = model.pressed("top", AXIAL, Harmonic(0))
     with pytest.raises(HarmonicError, match="held"):
-        model.solve(Wave(0), [], load)
+        model.solve(Harmonic(0), [], load)

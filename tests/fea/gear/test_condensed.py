@@ -10,7 +10,7 @@ import pytest
 
 from flexspline.fea.axisymmetric.contact import lift_off_forces
 from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL
-from flexspline.fea.axisymmetric.harmonics import Fixed, HarmonicModel, Wave
+from flexspline.fea.axisymmetric.harmonics import Fixed, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.lift_off import pushing
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE
 from flexspline.fea.axisymmetric.seat import seat_compliance
@@ -41,7 +41,7 @@ def test_an_entry_is_the_direct_solution_both_ways(n: int) -> None:
     model = HarmonicModel(triangulate(CUP), STEEL)
     ports = [even(model, "mesh", TANGENTIAL), *along(model, "seat", seat_places(3))]
     found = condensed(model, ports, 12).harmonics[n // 2]
-    wave = Wave(n, torsion=False)
+    wave = Harmonic(n, torsion=False)
     if n == 0:
         assert found[0, 1:] == pytest.approx(0)  # torsion moves nothing outwards
         return
