@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from flexspline.geometry.fields import Table
+from flexspline.geometry.fields import DesignTable
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Assumed:
 
 
 def taken_from(
-    table: Table, name: str, assumed: list[Assumed]
+    table: DesignTable, name: str, assumed: list[Assumed]
 ) -> Callable[[str, float, str], float]:
     """What a table states under a key, else a value, which `assumed` then gains with its reason."""
 

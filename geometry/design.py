@@ -14,14 +14,14 @@ from pydantic import Field
 
 from flexspline.geometry import ranges
 from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
-from flexspline.geometry.fields import Length, Micrometre, Percent, Table, within
+from flexspline.geometry.fields import DesignTable, Length, Micrometre, Percent, within
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
 from flexspline.geometry.wave_generator import WaveGenerator
 
 
-class Materials(Table):
+class Materials(DesignTable):
     """What the parts are made of."""
 
     flexspline: Material
@@ -39,7 +39,7 @@ class Materials(Table):
         return {key: value for key, value in self if value is not None}
 
 
-class Gear(Table):
+class Gear(DesignTable):
     """The two gears, their flank clearance included."""
 
     module_mm: Annotated[float, within(ranges.MODULE_mm)] = Field(description="mm, m")
@@ -95,7 +95,7 @@ class Gear(Table):
         return 2e3 * self.centre_distance_mm * (1 - cos(radians(self.pressure_angle_deg)))
 
 
-class Bearing(Table):
+class Bearing(DesignTable):
     """The flexible bearing of the wave generator, and how its play opens the mesh."""
 
     radial_clearance_um: Micrometre = Field(description="µm, c, radial internal clearance")
@@ -104,13 +104,13 @@ class Bearing(Table):
     )
 
 
-class Load(Table):
+class Load(DesignTable):
     """The torque at which the backlash is measured."""
 
     torque_Nm: Annotated[float, within(ranges.TORQUE_Nm)] = Field(description="N·m, T_L, each way")
 
 
-class Uncertainty(Table):
+class Uncertainty(DesignTable):
     """One standard deviation each: what the prediction may be off by with nothing wrong with it.
 
     0, as absent, states nothing: no dimension is exact.
@@ -128,7 +128,7 @@ class Uncertainty(Table):
         return tuple(key.rpartition("_")[0] for key, std in self if std > 0)
 
 
-class Solver(Table):
+class Solver(DesignTable):
     """How K is computed; all optional."""
 
     model: Literal["axisymmetric", "solid", "auto"] = Field(
@@ -154,7 +154,7 @@ class Solver(Table):
         return "K_b_lobes" if self.load_case == "lobes" else "K_b"
 
 
-class Design(Table):
+class Design(DesignTable):
     """One strain wave gear: flexspline, output shaft, materials, gear, play, load."""
 
     name: str = Field(min_length=1, max_length=200, description="of the design, for the report")

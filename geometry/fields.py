@@ -41,7 +41,7 @@ BoltCount = Annotated[int, Field(ge=0, le=200)]
 """The examples have 6 and 12; the end keeps a slip of the keyboard from asking for thousands."""
 
 
-class Table(BaseModel):
+class DesignTable(BaseModel):
     """A table of the design file: unknown keys and other types are refused, values never change."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)

@@ -7,13 +7,13 @@ from typing import Annotated
 from pydantic import Field
 
 from flexspline.geometry import ranges
-from flexspline.geometry.fields import Table, within
+from flexspline.geometry.fields import DesignTable, within
 
 STEEL_KG_PER_M3 = 7850.0
 """Density where the file states none: that of steel."""
 
 
-class ElasticMaterial(Table):
+class ElasticMaterial(DesignTable):
     """Isotropic linear elastic material."""
 
     name: str = Field(

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal, get_args
 
 from pydantic import Field
 
-from flexspline.geometry.fields import BoltCount, Length, LengthOrZero, Table
+from flexspline.geometry.fields import BoltCount, DesignTable, Length, LengthOrZero
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class BoltCircle:
         return [(self.radius * cos(a), self.radius * sin(a)) for a in angles]
 
 
-class _Bolted(Table):
+class _Bolted(DesignTable):
     bolt_count: BoltCount = Field(
         default=0, description="number of bolt holes, the first at angle 0; 0: none"
     )
@@ -168,7 +168,7 @@ KINDS: tuple[str, ...] = tuple(
 """What `flexspline.kind` may be."""
 
 
-class ShaftSegment(Table):
+class ShaftSegment(DesignTable):
     """One cylinder of the shaft; the first is the flange on the flexspline."""
 
     length_mm: Length = Field(description="mm, along the axis")
@@ -176,7 +176,7 @@ class ShaftSegment(Table):
     inner_diameter_mm: LengthOrZero = Field(default=0.0, description="mm, of the bore; 0: solid")
 
 
-class Keyway(Table):
+class Keyway(DesignTable):
     """A square-ended slot from the free end, centred at angle 0."""
 
     width_mm: Length = Field(description="mm, across the slot")

@@ -12,7 +12,7 @@ from pydantic import Field
 from flexspline.geometry.assumed import Assumed, taken_from
 from flexspline.geometry.bounds import lengths, span
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.fields import Length, Table
+from flexspline.geometry.fields import DesignTable, Length
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -35,7 +35,7 @@ SMALLEST_BALL = 0.01
 """Of the inner radius: so small, even the most balls that are allowed fill a third of their circle."""
 
 
-class WaveGenerator(Table):
+class WaveGenerator(DesignTable):
     """The wave generator; what is left out is taken in proportion, and named with the result."""
 
     deflection_mm: Length | None = Field(

@@ -60,6 +60,17 @@ def test_the_check_sees_a_backward_import(tmp_path: Path) -> None:
     assert [name for name, _ in imports(bad)] == ["results", "cadquery"]
 
 
+def test_no_two_classes_have_one_name() -> None:
+    """A reader who searches for a name finds one meaning; what is private to a file may repeat."""
+    places: dict[str, list[str]] = {}
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    twice = {name: files for name, files in places.items() if len(files) > 1}
+    assert not twice
+
+
 def programs(text: str) -> Iterator[ast.Module]:
     """A test file, and the programs in its strings that it runs in processes of their own."""
     tree = ast.parse(text)

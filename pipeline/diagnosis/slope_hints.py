@@ -45,7 +45,7 @@ class UnitHint:
 
 
 @dataclass(frozen=True)
-class Slope:
+class SlopeRatio:
     """Measured over simulated compliance, and the least and largest ratio that the record allows."""
 
     ratio: float
@@ -77,7 +77,7 @@ class SlopeHint:
     Without any it may be a complete gear's, which the sum of two parts is not.
     """
 
-    slope: Slope
+    slope: SlopeRatio
     units: tuple[UnitHint, ...] = ()
 
 
@@ -105,7 +105,9 @@ def slope_hint(
     return SlopeHint(slope, units) if units or soft else None
 
 
-def unit_hints(size: SweepSize, sweep: Sweep, slope: Slope | None = None) -> tuple[UnitHint, ...]:
+def unit_hints(
+    size: SweepSize, sweep: Sweep, slope: SlopeRatio | None = None
+) -> tuple[UnitHint, ...]:
     """Units in which the slope would be as simulated, within `NEAR` and its own range.
 
     None of a slope that is known roughly and may be a fault's.
@@ -123,16 +125,16 @@ def unit_hints(size: SweepSize, sweep: Sweep, slope: Slope | None = None) -> tup
     return tuple(found)
 
 
-def _named_slope(series: NamedCause) -> Slope:
+def _named_slope(series: NamedCause) -> SlopeRatio:
     ratio, off = 1 + series.magnitude / 100, DEVIATIONS * series.magnitude_std / 100
-    return Slope(ratio, ratio - off, ratio + off)
+    return SlopeRatio(ratio, ratio - off, ratio + off)
 
 
-def _line_slope(size: SweepSize) -> Slope:
-    return Slope(size.compliance, *size.compliance_range)
+def _line_slope(size: SweepSize) -> SlopeRatio:
+    return SlopeRatio(size.compliance, *size.compliance_range)
 
 
-def _hints(column: ReadColumn, factors: Factors, slope: Slope, power: int) -> list[UnitHint]:
+def _hints(column: ReadColumn, factors: Factors, slope: SlopeRatio, power: int) -> list[UnitHint]:
     """Units but the column's own; the slope goes with their factor to the `power`."""
     return [
         UnitHint(column.head, symbol(column.unit), symbol(unit))

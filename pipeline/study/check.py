@@ -10,7 +10,7 @@ from flexspline.geometry.errors import MISSING
 from flexspline.geometry.keys import has_table_of, value_at
 from flexspline.geometry.schema import allowed, node_at
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
-from flexspline.pipeline.study.schema import WORDS, Span, Spread
+from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
 from flexspline.pipeline.study.study import Study, StudyError, is_whole, location_of
 
 SPREAD = "backlash_arcsec.std"
@@ -123,7 +123,7 @@ def _numeric_keys(design: Design) -> list[str]:
     return found
 
 
-def _check_span(study: Study, key: str, span: Span) -> None:
+def _check_span(study: Study, key: str, span: VariedSpan) -> None:
     name = f'vary."{key}"'
     listed = span.values is not None
     if listed and (span.min, span.max, span.steps) != (None, None, None):

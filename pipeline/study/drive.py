@@ -12,7 +12,7 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.local_workers import WORKER_DIED
-from flexspline.pipeline.study.store import BEAT_S, Finished, Job, TrialStore
+from flexspline.pipeline.study.store import BEAT_S, ClaimedDesign, Finished, TrialStore
 
 POLL_S = 1.0
 """How long to wait for a result before looking after the rest."""
@@ -32,7 +32,7 @@ class Source(Protocol):
     def ahead(self, width: int) -> int:
         """How many designs wait for `width` workers, so that none is idle between two designs."""
 
-    def claim(self, store: TrialStore, count: int) -> list[Job]:
+    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
         """At most `count` designs that nobody has, at least one where there is one."""
 
     def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
@@ -46,7 +46,7 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True)
-class Progress:
+class StudyProgress:
     """How far a study is: all rows, how many came since `seconds` ago, how many are wanted.
 
     Rows of other processes that share the study count too: they shorten the time that is left.
@@ -63,7 +63,7 @@ def evaluate_all(
     store: TrialStore,
     pool: WorkerPool,
     evaluate: Callable[[Task], Outcome],
-    watch: Callable[[Progress], None],
+    watch: Callable[[StudyProgress], None],
 ) -> list[Row]:
     """Evaluate until every design has a row, whoever made it; the rows by slot.
 
@@ -72,13 +72,13 @@ def evaluate_all(
     """
     began = beaten = time.monotonic()
     next_word = began + WATCH_S
-    pending: dict[Future, Job] = {}
+    pending: dict[Future, ClaimedDesign] = {}
     _adopt(source, store)
     before = len(store.rows())
 
     def tell() -> list[Row]:
         rows = store.rows()
-        watch(Progress(rows, len(rows) - before, time.monotonic() - began, source.size))
+        watch(StudyProgress(rows, len(rows) - before, time.monotonic() - began, source.size))
         return rows
 
     store.beat()
@@ -108,7 +108,7 @@ def is_complete(source: Source, store: TrialStore) -> bool:
 
 
 def _give_out(
-    pending: dict[Future, Job],
+    pending: dict[Future, ClaimedDesign],
     pool: WorkerPool,
     evaluate: Callable[[Task], Outcome],
     source: Source,
@@ -125,7 +125,7 @@ def _give_out(
 
 
 def _store_finished(
-    pending: dict[Future, Job], pool: WorkerPool, source: Source, store: TrialStore
+    pending: dict[Future, ClaimedDesign], pool: WorkerPool, source: Source, store: TrialStore
 ) -> bool:
     """Store what is finished, after a wait of at most POLL_S; whether anything was.
 

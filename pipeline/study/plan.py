@@ -14,7 +14,7 @@ from flexspline.pipeline.study.study import Study
 Values = Mapping[str, float]
 
 
-class Plan(Protocol):
+class StudyPlan(Protocol):
     """Values of design `index`, the same whoever asks and whenever."""
 
     @property
@@ -41,7 +41,7 @@ class Listed:
 
 
 @dataclass(frozen=True)
-class Grid:
+class GridPlan:
     """Every combination; the last key changes fastest."""
 
     axes: Mapping[str, Sequence[float]]
@@ -58,7 +58,7 @@ class Grid:
         }
 
 
-def grid(study: Study) -> Grid:
+def grid(study: Study) -> GridPlan:
     """`values` and `steps` as given; other spans share `evaluations` evenly, at least two each."""
     spans, budget = study.file.vary, study.file.run.evaluations
     fixed = {k: len(s.values) if s.values else s.steps for k, s in spans.items()}
@@ -75,7 +75,7 @@ def grid(study: Study) -> Grid:
         if key in study.whole:
             axis = np.unique(np.round(axis))
         axes[key] = [float(v) for v in axis]
-    return Grid(axes)
+    return GridPlan(axes)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
-from flexspline.pipeline.study.drive import Progress, Source, evaluate_all, is_complete
+from flexspline.pipeline.study.drive import Source, StudyProgress, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL
 from flexspline.pipeline.study.holes import DRIFT, HolesEffect, UnknownEffect, drifts, holes_of
@@ -84,7 +84,7 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
 def whole_study(
     study: Study,
     store: TrialStore,
-    watch: Callable[[Progress], None],
+    watch: Callable[[StudyProgress], None],
     say: Callable[[str], None],
 ) -> StudyResult:
     """`run_study` with the workers that the study asks for, its K_e corrected for holes.
@@ -107,7 +107,7 @@ def run_study(
     study: Study,
     store: TrialStore,
     pool: Callable[[], AbstractContextManager[WorkerPool]],
-    watch: Callable[[Progress], None],
+    watch: Callable[[StudyProgress], None],
     evaluation: Callable[[Task], Outcome] = evaluate,
     say: Callable[[str], None] = lambda line: None,
     holes: HolesEffect | None = None,

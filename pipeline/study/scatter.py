@@ -13,8 +13,8 @@ import numpy as np
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
-from flexspline.pipeline.study.surface import Surface, surface_through
-from flexspline.pipeline.study.tolerance import Input
+from flexspline.pipeline.study.surface import ResponseSurface, surface_through
+from flexspline.pipeline.study.tolerance import ScatteredInput
 
 FACTORS = (0.75, 0.5, 0.25, 0.0)
 """A tolerance times this; 0 is a perfect part."""
@@ -59,7 +59,7 @@ class Attribution:
     """
 
     indices: Indices | None = None
-    surface: Surface | None = None
+    surface: ResponseSurface | None = None
     explained: float | None = None
     enough: int | None = None
 
@@ -79,7 +79,7 @@ class Scatter:
     """
 
     key: str
-    inputs: tuple[Input, ...]
+    inputs: tuple[ScatteredInput, ...]
     values: np.ndarray
     drawn: np.ndarray
     low: float
@@ -93,7 +93,7 @@ class Scatter:
         return self.shares.indices if self.shares else None
 
     @property
-    def surface(self) -> Surface | None:
+    def surface(self) -> ResponseSurface | None:
         return self.shares.surface if self.shares else None
 
     @property
@@ -113,7 +113,9 @@ class Scatter:
         return tuple(sorted(range(len(self.inputs)), key=lambda i: -total[i]))
 
 
-def scatter_of(key: str, inputs: tuple[Input, ...], rows: tuple[Row, ...], seed: int) -> Scatter:
+def scatter_of(
+    key: str, inputs: tuple[ScatteredInput, ...], rows: tuple[Row, ...], seed: int
+) -> Scatter:
     """From the rows of a whole tolerance study, in order.
 
     Raises
@@ -146,7 +148,9 @@ def scatter_of(key: str, inputs: tuple[Input, ...], rows: tuple[Row, ...], seed:
     )
 
 
-def attributed(inputs: tuple[Input, ...], points: np.ndarray, values: np.ndarray) -> Attribution:
+def attributed(
+    inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray
+) -> Attribution:
     """Shares of the variance from points (n, k) and values (n,) of Saltelli's scheme, nan where unsolved."""
     k = len(inputs)
     blocks, solved = values.reshape(-1, k + 2), np.isfinite(values)
@@ -171,7 +175,7 @@ class Cloud:
     The same points and errors whatever the inputs' scatter, so that differences are the scatter's own.
     """
 
-    def __init__(self, surface: Surface, seed: int) -> None:
+    def __init__(self, surface: ResponseSurface, seed: int) -> None:
         from scipy.stats import qmc
 
         self.surface = surface
@@ -179,12 +183,12 @@ class Cloud:
         dealt = np.resize(surface.errors, SURFACE_POINTS)
         self._errors = np.random.default_rng(seed).permutation(dealt)
 
-    def values(self, inputs: tuple[Input, ...]) -> np.ndarray:
+    def values(self, inputs: tuple[ScatteredInput, ...]) -> np.ndarray:
         """The figure for inputs that scatter less than the surface's own, or as they do."""
         x = np.column_stack([i.at(u) for i, u in zip(inputs, self._unit.T, strict=True)])
         return np.asarray(self.surface.at(x) + self._errors)
 
-    def ends(self, inputs: tuple[Input, ...]) -> tuple[float, float]:
+    def ends(self, inputs: tuple[ScatteredInput, ...]) -> tuple[float, float]:
         """Of the 95 % range."""
         return _ends(self.values(inputs))
 

@@ -16,7 +16,7 @@ class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
-class Span(_Frozen):
+class VariedSpan(_Frozen):
     """A design key that a study varies: between two ends, or over listed values."""
 
     min: Number | None = None
@@ -93,7 +93,7 @@ class StudyFile(_Frozen):
     """A study as written."""
 
     design: str = Field(min_length=1, max_length=1000)
-    vary: dict[str, Span] = {}
+    vary: dict[str, VariedSpan] = {}
     link: dict[str, Link] = {}
     tolerance: dict[str, Spread] = {}
     objective: dict[str, Literal["minimize", "maximize"]] = {}
@@ -138,7 +138,7 @@ WORDS: dict[str, str] = {
 
 KEYS: dict[str, tuple[str, ...]] = {
     "": tuple(StudyFile.model_fields),
-    "vary.*": tuple(Span.model_fields),
+    "vary.*": tuple(VariedSpan.model_fields),
     "link.*": tuple(Link.model_fields),
     "tolerance.*": tuple(Spread.model_fields),
     "constraint.*": tuple(Limit.model_fields),

@@ -15,8 +15,8 @@ from flexspline.pipeline.cache import FORMAT
 from flexspline.pipeline.study.evaluate import Outcome, Task
 from flexspline.pipeline.study.figures import Solve, needed
 from flexspline.pipeline.study.holes import HolesEffect
-from flexspline.pipeline.study.plan import Plan, from_unit, linked
-from flexspline.pipeline.study.store import Finished, Job, TrialStore
+from flexspline.pipeline.study.plan import StudyPlan, from_unit, linked
+from flexspline.pipeline.study.store import ClaimedDesign, Finished, TrialStore
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.trial_tables import Values
 
@@ -60,7 +60,7 @@ class _Asked:
 class Planned(_Asked):
     """Designs of a plan."""
 
-    plan: Plan
+    plan: StudyPlan
 
     @property
     def size(self) -> int:
@@ -69,7 +69,7 @@ class Planned(_Asked):
     def ahead(self, width: int) -> int:
         return width
 
-    def claim(self, store: TrialStore, count: int) -> list[Job]:
+    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
         return store.claim(self.size, count, self.plan.point, self.over)
 
     def store(self, store: TrialStore, finished: Sequence[Finished]) -> None:
@@ -87,7 +87,7 @@ class Sampled(_Asked):
     def ahead(self, width: int) -> int:
         return 0  # a design chosen later knows more
 
-    def claim(self, store: TrialStore, count: int) -> list[Job]:
+    def claim(self, store: TrialStore, count: int) -> list[ClaimedDesign]:
         """One design, or none. A slot is taken first, and then given values: two processes cannot both
         have it."""
         for _ in range(ASKED_AGAIN):

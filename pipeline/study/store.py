@@ -34,7 +34,7 @@ SILENT_S = 60.0
 
 
 @dataclass(frozen=True)
-class Job:
+class ClaimedDesign:
     """A claimed design: the trial that holds it."""
 
     trial_id: int
@@ -47,7 +47,7 @@ class Job:
 class Finished:
     """What came out of a claimed design; `objectives` is what Optuna is told, None where it failed."""
 
-    job: Job
+    job: ClaimedDesign
     outcome: Outcome
     objectives: list[float] | None
 
@@ -87,7 +87,7 @@ class TrialStore:
         count: int,
         values: Callable[[int], Values],
         over: Mapping[str, BaseDistribution],
-    ) -> list[Job]:
+    ) -> list[ClaimedDesign]:
         """Up to `count` designs below `size` that nobody has: a dead process's first, then new ones.
 
         One transaction, under the study's lock: what was read as free in it is so when it ends.
@@ -113,7 +113,7 @@ class TrialStore:
         known.held.update(ids)
         known.last_id, known.last_number = ids[-1], first + len(ids) - 1
         jobs = [
-            Job(at, first + i, c.slot, v)
+            ClaimedDesign(at, first + i, c.slot, v)
             for i, (at, c, v) in enumerate(zip(ids, claims, given, strict=True))
         ]
         for job, one in zip(jobs, claims, strict=True):
@@ -131,7 +131,7 @@ class TrialStore:
         return tried + [r.values for r in known.rows() if r.slot != but]
 
     @storage_faults()
-    def suggested(self, job: Job, over: Mapping[str, BaseDistribution]) -> Job:
+    def suggested(self, job: ClaimedDesign, over: Mapping[str, BaseDistribution]) -> ClaimedDesign:
         """A claimed design with the sampler's values, as `optuna.Study.ask` finds them."""
         from optuna.trial import Trial
 
@@ -177,7 +177,7 @@ class TrialStore:
         with suppress(UpdateFinishedTrialError):  # another process did so just now
             self.trials.tell(number, values, state=state, skip_if_finished=True)
 
-    def give_up(self, job: Job) -> None:
+    def give_up(self, job: ClaimedDesign) -> None:
         """Close a claimed trial without a row: its design is free again."""
         self._known.held.discard(job.trial_id)
         self.tell(job.number, None)

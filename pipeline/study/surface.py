@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from flexspline.pipeline.study.indices import Indices, groups_of, reach, students_factor, within
-from flexspline.pipeline.study.tolerance import Input
+from flexspline.pipeline.study.tolerance import ScatteredInput
 
 NODES = 4096
 """Of the quadrature over each input's distribution."""
@@ -24,7 +24,7 @@ SINGULAR = 1e-6
 
 
 @dataclass(frozen=True)
-class Surface:
+class ResponseSurface:
     """A fitted surface.
 
     Attributes
@@ -37,7 +37,7 @@ class Surface:
     errors : at every design, left out of the fit.
     """
 
-    inputs: tuple[Input, ...]
+    inputs: tuple[ScatteredInput, ...]
     polynomials: tuple[np.ndarray, ...]
     pairs: tuple[tuple[int, int], ...]
     coefficients: np.ndarray
@@ -77,8 +77,8 @@ class Surface:
 
 
 def surface_through(
-    inputs: tuple[Input, ...], points: np.ndarray, values: np.ndarray, block: np.ndarray
-) -> Surface | None:
+    inputs: tuple[ScatteredInput, ...], points: np.ndarray, values: np.ndarray, block: np.ndarray
+) -> ResponseSurface | None:
     """The surface with products of inputs or without, whichever errs less; None: too few designs.
 
     Parameters
@@ -92,13 +92,13 @@ def surface_through(
 
 
 def _fitted(
-    inputs: tuple[Input, ...],
+    inputs: tuple[ScatteredInput, ...],
     polynomials: tuple[np.ndarray, ...],
     pairs: tuple[tuple[int, int], ...],
     points: np.ndarray,
     values: np.ndarray,
     block: np.ndarray,
-) -> Surface | None:
+) -> ResponseSurface | None:
     x = _terms(inputs, polynomials, pairs, points)
     if len(x) <= x.shape[1]:
         return None
@@ -123,24 +123,24 @@ def _fitted(
     misfit, spread = float(np.mean(squares)), float(np.std(squares, ddof=1))
     high = misfit + students_factor(len(found) - 1) * spread / len(found) ** 0.5
     solved = np.linalg.solve(r, np.column_stack([right, *found])).T
-    return Surface(
+    return ResponseSurface(
         inputs, polynomials, pairs, solved[0], solved[1:], misfit, float(high), errors
     )  # fmt: skip
 
 
-def _orthonormal(own: Input) -> np.ndarray:
+def _orthonormal(own: ScatteredInput) -> np.ndarray:
     """1, z and z² of the standardised input, made orthonormal over its distribution."""
     z = _standardised(own, own.at((np.arange(NODES) + 0.5) / NODES))
     _, r = np.linalg.qr(np.vander(z, 3, increasing=True) / NODES**0.5)
     return np.asarray(np.linalg.inv(r * np.sign(np.diag(r))[:, None]))
 
 
-def _standardised(own: Input, x: np.ndarray) -> np.ndarray:
+def _standardised(own: ScatteredInput, x: np.ndarray) -> np.ndarray:
     return np.asarray((x - own.nominal) / own.std)
 
 
 def _terms(
-    inputs: Sequence[Input],
+    inputs: Sequence[ScatteredInput],
     polynomials: Sequence[np.ndarray],
     pairs: Sequence[tuple[int, int]],
     points: np.ndarray,

@@ -36,7 +36,7 @@ LEAST_BASE = 8
 
 
 @dataclass(frozen=True)
-class Input:
+class ScatteredInput:
     """A number that scatters about its nominal value, within `low` and `high`.
 
     `normal`: with standard deviation `std`, cut off at the ends; else uniform between them.
@@ -61,9 +61,9 @@ class Input:
         drawn = truncnorm.ppf(unit, a, b, loc=self.nominal, scale=self.std)
         return np.clip(drawn, self.low, self.high)
 
-    def tightened(self, factor: float) -> Input:
+    def tightened(self, factor: float) -> ScatteredInput:
         """The same input with `factor` times the scatter."""
-        return Input(
+        return ScatteredInput(
             self.key,
             self.nominal,
             self.std * factor,
@@ -73,7 +73,7 @@ class Input:
         )
 
 
-def inputs_of(study: Study) -> tuple[Input, ...]:
+def inputs_of(study: Study) -> tuple[ScatteredInput, ...]:
     """The design's [uncertainty] and the study's [tolerance]; a key of both takes the latter.
 
     Raises
@@ -101,7 +101,7 @@ def inputs_of(study: Study) -> tuple[Input, ...]:
     return tuple(found)
 
 
-def _input(design: Design, key: str, std: float, half: float | None) -> Input:
+def _input(design: Design, key: str, std: float, half: float | None) -> ScatteredInput:
     nominal = value_at(design, key)
     if nominal is None:
         raise StudyError(f'tolerance."{key}"', None, "is no number of the design file")
@@ -110,13 +110,13 @@ def _input(design: Design, key: str, std: float, half: float | None) -> Input:
     low, high = nominal - reach, nominal + reach
     if half is None:
         low, high = max(low, least), min(high, most)
-        return Input(key, nominal, std, low, high, True)
+        return ScatteredInput(key, nominal, std, low, high, True)
     for end in (low, high):
         try:
             with_values(design, {key: end})
         except DesignError as fault:
             raise StudyError(f'tolerance."{key}".plus_minus', half, f"too wide: {fault}") from None
-    return Input(key, nominal, half / 3**0.5, low, high, False)
+    return ScatteredInput(key, nominal, half / 3**0.5, low, high, False)
 
 
 def _range(design: Design, key: str) -> tuple[float, float]:
@@ -143,7 +143,7 @@ def base_size(study: Study, k: int) -> int:
     return int(2 ** np.floor(np.log2(budget / (k + 2))))
 
 
-def saltelli(inputs: tuple[Input, ...], base: int, seed: int) -> np.ndarray:
+def saltelli(inputs: tuple[ScatteredInput, ...], base: int, seed: int) -> np.ndarray:
     """Points (base·(k + 2), k), block by block: A, A with each input from B, B."""
     from scipy.stats import qmc
 
@@ -161,7 +161,7 @@ def saltelli(inputs: tuple[Input, ...], base: int, seed: int) -> np.ndarray:
 class Scattered(Planned):
     """Designs of a tolerance study."""
 
-    inputs: tuple[Input, ...]
+    inputs: tuple[ScatteredInput, ...]
 
     @cached_property
     def over(self) -> Mapping[str, BaseDistribution]:

@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
 from flexspline.pipeline.diagnosis.plausibility import given_words
-from flexspline.pipeline.diagnosis.slope_hints import Slope, slope_hint
+from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
@@ -75,7 +75,7 @@ def _hint(diagnosis: Diagnosis) -> str:
     )
 
 
-def _times(slope: Slope) -> str:
+def _times(slope: SlopeRatio) -> str:
     """ "1.36 times softer"; both ends of a slope that is known roughly."""
     soft = slope.ratio > 1
     ends = (slope.low, slope.high) if soft else (1 / slope.high, 1 / slope.low)

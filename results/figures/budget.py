@@ -32,7 +32,7 @@ POWER_OF_TEN = 1e6
 
 
 @dataclass(frozen=True)
-class Row:
+class BudgetBar:
     """A bar from `start` over `size` [arcsec], and the words beside it."""
 
     name: str
@@ -77,35 +77,35 @@ def write_budget(path: Path, backlash: Backlash, extended: ExtendedBacklash | No
         save_png(figure, path)
 
 
-def _simulated(backlash: Backlash, more: bool) -> list[Row]:
+def _simulated(backlash: Backlash, more: bool) -> list[BudgetBar]:
     """The four terms and their sum."""
     total, start, rows = backlash.total_arcsec, 0.0, []
     for term, colour in zip(TERMS, PALETTE, strict=True):
         entry, size = quantity(f"backlash_arcsec.{term}"), getattr(backlash, f"{term}_arcsec")
         share = f"{100 * size / total:.0f} %"
-        rows.append(Row(entry.name, start, size, colour, entry.short(size), share))
+        rows.append(BudgetBar(entry.name, start, size, colour, entry.short(size), share))
         start += size
     entry, std = quantity("backlash_arcsec.total"), backlash.std_arcsec
     spread = "" if std is None else f"± {entry.short(std)}"
     name = ("Simulated" if more else "Backlash") + (" ± 1σ" if spread else "")
-    rows.append(Row(name, 0.0, total, SUM, entry.short(total), spread, is_sum=True))
+    rows.append(BudgetBar(name, 0.0, total, SUM, entry.short(total), spread, is_sum=True))
     return rows
 
 
-def _measured(extended: ExtendedBacklash) -> list[Row]:
+def _measured(extended: ExtendedBacklash) -> list[BudgetBar]:
     """What the extended model adds, and the new sum; ids are the short names of causes."""
     entry, start, rows = quantity("backlash_arcsec.total"), extended.nominal.total_arcsec, []
     terms = {CALIBRATION: extended.calibration_arcsec, **extended.causes_arcsec}
     for cause, size in terms.items():
         plus = "+" if size >= 0 else ""
         name = cause.replace("_", " ").capitalize()
-        rows.append(Row(name, start, size, ADDED, f"{plus}{entry.short(size)}"))
+        rows.append(BudgetBar(name, start, size, ADDED, f"{plus}{entry.short(size)}"))
         start += size
-    rows.append(Row("Extended", 0.0, start, SUM, entry.short(start), is_sum=True))
+    rows.append(BudgetBar("Extended", 0.0, start, SUM, entry.short(start), is_sum=True))
     return rows
 
 
-def _waterfall(axes: Axes, rows: Sequence[Row], backlash: Backlash) -> None:
+def _waterfall(axes: Axes, rows: Sequence[BudgetBar], backlash: Backlash) -> None:
     ends = [0.0, *(r.start + r.size for r in rows)]
     std = backlash.std_arcsec
     for i, row in enumerate(rows):
@@ -138,7 +138,7 @@ def _waterfall(axes: Axes, rows: Sequence[Row], backlash: Backlash) -> None:
     axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}", loc=side)
 
 
-def _figures(axes: Axes, rows: Sequence[Row]) -> None:
+def _figures(axes: Axes, rows: Sequence[BudgetBar]) -> None:
     """Each row's value and share in two columns, of one size."""
     across = axes.get_yaxis_transform()
     values, shares = [], []

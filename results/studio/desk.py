@@ -10,7 +10,7 @@ from aiohttp import web
 
 from flexspline.geometry.errors import DesignError
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.jobs import Done, Job, Kind
+from flexspline.results.studio.jobs import Done, Kind, StudioJob
 from flexspline.results.studio.notes import Start, Want, note_from
 from flexspline.results.studio.results import told
 from flexspline.results.studio.tab import Tab, Workers
@@ -23,7 +23,7 @@ class Desk:
         self._socket = socket
         self.tab = Tab(workers, self._send)
         self.measured = b""
-        self._jobs: dict[Kind, Job] = {}
+        self._jobs: dict[Kind, StudioJob] = {}
         self._tasks: dict[Kind, asyncio.Task[None]] = {}
 
     async def open(self) -> None:
@@ -69,7 +69,7 @@ class Desk:
             if self._jobs[kind] is job:  # one that was replaced ends in silence
                 await self._send({"is": "progress", "kind": kind, "line": line})
 
-        job = Job(kind, say)
+        job = StudioJob(kind, say)
         self._jobs[kind] = job
 
         async def after() -> None:
@@ -81,7 +81,7 @@ class Desk:
 
         self._tasks[kind] = asyncio.create_task(after())
 
-    async def _run(self, job: Job, tables: dict[str, Any]) -> None:
+    async def _run(self, job: StudioJob, tables: dict[str, Any]) -> None:
         try:
             design = received(tables)
         except DesignError as fault:

@@ -33,7 +33,7 @@ _DESIGN, _MEASURED, _OUT = "design.toml", "measured.csv", "out"
 
 
 @dataclass
-class Job:
+class StudioJob:
     """One running command; `say` gets its lines of progress. `process`: the command, once it has begun."""
 
     kind: Kind

@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
 
 
 @dataclass(frozen=True)
-class Cause:
+class FailureReason:
     """What keeps designs from being built or solved.
 
     Attributes
@@ -40,13 +40,15 @@ class Cause:
         return f"{design}: {self.fault}"
 
 
-def causes(result: StudyResult) -> list[Cause]:
+def causes(result: StudyResult) -> list[FailureReason]:
     """Of all missing figures, the commonest first."""
     found: dict[str, dict[int, tuple[Row, str]]] = {}
     for row in result.rows:
         for fault in row.outcome.faults:
             found.setdefault(_cause(fault), {}).setdefault(row.slot, (row, fault))
-    told = [Cause(name, len(each), *next(iter(each.values()))) for name, each in found.items()]
+    told = [
+        FailureReason(name, len(each), *next(iter(each.values()))) for name, each in found.items()
+    ]
     return sorted(told, key=lambda cause: -cause.designs)
 
 
@@ -74,7 +76,7 @@ def failure_lines(result: StudyResult) -> Iterator[str]:
         yield f"  {more}"
 
 
-def untold(found: list[Cause]) -> str:
+def untold(found: list[FailureReason]) -> str:
     """Of causes beyond those that are listed."""
     left = len(found) - TOLD
     if left <= 0:

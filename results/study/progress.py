@@ -7,7 +7,7 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from flexspline.pipeline.study.drive import Progress
+from flexspline.pipeline.study.drive import StudyProgress
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.study import Study
 from flexspline.results.study.labels import valued
@@ -24,7 +24,7 @@ class Watch:
     last: float = field(default=-1e9)
     ended: bool = False
 
-    def __call__(self, progress: Progress) -> None:
+    def __call__(self, progress: StudyProgress) -> None:
         finished = len(progress.rows) >= progress.size
         terminal = sys.stderr.isatty()
         early = time.monotonic() - self.last < (0 if terminal else EVERY_S)
@@ -38,7 +38,7 @@ class Watch:
             print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
 
 
-def line(study: Study, progress: Progress) -> str:
+def line(study: Study, progress: StudyProgress) -> str:
     """One line of progress."""
     done, size = len(progress.rows), progress.size
     rate = progress.fresh / progress.seconds if progress.seconds > 0 else 0.0

@@ -12,7 +12,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import Scatter
 from flexspline.pipeline.study.verified import Verified
 from flexspline.results.numbers import signed
-from flexspline.results.study.failures import Cause, causes, failure_lines
+from flexspline.results.study.failures import FailureReason, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.unbeaten import unbeaten_start
@@ -44,7 +44,7 @@ def summary(result: StudyResult) -> dict[str, Any]:
     }
 
 
-def _cause(cause: Cause) -> dict[str, Any]:
+def _cause(cause: FailureReason) -> dict[str, Any]:
     example = {"design": cause.example.slot, "fault": cause.fault}
     return {"cause": cause.name, "designs": cause.designs, "example": example}
 

@@ -7,25 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.study.tolerance import Input
+from flexspline.pipeline.study.tolerance import ScatteredInput
 
 
 @dataclass(frozen=True)
 class Known:
     """A function (n, k) → (n,) of its inputs, and its indices (k,)."""
 
-    inputs: tuple[Input, ...]
+    inputs: tuple[ScatteredInput, ...]
     function: Callable[[np.ndarray], np.ndarray]
     first: np.ndarray
     total: np.ndarray
 
 
-def uniform(key: str, half: float, nominal: float = 0.0) -> Input:
-    return Input(key, nominal, half / 3**0.5, nominal - half, nominal + half, False)
+def uniform(key: str, half: float, nominal: float = 0.0) -> ScatteredInput:
+    return ScatteredInput(key, nominal, half / 3**0.5, nominal - half, nominal + half, False)
 
 
-def normal(key: str, std: float) -> Input:
-    return Input(key, 0.0, std, -4 * std, 4 * std, True)
+def normal(key: str, std: float) -> ScatteredInput:
+    return ScatteredInput(key, 0.0, std, -4 * std, 4 * std, True)
 
 
 def moment(order: int) -> float:

@@ -55,12 +55,12 @@ serve(theirs, 10)
 STOPPED_JOB = """
 import time
 import psutil
-from flexspline.results.studio.jobs import Job
+from flexspline.results.studio.jobs import StudioJob
 START = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import time; time.sleep(600)'])"
 
 async def stop():
     async def say(line): pass
-    job = Job("solid", say)
+    job = StudioJob("solid", say)
     job.process = await asyncio.create_subprocess_exec(sys.executable, "-c", START)
     tree = psutil.Process(job.process.pid)
     while not (started := tree.children()):

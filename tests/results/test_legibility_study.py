@@ -14,7 +14,7 @@ from flexspline.pipeline.study.figures import TOTAL
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.scatter import scatter_of
-from flexspline.pipeline.study.tolerance import Input, saltelli
+from flexspline.pipeline.study.tolerance import ScatteredInput, saltelli
 from flexspline.results.study.best_figure import best_figure
 from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
 from flexspline.results.study.tolerance_figure import write_scatter
@@ -75,7 +75,7 @@ def test_charts_of_designs_can_be_read(draw, tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", ["even", "steep", "surface", "sample", "nothing", "constant"])
 def test_a_tolerance_study_s_chart_can_be_read(kind: str, inputs: int, tmp_path: Path) -> None:
     """Bars of every length; with indices by surface, by the sample, without any."""
-    own = tuple(Input(k, 1.0, 0.1 / 3**0.5, 0.9, 1.1, False) for k in KEYS[:inputs])
+    own = tuple(ScatteredInput(k, 1.0, 0.1 / 3**0.5, 0.9, 1.1, False) for k in KEYS[:inputs])
     points = saltelli(own, 1024 if kind == "sample" else 16, 1)
     z = (points - 1) / 0.1
     weights = {"even": np.ones(inputs), "steep": 5.0 ** np.arange(inputs)}.get(

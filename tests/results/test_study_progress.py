@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.pipeline.study.claims import Row
-from flexspline.pipeline.study.drive import Progress
+from flexspline.pipeline.study.drive import StudyProgress
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
 from flexspline.results.study.progress import Watch, line
@@ -28,7 +28,7 @@ def test_the_end_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
     watch = Watch(study)
     row = Row(0, {WALL: 0.4}, Outcome({"K_b_Nm_per_rad": 30e3}))
     for _ in range(2):
-        watch(Progress([row], 1, 4.0, 1))
+        watch(StudyProgress([row], 1, 4.0, 1))
     assert capsys.readouterr().err.count("1 of 1 designs") == 1
 
 
@@ -38,7 +38,7 @@ def test_rate_best_and_time_left() -> None:
     figures = ({"K_b_Nm_per_rad": 30e3}, {"K_b_Nm_per_rad": 31e3}, {"K_b_Nm_per_rad": 29e3})
     rows = [Row(i, {WALL: 0.4}, Outcome(f)) for i, f in enumerate(figures)]
     rows.append(Row(3, {WALL: 0.9}, Outcome(faults=("too thick",))))
-    said = line(study, Progress(rows, 2, 4.0, 10)).replace("\N{NARROW NO-BREAK SPACE}", " ")
+    said = line(study, StudyProgress(rows, 2, 4.0, 10)).replace("\N{NARROW NO-BREAK SPACE}", " ")
     assert said.split(" · ") == [
         "4 of 10 designs", "0.50 per s", "1 cannot be built or solved", "best 31 000 N·m/rad",
         "12 s left",
@@ -52,5 +52,5 @@ def test_a_tolerance_study_has_no_best() -> None:
     )
     study = study_from(tomllib.loads(text), Path(__file__).parents[2] / "examples", "test")
     assert "best" not in line(
-        study, Progress([Row(0, {}, Outcome({"K_b_Nm_per_rad": 30e3}))], 1, 4.0, 64)
+        study, StudyProgress([Row(0, {}, Outcome({"K_b_Nm_per_rad": 30e3}))], 1, 4.0, 64)
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.grid import Grid
+from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.head import with_unit
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_day, is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import (
@@ -38,7 +38,7 @@ class ReadColumn:
     day_at: int | None = None
 
 
-def columns_of(grid: Grid, counts_per_turn: float | None) -> tuple[ReadColumn, ...]:
+def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColumn, ...]:
     """The columns that are read, each with its unit.
 
     Of a name that this program writes and one in other words the first is taken. Columns beyond are left.
@@ -59,7 +59,7 @@ def columns_of(grid: Grid, counts_per_turn: float | None) -> tuple[ReadColumn, .
     return tuple(_read(grid, at, name, counts_per_turn) for at, name in chosen)
 
 
-def _chosen(grid: Grid) -> list[tuple[int, ColumnName]]:
+def _chosen(grid: CellGrid) -> list[tuple[int, ColumnName]]:
     """Place and meaning of each column that is read."""
     below = grid.unit_row or ("",) * len(grid.head)
     found: dict[str, list[tuple[int, ColumnName]]] = {}
@@ -75,7 +75,7 @@ def _chosen(grid: Grid) -> list[tuple[int, ColumnName]]:
     return sorted((c for c in chosen if c is not None), key=lambda pair: pair[0])
 
 
-def _with_row(grid: Grid, head: str, below: str) -> ColumnName | None:
+def _with_row(grid: CellGrid, head: str, below: str) -> ColumnName | None:
     """What a head and the unit below it say together."""
     name = column_name(head)
     if name is not None and name.unit is None and name.strange is not None:
@@ -91,7 +91,7 @@ def _with_row(grid: Grid, head: str, below: str) -> ColumnName | None:
     return name
 
 
-def _one(grid: Grid, rivals: list[tuple[int, ColumnName]]) -> tuple[int, ColumnName] | None:
+def _one(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> tuple[int, ColumnName] | None:
     """Of the columns that may be one quantity the one that is."""
     quantity = rivals[0][1].quantity
     ours = [r for r in rivals if r[1].ours]
@@ -114,18 +114,18 @@ def _one(grid: Grid, rivals: list[tuple[int, ColumnName]]) -> tuple[int, ColumnN
     return meant[0]
 
 
-def _times(grid: Grid, rivals: list[tuple[int, ColumnName]]) -> list[tuple[int, ColumnName]]:
+def _times(grid: CellGrid, rivals: list[tuple[int, ColumnName]]) -> list[tuple[int, ColumnName]]:
     """Numbers with a unit go before stamps of the same moments; a day belongs to its time of day."""
     timed = [r for r in rivals if r[1].unit]
     clocks = [r for r in rivals if not is_day(_first(grid, r[0]))]
     return timed or (clocks if len(clocks) == 1 == len(rivals) - 1 else rivals)
 
 
-def _first(grid: Grid, at: int) -> str:
+def _first(grid: CellGrid, at: int) -> str:
     return next((row[at].strip() for row in grid.rows if row[at].strip()), "")
 
 
-def _day_beside(grid: Grid, at: int) -> int | None:
+def _day_beside(grid: CellGrid, at: int) -> int | None:
     """Place of the only column with days, where the one at `at` has times of day."""
     if not is_clock(_first(grid, at)):
         return None
@@ -137,7 +137,7 @@ def _name(quantity: str) -> str:
     return f"{quantity}_{QUANTITIES[quantity].unit}" if quantity in QUANTITIES else quantity
 
 
-def _read(grid: Grid, at: int, name: ColumnName, counts_per_turn: float | None) -> ReadColumn:
+def _read(grid: CellGrid, at: int, name: ColumnName, counts_per_turn: float | None) -> ReadColumn:
     head, quantity = grid.head[at], name.quantity
     if quantity not in QUANTITIES:
         return ReadColumn(at, head, quantity)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.grid import Grid
+from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.number_text import Mark, evidence_of, number_of
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
 
@@ -14,7 +14,9 @@ SHOWN = 40
 """Letters of a cell in a message."""
 
 
-def decimal_mark(grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]) -> Mark:
+def decimal_mark(
+    grid: CellGrid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]
+) -> Mark:
     """The decimal mark of all the file's numbers.
 
     Raises
@@ -63,7 +65,9 @@ def decimal_mark(grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, 
     return "."
 
 
-def _refuse_text(grid: Grid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]) -> None:
+def _refuse_text(
+    grid: CellGrid, columns: Sequence[ReadColumn], cells: Mapping[int, list[str]]
+) -> None:
     """Refuse text of a workbook that may be a thousand: a cell that holds a number has no comma."""
     for column in columns:
         for line, text in zip(grid.line, cells[column.at], strict=True):

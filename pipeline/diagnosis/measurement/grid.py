@@ -24,7 +24,7 @@ SHEET = "cells of a sheet"
 
 
 @dataclass(frozen=True)
-class Grid:
+class CellGrid:
     """Cells of a file, as text.
 
     Attributes
@@ -53,7 +53,7 @@ class Grid:
         return SEPARATORS.get(self.separator, SHEET)
 
 
-def read_grid(path: Path) -> Grid:
+def read_grid(path: Path) -> CellGrid:
     """The cells of a CSV or .xlsx file.
 
     Lines beginning with # are comments, unless nothing else is a head and the last one of them is. Lines
@@ -72,7 +72,7 @@ def read_grid(path: Path) -> Grid:
     return _of_text(path, raw)
 
 
-def _of_sheet(path: Path, raw: bytes) -> Grid:
+def _of_sheet(path: Path, raw: bytes) -> CellGrid:
     found = [(n, r) for n, r in first_sheet(path, raw) if not r[0].lstrip().startswith("#")]
     rows, numbers = [r for _, r in found], [n for n, _ in found]
     _refuse_size(path, rows)
@@ -81,7 +81,7 @@ def _of_sheet(path: Path, raw: bytes) -> Grid:
     return _grid(path, raw, WORKBOOK, head, rows[head.at :], numbers[head.at :])
 
 
-def _of_text(path: Path, raw: bytes) -> Grid:
+def _of_text(path: Path, raw: bytes) -> CellGrid:
     found = text_of(path, raw)
     lines: list[str] = []
     numbers: list[int] = []
@@ -154,7 +154,7 @@ def _parsed(path: Path, lines: list[str], numbers: list[int], separator: str) ->
 
 def _grid(
     path: Path, raw: bytes, encoding: str, head: Head, rows: list[list[str]], numbers: list[int]
-) -> Grid:
+) -> CellGrid:
     """The body under the head, each row made as long as it, without what is empty and the remarks below."""
     names = [c.strip() for c in rows[0]]
     first = 2 if head.units else 1
@@ -176,7 +176,7 @@ def _grid(
             misfit = _misfit(path, number, fields, width, head.separator)
         row[:] = (row + [""] * (width - fields))[:width]
     units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
-    return Grid(
+    return CellGrid(
         path, raw, encoding, head.separator, tuple(names), numbers[0], units, body, line, misfit, footer
     )  # fmt: skip
 

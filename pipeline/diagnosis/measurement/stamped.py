@@ -7,7 +7,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.grid import Grid
+from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.time_stamps import (
     counted_seconds,
     form_said,
@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.measurement.time_stamps import (
 )
 
 
-def seconds_from(grid: Grid, column: ReadColumn, texts: list[str]) -> np.ndarray:
+def seconds_from(grid: CellGrid, column: ReadColumn, texts: list[str]) -> np.ndarray:
     """(n,) seconds.
 
     Raises
@@ -43,7 +43,7 @@ def seconds_from(grid: Grid, column: ReadColumn, texts: list[str]) -> np.ndarray
     return np.array(found)
 
 
-def _in_minutes(grid: Grid, column: ReadColumn, texts: list[str]) -> bool:
+def _in_minutes(grid: CellGrid, column: ReadColumn, texts: list[str]) -> bool:
     """Whether texts of two numbers are minutes and seconds.
 
     Raises

@@ -16,7 +16,7 @@ from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.grid import Grid, read_grid
+from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
 from flexspline.pipeline.diagnosis.measurement.number_text import Mark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
@@ -80,7 +80,7 @@ def _toml_instead(path: Path) -> MeasurementError | None:
     return MeasurementError(path, None, f"is {what}; a measured record (CSV or .xlsx) is expected")
 
 
-def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
+def table_of(grid: CellGrid, counts_per_turn: float | None = None) -> MeasuredTable:
     """The columns of a grid; as `read_table`."""
     columns = columns_of(grid, counts_per_turn)
     if grid.misfit is not None:
@@ -120,7 +120,7 @@ def table_of(grid: Grid, counts_per_turn: float | None = None) -> MeasuredTable:
     )  # fmt: skip
 
 
-def _refuse_unnamed(grid: Grid, across: Sequence[Sequence[str]]) -> None:
+def _refuse_unnamed(grid: CellGrid, across: Sequence[Sequence[str]]) -> None:
     """Refuse values beyond the last name; an unnamed first column is a table's count of its rows."""
     named = max((i for i, head in enumerate(grid.head) if head.strip()), default=-1)
     for cells in across[named + 1 :]:
@@ -141,14 +141,14 @@ def _is_number(column: ReadColumn) -> bool:
     return column.name not in LABELS and column.unit != STAMP
 
 
-def _labels(grid: Grid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
+def _labels(grid: CellGrid, column: ReadColumn, texts: list[str]) -> tuple[str, ...]:
     empty = next((i for i, t in enumerate(texts) if not t), None)
     if empty is not None:
         raise MeasurementError(grid.path, grid.line[empty], f"{column.head} is empty")
     return tuple(texts)
 
 
-def _values(grid: Grid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:
+def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) -> np.ndarray:
     """Numbers in our unit; what is nothing, not finite or beyond any rig is refused."""
     values, bad = numbers_of(texts, mark)
     if bad is not None:

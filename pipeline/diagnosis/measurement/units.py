@@ -42,7 +42,7 @@ COUNTS = "counts"
 
 
 @dataclass(frozen=True)
-class Quantity:
+class MeasuredQuantity:
     """A measured quantity: our unit, what one of each accepted unit is worth in it, and its name."""
 
     unit: str
@@ -51,16 +51,16 @@ class Quantity:
 
 
 _DEGREES = {unit: factor / 3600 for unit, factor in ANGLE.items()}
-QUANTITIES: Mapping[str, Quantity] = {
-    "torque": Quantity("Nm", TORQUE, "torque"),
-    "angle": Quantity("arcsec", ANGLE, "angle"),
-    "angle_plus": Quantity("arcsec", ANGLE, "angle"),
-    "angle_minus": Quantity("arcsec", ANGLE, "angle"),
-    "time": Quantity("s", TIME, "time"),
-    "input_angle": Quantity("deg", _DEGREES, "angle"),
-    "temperature": Quantity("C", TEMPERATURE, "temperature"),
-    "stiffness": Quantity("Nm_per_rad", STIFFNESS, "stiffness"),
-    "stiffness_std": Quantity("Nm_per_rad", STIFFNESS, "stiffness"),
+QUANTITIES: Mapping[str, MeasuredQuantity] = {
+    "torque": MeasuredQuantity("Nm", TORQUE, "torque"),
+    "angle": MeasuredQuantity("arcsec", ANGLE, "angle"),
+    "angle_plus": MeasuredQuantity("arcsec", ANGLE, "angle"),
+    "angle_minus": MeasuredQuantity("arcsec", ANGLE, "angle"),
+    "time": MeasuredQuantity("s", TIME, "time"),
+    "input_angle": MeasuredQuantity("deg", _DEGREES, "angle"),
+    "temperature": MeasuredQuantity("C", TEMPERATURE, "temperature"),
+    "stiffness": MeasuredQuantity("Nm_per_rad", STIFFNESS, "stiffness"),
+    "stiffness_std": MeasuredQuantity("Nm_per_rad", STIFFNESS, "stiffness"),
 }
 """By the name that our columns begin with."""
 

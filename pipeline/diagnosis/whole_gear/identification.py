@@ -21,7 +21,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
-from flexspline.pipeline.diagnosis.whole_gear.inputs import Input, inputs_of
+from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
 
@@ -141,7 +141,7 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
 
 def _of_pairs(
     plain: GearInputs,
-    inputs: tuple[Input, ...],
+    inputs: tuple[GearInput, ...],
     chain: Chain,
     curve: CentralCurve,
     analysis: SweepAnalysis,
@@ -149,7 +149,7 @@ def _of_pairs(
 ) -> GearInputs:
     """The pair that fits, and those that fit as well; "unknown" where none does."""
 
-    def together(learnt: CentralCurve, of: tuple[Input, ...]) -> list[FittedPair]:
+    def together(learnt: CentralCurve, of: tuple[GearInput, ...]) -> list[FittedPair]:
         return fitted_pairs(
             of,
             chain,
@@ -170,7 +170,7 @@ def _of_pairs(
 
 
 def fitted(
-    one: Input, chain: Chain, curve: CentralCurve, nominal: np.ndarray, start: Equilibrium
+    one: GearInput, chain: Chain, curve: CentralCurve, nominal: np.ndarray, start: Equilibrium
 ) -> FittedInput:
     """Its value of least chi square, by secants from the nominal curve (m,) [arcsec]; `start`: as below."""
     value, angles, trial = one.nominal, nominal, one.nominal + one.first
@@ -250,7 +250,7 @@ def _on_other_cycles(
 
 
 def _apart(
-    inputs: Mapping[str, Input],
+    inputs: Mapping[str, GearInput],
     chain: Chain,
     curve: CentralCurve,
     both: tuple[FittedInput, FittedInput],

@@ -12,7 +12,7 @@ from flexspline.pipeline.gear_chain import Chain
 
 
 @dataclass(frozen=True)
-class Input:
+class GearInput:
     """A value that the gear's model takes. `first`: the first step away from the nominal value."""
 
     key: str
@@ -24,7 +24,7 @@ class Input:
     changed: Callable[[Chain, float], Chain]
 
 
-def inputs_of(design: Design, chain: Chain) -> tuple[Input, ...]:
+def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
     """Those that a drawing states least surely.
 
     Ends are wide: no clearance or a module of it, play up to nearly the whole stroke, a stroke ± 30 %, teeth
@@ -49,14 +49,14 @@ def inputs_of(design: Design, chain: Chain) -> tuple[Input, ...]:
 
     pair = chain.model.pair
     return (
-        Input("gear.flank_clearance_um", "µm", gear.flank_clearance_um, 0.0,
+        GearInput("gear.flank_clearance_um", "µm", gear.flank_clearance_um, 0.0,
               1e3 * gear.module_mm, 1.0, with_model(flanks)),
-        Input("bearing.radial_clearance_um", "µm", play, 0.0,
+        GearInput("bearing.radial_clearance_um", "µm", play, 0.0,
               1.9e3 * bearing.deflection, 2.0, with_model(bearing_play)),
-        Input("wave_generator.deflection_mm", "mm", bearing.deflection, 0.7 * bearing.deflection,
+        GearInput("wave_generator.deflection_mm", "mm", bearing.deflection, 0.7 * bearing.deflection,
               1.3 * bearing.deflection, 0.01 * bearing.deflection, with_model(stroke)),
-        Input("tooth pair compliance", "mm/N", pair, 0.0, 100 * pair, 3 * pair,
+        GearInput("tooth pair compliance", "mm/N", pair, 0.0, 100 * pair, 3 * pair,
               with_model(lambda model, value: replace(model, pair=value))),
-        Input("compliance in series", "rad/(N·m)", 0.0, -0.9 * chain.shaft, 1e3 * chain.shaft,
+        GearInput("compliance in series", "rad/(N·m)", 0.0, -0.9 * chain.shaft, 1e3 * chain.shaft,
               0.2 * chain.shaft, lambda chain, value: replace(chain, holes=chain.holes + value)),
     )  # fmt: skip

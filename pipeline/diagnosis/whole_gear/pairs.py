@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from flexspline.geometry.errors import ComputationError
-from flexspline.pipeline.diagnosis.whole_gear.inputs import Input
+from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput
 from flexspline.pipeline.gear_chain import Chain
 
 FOLLOWED = 3
@@ -31,7 +31,7 @@ Curve = Callable[[Chain], np.ndarray]
 class FittedPair:
     """Where two inputs fit best together, one standard deviation each, and the chi square left."""
 
-    inputs: tuple[Input, Input]
+    inputs: tuple[GearInput, GearInput]
     values: tuple[float, float]
     stds: tuple[float, float]
     chi_square: float
@@ -47,7 +47,7 @@ class FittedPair:
 
 
 def fitted_pairs(
-    inputs: Sequence[Input], chain: Chain, curve: Curve, wanted: np.ndarray, std: np.ndarray
+    inputs: Sequence[GearInput], chain: Chain, curve: Curve, wanted: np.ndarray, std: np.ndarray
 ) -> list[FittedPair]:
     """The most promising pairs, the best first.
 
@@ -75,7 +75,7 @@ def fitted_pairs(
 
 
 def _followed(
-    both: tuple[Input, Input],
+    both: tuple[GearInput, GearInput],
     chain: Chain,
     curve: Curve,
     start: tuple[np.ndarray, np.ndarray],
@@ -105,7 +105,11 @@ def _followed(
 
 
 def _bounded(
-    both: tuple[Input, Input], at: np.ndarray, slope: np.ndarray, off: np.ndarray, std: np.ndarray
+    both: tuple[GearInput, GearInput],
+    at: np.ndarray,
+    slope: np.ndarray,
+    off: np.ndarray,
+    std: np.ndarray,
 ) -> tuple[np.ndarray, float]:
     """The step (2,) within the inputs' ends that straight lines ask for, and the chi square they leave."""
     unit = np.array([one.first for one in both])
@@ -116,11 +120,11 @@ def _bounded(
     return found.x * unit, 2 * float(found.cost)
 
 
-def _nominal(both: tuple[Input, Input]) -> np.ndarray:
+def _nominal(both: tuple[GearInput, GearInput]) -> np.ndarray:
     return np.array([one.nominal for one in both])
 
 
-def _with(chain: Chain, both: tuple[Input, Input], values: np.ndarray) -> Chain:
+def _with(chain: Chain, both: tuple[GearInput, GearInput], values: np.ndarray) -> Chain:
     for one, value in zip(both, values.tolist(), strict=True):
         chain = one.changed(chain, value)
     return chain

@@ -25,7 +25,7 @@ LEAST_SHOWN = 1 / 3
 
 
 @dataclass(frozen=True)
-class Part:
+class ContributionPanel:
     """A panel: an owner of terms, and the words beside it."""
 
     owner: str
@@ -35,7 +35,7 @@ class Part:
     view: Effect = "angle"
 
 
-def parts(shown: SweepPictureData) -> list[Part]:
+def parts(shown: SweepPictureData) -> list[ContributionPanel]:
     """Named causes, then structure that has no name."""
     identified = shown.explained.identified
     found = [_named(shown, c) for c in shown.diagnosis.outcome.causes]
@@ -44,7 +44,7 @@ def parts(shown: SweepPictureData) -> list[Part]:
         if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:
             continue
         title, lines = _unnamed(shown.channel_name(owner.removeprefix("?")), owner, rms)
-        found.append(Part(owner, title, lines, shown.channel(_channel_of(owner))))
+        found.append(ContributionPanel(owner, title, lines, shown.channel(_channel_of(owner))))
     return found
 
 
@@ -69,7 +69,7 @@ def _channel_of(owner: str) -> str:
     return "torque_Nm" if owner == "?unit" else owner.removeprefix("?")
 
 
-def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
+def _named(shown: SweepPictureData, cause: NamedCause) -> ContributionPanel:
     known = known_causes()[cause.id]
     channel = shown.channel(known.shows_over)
     lines = [
@@ -80,7 +80,7 @@ def _named(shown: SweepPictureData, cause: NamedCause) -> Part:
     ]
     if cause.alternatives:
         lines[2:] = ["not decided: rivals", "explain it as well"]
-    return Part(
+    return ContributionPanel(
         cause.id,
         _short(cause_title(cause)),
         tuple(lines),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Effect
-from flexspline.results.figures.diagnosis.contribution_parts import Part, parts
+from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import thin_labels
@@ -80,7 +80,7 @@ def write_contributions(path: Path, shown: SweepPictureData) -> None:
         save_png(figure, path)
 
 
-def _panel(axes: Axes, shown: SweepPictureData, part: Part) -> None:
+def _panel(axes: Axes, shown: SweepPictureData, part: ContributionPanel) -> None:
     if part.owner == OFFSET:
         _offset(axes, shown)
         return

@@ -14,7 +14,7 @@ from flexspline.pipeline.study.indices import sampled_indices
 from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
 from flexspline.pipeline.study.scatter import Scatter, scatter_of
 from flexspline.pipeline.study.study import StudyError
-from flexspline.pipeline.study.tolerance import Input, saltelli
+from flexspline.pipeline.study.tolerance import ScatteredInput, saltelli
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
@@ -56,7 +56,9 @@ def test_a_known_function_through_a_whole_study(tmp_path: Path) -> None:
     assert np.abs(found.total[list(at.values())]).max() < 1e-6
 
 
-def scattered(inputs: tuple[Input, ...], base: int, values: np.ndarray, seed: int = 1) -> Scatter:
+def scattered(
+    inputs: tuple[ScatteredInput, ...], base: int, values: np.ndarray, seed: int = 1
+) -> Scatter:
     """A whole study's scatter, from values at the points of `saltelli`."""
     keys = [x.key for x in inputs]
     rows = tuple(
@@ -90,7 +92,8 @@ def test_tightening_and_indices_tell_one_story(base: int) -> None:
     for _ in range(5):
         std = 1.3 ** rng.permutation(5) * rng.uniform(1.0, 1.1, 5)
         inputs = tuple(
-            Input(k, 0.0, s, -4 * s, 4 * s, True) for k, s in zip("abcde", std, strict=True)
+            ScatteredInput(k, 0.0, s, -4 * s, 4 * s, True)
+            for k, s in zip("abcde", std, strict=True)
         )
         found = scattered(inputs, base, saltelli(inputs, base, 1) @ np.array([1, -1, 1, 1, -1]))
         assert found.indices is not None
@@ -105,8 +108,9 @@ def test_tightening_and_indices_tell_one_story(base: int) -> None:
 def test_a_gear_s_modulus_is_seen_by_few_evaluations(base: int) -> None:
     """A wind-up over E, walls to the third power: indices from 2²⁰ points beside those of a small study."""
     inputs = (
-        Input("E", 206.0, 4.12, 190.0, 222.0, True), uniform("wall", 0.02, 0.4),
-        uniform("diaphragm", 0.03, 0.6), uniform("length", 0.2, 30.0), Input("j", 3.0, 0.3, 2, 4, True),
+        ScatteredInput("E", 206.0, 4.12, 190.0, 222.0, True), uniform("wall", 0.02, 0.4),
+        uniform("diaphragm", 0.03, 0.6), uniform("length", 0.2, 30.0),
+        ScatteredInput("j", 3.0, 0.3, 2, 4, True),
     )  # fmt: skip
 
     def windup(x: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ import pytest
 from studio_client import TABLES, heard, want, with_client
 
 from flexspline.geometry.design import Design
-from flexspline.results.studio.jobs import Done, Job
+from flexspline.results.studio.jobs import Done, StudioJob
 from flexspline.results.studio.server import LARGEST_MESSAGE
 
 MUTATIONS = 200
@@ -91,10 +91,10 @@ async def status(port: int, sent: bytes) -> int:
 
 
 def test_hostile_input_meets_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def run(job: Job, design: Design, measured: bytes = b"") -> Done:
+    async def run(job: StudioJob, design: Design, measured: bytes = b"") -> Done:
         return Done("stopped", "stopped")  # these tests are about what is let through to it
 
-    monkeypatch.setattr(Job, "run", run)
+    monkeypatch.setattr(StudioJob, "run", run)
 
     async def check(client: aiohttp.test_utils.TestClient) -> None:
         jar = client.session.cookie_jar.filter_cookies(client.make_url("/"))
