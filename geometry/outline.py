@@ -14,6 +14,9 @@ import numpy as np
 Point = tuple[float, float]
 SAME = 1e-9
 """Points closer than this [mm] are one point."""
+SMOOTH_rad = 0.02
+"""Where tangents, or the normals of faces, turn by less [rad], there is no corner: 1.1°, more than rounding
+and a CAD kernel's tolerance, and far below the 45° of the flattest corner that a part has."""
 
 
 @dataclass(frozen=True)
@@ -146,14 +149,19 @@ class Meridian:
         return sum(s.swept_area for s in self.segments if s.patch == patch)
 
     @property
+    def turns(self) -> tuple[tuple[Point, float], ...]:
+        """Where each segment starts, (r, z), and how far the tangent turns there [rad]: see `turn`."""
+        return tuple((s.start, turn(self.segments[i - 1], s)) for i, s in enumerate(self.segments))
+
+    @property
     def sharp_corners(self) -> tuple[Point, ...]:
         """Corners (r, z) off the axis where the outline's tangent turns."""
-        found = []
-        for i, s in enumerate(self.segments):
-            before = self.segments[i - 1]
-            if s.start[0] > SAME and before.tangent(1) @ s.tangent(0) < 1 - 1e-6:  # a turn of 0.08°
-                found.append(s.start)
-        return tuple(found)
+        return tuple(at for at, by in self.turns if at[0] > SAME and abs(by) >= SMOOTH_rad)
+
+    @property
+    def inside_corners(self) -> tuple[Point, ...]:
+        """The sharp corners (r, z) that open less than 180° outside the material."""
+        return tuple(at for at, by in self.turns if at[0] > SAME and by <= -SMOOTH_rad)
 
     @property
     def patch_edges(self) -> tuple[Point, ...]:
@@ -168,6 +176,20 @@ class Meridian:
         """Vertices (n, 2) of the outline, arcs as chords no farther off than chord_error [mm]."""
         points = [s.at(np.arange(n) / n) for s in self.segments for n in [_chords(s, chord_error)]]
         return np.concatenate(points)
+
+
+def turn(before: Segment, after: Segment) -> float:
+    """How far the tangent turns where `after` starts at the end of `before` [rad], counter-clockwise.
+
+    In a counter-clockwise outline it is negative at inside corners.
+    """
+    (r0, z0), (r1, z1) = before.tangent(1), after.tangent(0)
+    return atan2(r0 * z1 - z0 * r1, r0 * r1 + z0 * z1)
+
+
+def joins_smoothly(before: Segment, after: Segment) -> bool:
+    """Whether `after` goes on where `before` ends, in its direction."""
+    return distance(before.end, after.start) < SAME and abs(turn(before, after)) < SMOOTH_rad
 
 
 def closed(corners: Sequence[tuple[Point, str | None]]) -> Meridian:

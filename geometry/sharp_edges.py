@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.geometry.outline import SMOOTH_rad
 from flexspline.geometry.surfaces import HoleWall, Surface
 
 if TYPE_CHECKING:
     import cadquery as cq
-
-SMOOTH = 0.02
-"""Faces whose normals differ by less than this angle [rad] join smoothly."""
 
 
 def sharp_edges(
@@ -37,19 +35,23 @@ def sharp_edges(
         if "symmetry" in a.patch or "symmetry" in b.patch:
             continue
         turn = _turn(edge, *faces_at[key])
-        if a.patch == b.patch and abs(turn) < SMOOTH:
+        if a.patch == b.patch and abs(turn) < SMOOTH_rad:
             continue
         n = max(2, int(np.ceil(edge.Length() / spacing)) + 1)
         points = np.array([edge.positionAt(t).toTuple() for t in np.linspace(0, 1, n)])
         sharp.append(points)
         on_hole = isinstance(a, HoleWall) or isinstance(b, HoleWall)
-        if not on_hole and (a.patch != b.patch or turn < -SMOOTH):
+        if not on_hole and (a.patch != b.patch or turn <= -SMOOTH_rad):
             critical.append(points)
     return np.concatenate(sharp), np.concatenate(critical)
 
 
 def _turn(edge: cq.Edge, one: cq.Face, other: cq.Face) -> float:
-    """Sine-like measure of the corner at an edge's middle: 0 smooth, negative an inside corner."""
+    """Sine of the angle between the faces' normals at an edge's middle: negative at an inside corner.
+
+    It is 0 too at the knife edge of a fillet that begins over a blind hole's end: no stress is left out
+    there.
+    """
     middle = edge.positionAt(0.5)
     n, m = one.normalAt(middle), other.normalAt(middle)
     across = n.cross(m).Length

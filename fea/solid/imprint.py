@@ -15,11 +15,9 @@ import numpy as np
 from flexspline.fea.solid.snap import undo_inverted
 from flexspline.fea.solid.unroll import MeshingMap
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.geometry.outline import SAME, Segment, distance
+from flexspline.geometry.outline import SAME, joins_smoothly
 from flexspline.geometry.surfaces import Surface, Swept
 
-SMOOTH = 1e-6
-"""Segments join smoothly where the cosine of the angle between their tangents is 1 to this."""
 NEAR = 0.3
 """An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
 SLIP = 0.1
@@ -55,7 +53,7 @@ def smooth_patch_edges(surfaces: Sequence[Surface]) -> Iterator[PatchEdge]:
     swept = [(i, s.segment) for i, s in enumerate(surfaces) if isinstance(s, Swept)]
     for i, a in swept:
         for j, b in swept:
-            if distance(a.end, b.start) < SAME and a.patch != b.patch and _smooth(a, b):
+            if joins_smoothly(a, b) and a.patch != b.patch:
                 yield PatchEdge(i, j, np.array(b.start), b.tangent(0))
 
 
@@ -131,10 +129,6 @@ def _stay(
 
 def _meridional(points: np.ndarray) -> np.ndarray:
     return np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
-
-
-def _smooth(a: Segment, b: Segment) -> bool:
-    return bool(a.tangent(1) @ b.tangent(0) > 1 - SMOOTH)
 
 
 def _sides(faces: np.ndarray) -> np.ndarray:

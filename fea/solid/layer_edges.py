@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import cos
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from flexspline.fea.solid.imprint import SMOOTH
-from flexspline.geometry.outline import SAME, Segment, distance
+from flexspline.geometry.outline import SAME, Segment, SMOOTH_rad, joins_smoothly
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Plane, Surface, Swept
 
 INSIDE_CORNER = 0.1
@@ -71,9 +71,8 @@ def _pairs(surfaces: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray, np.ndar
             patches[i, j] = a.patch != b.patch
             if isinstance(a, Swept) and isinstance(b, Swept):
                 revolved[i, j] = True
-                if distance(a.segment.end, b.segment.start) < SAME:
-                    tangents = a.segment.tangent(1) @ b.segment.tangent(0)
-                    smooth[i, j] = smooth[j, i] = tangents > 1 - SMOOTH
+                if joins_smoothly(a.segment, b.segment):
+                    smooth[i, j] = smooth[j, i] = True
             elif isinstance(a, Swept) and isinstance(b, Plane):
                 smooth[i, j] = smooth[j, i] = _lies_in(a.segment, b)
     return smooth, patches, revolved
@@ -82,9 +81,10 @@ def _pairs(surfaces: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _lies_in(segment: Segment, plane: Plane) -> bool:
     """Whether a surface of revolution ends as a part of a plane across the axis: a face at its height."""
     ends = ((segment.start, segment.tangent(0)), (segment.end, segment.tangent(1)))
-    across = abs(plane.normal[2]) > 1 - SMOOTH
+    across = abs(plane.normal[2]) > cos(SMOOTH_rad)
     return across and any(
-        abs(at[1] - plane.point[2]) < SAME and abs(tangent[0]) > 1 - SMOOTH for at, tangent in ends
+        abs(at[1] - plane.point[2]) < SAME and abs(tangent[0]) > cos(SMOOTH_rad)
+        for at, tangent in ends
     )
 
 

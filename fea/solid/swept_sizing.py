@@ -104,13 +104,7 @@ def critical_points(outline: Meridian) -> np.ndarray:
 
     Patch edges and inside corners, as `TaggedSurface.critical_edges`.
     """
-    found = list(outline.patch_edges)
-    for i, s in enumerate(outline.segments):
-        before, after = outline.segments[i - 1].tangent(1), s.tangent(0)
-        turn = before[0] * after[1] - before[1] * after[0]
-        if turn < -1e-6:  # rad; less is a smooth joint, rounded
-            found.append(s.start)
-    return np.array(found)
+    return np.array([*outline.patch_edges, *outline.inside_corners])
 
 
 def refuse_beyond_memory(prisms: int) -> None:
