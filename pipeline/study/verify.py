@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import as_completed
 from dataclasses import asdict
 
+from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
@@ -75,14 +76,14 @@ def verify(
         except pool().lost:
             stored[name] = asdict(Outcome(faults=(WORKER_DIED,)))
         store.note(name, stored[name])
-    case = result.study.design.solver.load_case
-    return tuple(checked(r, outcome_of(stored[f"{VERIFIED} {r.slot}"]), case) for r in chosen)
+    solver = result.study.design.solver
+    return tuple(checked(r, outcome_of(stored[f"{VERIFIED} {r.slot}"]), solver) for r in chosen)
 
 
-def checked(row: Row, solid: Outcome, load_case: str) -> Verified:
-    """Figures that both models have, side by side; `load_case` says which K_b is in the backlash."""
+def checked(row: Row, solid: Outcome, solver: Solver) -> Verified:
+    """Figures that both models have, side by side; `solver` says which K_b is in the backlash."""
     fast = row.outcome.figures
-    K_b = "K_b_lobes_Nm_per_rad" if load_case == "lobes" else "K_b_Nm_per_rad"
+    K_b = f"{solver.K_b_in_sum}_Nm_per_rad"
     keys = [k for k in solid.figures if k in fast and not k.endswith(("]", "shaft", "flexspline"))]
     checks = tuple(
         Check(k, fast[k], _bounds(fast, k, K_b), solid.figures[k], _bounds(solid.figures, k, K_b))

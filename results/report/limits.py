@@ -10,11 +10,17 @@ from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.quantities import quantity
 from flexspline.results.report.content import ReportContent
 
+ENTERS = {
+    "uniform": "the ring turned rigidly",
+    "lobes": "the torque at the two ends of the major axis",
+}
+"""Where the torque enters, by `solver.load_case`."""
+
 
 def assumptions(content: ReportContent) -> list[list[str]]:
     """Pairs of heading and text."""
     b = content.backlash
-    uniform = content.K_b_in_sum is content.K_b
+    case = content.design.solver.load_case
     found = [
         [
             "Material and size of motion",
@@ -25,11 +31,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         [
             "Where the torque enters",
             "K_b depends on it, which is why every K_b here carries its load case. The sum uses "
-            + (
-                "“uniform”, the ring turned rigidly."
-                if uniform
-                else "“lobes”, the torque at the two ends of the major axis."
-            ),
+            f"“{case}”, {ENTERS[case]}.",
         ],
         ["Wave generator", _ellipse(content)],
         ["Bearing play", _play(content)],

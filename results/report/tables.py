@@ -21,11 +21,10 @@ UNCHECKED = "–"
 
 def answers(content: ReportContent) -> list[Row]:
     """Every answer with its symbol, unit and bounds."""
-    lobes_in_sum = content.K_b_in_sum is not content.K_b
     rows = [_backlash_row(content)]
     series = quantity("K_series_Nm_per_rad")
     low, high = content.K_series_bounds_Nm_per_rad
-    case = "lobes" if lobes_in_sum else "uniform"
+    case = content.design.solver.load_case
     both = content.K_b_in_sum.guaranteed and content.K_e.guaranteed
     rows.append(
         _row(

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, study_of, threads
 
+from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.analysis import CACHED_TYPES
@@ -126,7 +127,7 @@ def test_what_moves_the_ratio(keys: tuple[str, ...], moved: bool) -> None:
 
 
 def agreed(fast: dict[str, float], solid: dict[str, float]) -> dict[str, bool]:
-    checks = checked(Row(0, {}, Outcome(fast)), Outcome(solid), "uniform").checks
+    checks = checked(Row(0, {}, Outcome(fast)), Outcome(solid), Solver()).checks
     return {c.key: c.agrees for c in checks}
 
 

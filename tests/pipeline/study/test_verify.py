@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from study_bench import EXAMPLES, WALL, study_of, threads
 
+from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import without_holes
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
@@ -32,7 +33,7 @@ def figures(K: float, half: float) -> dict[str, float]:
 @pytest.mark.parametrize(("solid", "agrees"), [(1015.0, True), (1025.0, False), (975.0, False)])
 def test_intervals_that_do_not_meet_are_an_alarm(solid: float, agrees: bool) -> None:
     row = Row(3, {}, Outcome(figures(1000.0, 10.0)))
-    (check,) = checked(row, Outcome(figures(solid, 10.0)), "uniform").checks
+    (check,) = checked(row, Outcome(figures(solid, 10.0)), Solver()).checks
     assert check.agrees is agrees
     assert check.difference_pct == pytest.approx((solid - 1000.0) / 10.0)
 
