@@ -21,9 +21,14 @@ ARCSEC_PER_RAD = 180 * 3600 / pi
 MM_PER_UM = 1e-3
 
 
+def series_compliance(K_b: float, K_e: float) -> float:
+    """1/K_e + 1/K_b [rad/(N·m)] of flexspline and shaft one behind the other; both K in N·m/rad."""
+    return 1 / K_e + 1 / K_b
+
+
 def series_stiffness(K_b: float, K_e: float) -> float:
-    """K [N·m/rad] of flexspline and shaft one behind the other, 1/K = 1/K_e + 1/K_b."""
-    return 1 / (1 / K_e + 1 / K_b)
+    """K [N·m/rad] of flexspline and shaft one behind the other: see `series_compliance`."""
+    return 1 / series_compliance(K_b, K_e)
 
 
 class StiffnessValueError(FlexsplineError, ValueError):
@@ -178,7 +183,7 @@ def angle_rad(
     """
     _check_stiffness(K_b_Nm_per_rad, K_e_Nm_per_rad)
     torque = np.asarray(torque_Nm, float)
-    compliance = 1 / K_e_Nm_per_rad + 1 / K_b_Nm_per_rad
+    compliance = series_compliance(K_b_Nm_per_rad, K_e_Nm_per_rad)
     return torque * compliance + np.sign(torque) * gap_rad(design) / 2
 
 

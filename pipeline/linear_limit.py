@@ -9,6 +9,7 @@ from math import pi, sqrt
 from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import PartName
+from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
 
 NOT_SOLVED = (
@@ -81,5 +82,5 @@ def _nominal_mises(design: Design) -> Iterator[tuple[PartName, str, float]]:
 
 
 def _tube(outer: float, inner: float) -> float:
-    """Coulomb: τ = T R/J with J = π(R⁴ − r⁴)/2, at the outside."""
-    return sqrt(3) * NMM_PER_NM * outer / (pi / 2 * (outer**4 - inner**4))
+    """Coulomb: τ = T R/J, at the outside."""
+    return sqrt(3) * NMM_PER_NM * outer / polar_moment_mm4(outer, inner)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flexspline.fea.types import Stiffness
+from flexspline.pipeline.backlash import series_compliance
 
 if TYPE_CHECKING:
     from flexspline.pipeline.parts import AnalysisContext
@@ -60,4 +61,4 @@ def stiffness_pair(
         solved.append(found.K_e)
         K_e = solved[-1].K_Nm_per_rad
     doubt = sum((1 / K.lower_Nm_per_rad - 1 / K.upper_Nm_per_rad) / 2 for K in solved)
-    return StiffnessPair(K_b, K_e, found, doubt / (1 / K_b + 1 / K_e))
+    return StiffnessPair(K_b, K_e, found, doubt / series_compliance(K_b, K_e))

@@ -6,7 +6,9 @@ a and b are the inner and outer radius [mm]. All hold in plane strain, E' = E/(1
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import log1p, pi, sinh
+from math import log1p, sinh
+
+from flexspline.geometry.tube import polar_moment_mm4
 
 
 def bending(a: float, b: float) -> float:
@@ -42,8 +44,8 @@ def membrane(a: float, b: float, poissons_ratio: float) -> float:
 
 
 def torsion(a: float, b: float) -> float:
-    """J = π (b⁴ − a⁴)/2 [mm⁴] of the whole tube."""
-    return pi / 2 * (b**4 - a**4)
+    """J [mm⁴] of the whole tube."""
+    return polar_moment_mm4(b, a)
 
 
 def thickness(stiffness: Callable[[float, float], float], inner: float, wanted: float) -> float:

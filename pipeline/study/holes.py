@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from math import pi
 
-from flexspline.fea.types import NMM_PER_NM, Stiffness
+from flexspline.fea.types import NMM_PER_NM, Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
 from flexspline.geometry.shapes import ShaftSegment
+from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.part_stiffness import part_stiffness
 
@@ -57,14 +57,13 @@ class HolesEffect:
 def cut_compliance(design: Design) -> float:
     """L/(G·J) of the pieces of the shaft that holes and keyway cut, as if they did not [rad/(N·m)].
 
-    Source: torsion of a round tube, J = π(D⁴ − d⁴)/32.
+    Source: torsion of a round tube.
     """
-    shaft, own = design.shaft, design.part("shaft").material
-    shear_MPa = 1e3 * own.youngs_modulus_GPa / (2 * (1 + own.poissons_ratio))
+    shaft, material = design.shaft, Elastic.of(design.part("shaft").material)
 
     def of(segment: ShaftSegment, length_mm: float) -> float:
-        polar_mm4 = pi / 32 * (segment.outer_diameter_mm**4 - segment.inner_diameter_mm**4)
-        return length_mm / (shear_MPa * polar_mm4) * NMM_PER_NM
+        polar_mm4 = polar_moment_mm4(segment.outer_diameter_mm / 2, segment.inner_diameter_mm / 2)
+        return length_mm / (material.mu * polar_mm4) * NMM_PER_NM
 
     first, last = shaft.segment[0], shaft.segment[-1]
     holes = of(first, first.length_mm) if shaft.bolt_count else 0.0
