@@ -149,6 +149,11 @@ class Solver(DesignTable):
     )
 
     @property
+    def tolerance(self) -> float:
+        """Wanted error of K, as a fraction."""
+        return self.tolerance_pct / 100
+
+    @property
     def K_b_in_sum(self) -> Literal["K_b", "K_b_lobes"]:
         """Name of the K_b that enters the backlash sum."""
         return "K_b_lobes" if self.load_case == "lobes" else "K_b"

@@ -33,11 +33,6 @@ def may_answer(model: PartModel) -> bool:
     return has_enclosure(model) and model.context.design.solver.model == "auto"
 
 
-def tolerance_of(model: PartModel) -> float:
-    """Wanted error of K, as a fraction."""
-    return model.context.design.solver.tolerance_pct / 100
-
-
 def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
@@ -51,9 +46,9 @@ def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
     """
     finest_pct = SHARE * model.context.design.solver.tolerance_pct
     found = _enclosed_to(model, solve, max(FIRST, finest_pct))
-    if finest_pct < FIRST and found.half_width <= FAR * tolerance_of(model):
+    if finest_pct < FIRST and found.half_width <= FAR * model.tolerance:
         found = _enclosed_to(model, solve, finest_pct)
-    if found.half_width <= tolerance_of(model):
+    if found.half_width <= model.tolerance:
         return replace(found, shortfall="")
     return replace(found, shortfall=found.shortfall or TOO_FAR)
 

@@ -14,7 +14,6 @@ from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
 from flexspline.pipeline import revolved
-from flexspline.pipeline.enclosed_part import tolerance_of
 from flexspline.pipeline.gear_model import gear_model
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -84,7 +83,7 @@ def chain_of(context: AnalysisContext, K_e_Nm_per_rad: float | None = None) -> C
     flexspline = context.part("flexspline")
     with context.progress.stage("flexspline, condensed to its teeth and its seat"):
         model = gear_model(context.design, flexspline.part)
-    holes = _of_holes(flexspline.part, tolerance_of(flexspline))
+    holes = _of_holes(flexspline.part, flexspline.tolerance)
     K_e = K_e_Nm_per_rad or part_stiffness(context.part("shaft")).K_Nm_per_rad
     return Chain(model, 1 / K_e, holes)
 

@@ -45,18 +45,20 @@ def torsion(design: Design) -> tuple[Stiffness, Stiffness]:
     DesignError : the plain ring of drawn teeth does not fit.
     ComputationError : the mesh failed or the tolerance was not met.
     """
-    tolerance = _tolerance(design)
+    tolerance = design.solver.tolerance
     return stiffness(design, "flexspline", tolerance), stiffness(design, "shaft", tolerance)
 
 
 def rim(design: Design, case: RimCase) -> Stiffness:
     """K_b of a lobe case; errors as `torsion`."""
-    return CASES[case].fast(with_equivalent_ring(design).part("flexspline"), _tolerance(design))
+    return CASES[case].fast(
+        with_equivalent_ring(design).part("flexspline"), design.solver.tolerance
+    )
 
 
 def gear(design: Design) -> GearCurve:
     """The whole gear, its shaft without holes; errors as `torsion`, and a play that takes the stroke."""
-    tolerance = _tolerance(design)
+    tolerance = design.solver.tolerance
     K_e = stiffness(design, "shaft", tolerance).K_Nm_per_rad
     return curve_of(design, fast_chain(design, K_e, tolerance))
 
@@ -85,7 +87,3 @@ def profile(design: Design, view: View, chord_error: float) -> np.ndarray:
 
 def _in_view(design: Design, view: View) -> Part:
     return design.part("shaft" if view == "shaft_torque" else "flexspline")
-
-
-def _tolerance(design: Design) -> float:
-    return design.solver.tolerance_pct / 100

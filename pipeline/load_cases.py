@@ -21,7 +21,6 @@ from flexspline.pipeline.enclosed_part import (
     enclosure_if_any,
     enclosure_of,
     may_answer,
-    tolerance_of,
 )
 from flexspline.pipeline.enclosure import answered_within
 from flexspline.pipeline.parts import PartModel
@@ -86,7 +85,7 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     enclosure = enclosure_if_any(flexspline, asked.revolved)
     if enclosure is None:
         return asked.solid(flexspline)
-    tolerance = tolerance_of(flexspline)
+    tolerance = flexspline.tolerance
     if enclosure.half_width <= tolerance:
         return enclosure
     solve = partial(asked.solid, flexspline, known=enclosure.half_width)
@@ -100,7 +99,7 @@ def _of_case(
 
 
 def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
-    own, tolerance = flexspline.material, flexspline.context.design.solver.tolerance_pct / 100
+    own, tolerance = flexspline.material, flexspline.tolerance
     return _of_case(
         flexspline,
         "lobes" if supported else "lobes_unsupported",
@@ -116,7 +115,7 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
         flexspline,
         "lobes_contact",
         lambda outline, deadline: contact_stiffness(
-            outline, own, held, deadline, tolerance_of(flexspline)
+            outline, own, held, deadline, flexspline.tolerance
         ),
     )
 

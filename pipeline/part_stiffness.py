@@ -8,7 +8,7 @@ from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.types import Stiffness
 from flexspline.pipeline.drawn_teeth import of_toothed
-from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer, tolerance_of
+from flexspline.pipeline.enclosed_part import enclosure_if_any, may_answer
 from flexspline.pipeline.enclosure import answered_within, check_against, overlap
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel, is_lasting
@@ -53,7 +53,7 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
                 part.meridian,
                 model.material,
                 part.driven,
-                tolerance_of(model),
+                model.tolerance,
                 Deadline(STAGE_SECONDS),
             )
 
@@ -63,7 +63,7 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
 def _solid_stiffness(model: PartModel) -> Stiffness:
     enclosure = enclosure_if_any(model, revolved_stiffness)
     if enclosure is not None and may_answer(model):
-        tolerance = tolerance_of(model)
+        tolerance = model.tolerance
         if enclosure.half_width <= tolerance and model.mesher == "auto" and by_fTetWild(model):
             return enclosure
         return answered_within(enclosure, lambda: twisted_part(model).stiffness, tolerance)
@@ -79,7 +79,7 @@ def twisted_part(model: PartModel) -> TwistedPart:
     Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
     """
     enclosure = enclosure_if_any(model, revolved_stiffness) if may_answer(model) else None
-    tolerance = tolerance_of(model)
+    tolerance = model.tolerance
     one_mesh = enclosure is not None and enclosure.half_width <= tolerance
 
     def make() -> TwistedPart:

@@ -73,6 +73,11 @@ class PartModel:
         return Elastic.of(self.part.material)
 
     @property
+    def tolerance(self) -> float:
+        """Wanted error of K, as a fraction: `solver.tolerance_pct`."""
+        return self.context.design.solver.tolerance
+
+    @property
     def sector(self) -> Sector:
         return sector_of(self.part, "torsion")
 

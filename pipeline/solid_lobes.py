@@ -11,7 +11,6 @@ from flexspline.fea.solid.lobes import finer_mesh, lobe_stiffness, promised
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline.enclosed_part import tolerance_of
 from flexspline.pipeline.part_meshes import PartMeshes
 from flexspline.pipeline.part_stiffness import rim_mesh, twisted_part
 from flexspline.pipeline.parts import PartModel, is_lasting
@@ -51,7 +50,6 @@ def solid_lobes(flexspline: PartModel, supported: bool, known: float = inf) -> S
     ComputationError, MemoryError
     """
     context = flexspline.context
-    tolerance = context.design.solver.tolerance_pct / 100
     sector = sector_of(flexspline.part, "lobes")
 
     def make() -> Stiffness:
@@ -60,7 +58,7 @@ def solid_lobes(flexspline: PartModel, supported: bool, known: float = inf) -> S
                 lobe_meshes(flexspline, supported, known),
                 flexspline.material,
                 supported,
-                tolerance,
+                flexspline.tolerance,
                 sector.label,
                 lambda text: context.progress.note(f"  {text}"),
                 SOLID_SECONDS,
@@ -81,7 +79,7 @@ def lobe_meshes(
     """
     own = range(MESHES if flexspline.is_swept else 0)
     usual = USUAL_OVER_TORSION * _half_of_torsion(flexspline)
-    begins = not own or (supported and usual <= tolerance_of(flexspline))
+    begins = not own or (supported and usual <= flexspline.tolerance)
     if begins:
         yield _of_torsion(flexspline, supported, inf if own else known)
     for number in own:
@@ -122,7 +120,7 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
     ------
     SolidError : as `lobe_meshes`.
     """
-    expected = promised(tolerance_of(flexspline), COARSER)
+    expected = promised(flexspline.tolerance, COARSER)
     first, worth = number == 0 and not begun, expected <= WORTH * known
     for tried in (number, COARSER) if first and worth else (number,):
         try:
@@ -135,9 +133,8 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
 
 
 def _finer(flexspline: PartModel, number: int) -> TetMesh:
-    design = flexspline.context.design
-    f, tolerance = design.flexspline, design.solver.tolerance_pct / 100
-    finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, flexspline.material, tolerance, number)
+    f, material = flexspline.context.design.flexspline, flexspline.material
+    finer = finer_mesh(f.wall_thickness_mm, f.inner_radius, material, flexspline.tolerance, number)
     meshes, spec = PartMeshes(flexspline), flexspline.first_spec
     if number <= 0:
         spec = meshes.coarsened(RIM_ELEMENTS / copies_in_rim(flexspline))
