@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
-from math import cos, pi, radians
+from math import cos, radians
 
 from flexspline.geometry.bounds import below, span
 from flexspline.geometry.check_flexspline import flexspline_faults
@@ -17,6 +17,7 @@ from flexspline.geometry.check_tooth import ring_ends, tooth_faults
 from flexspline.geometry.circular_spline import circular_spline_faults
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
@@ -80,7 +81,7 @@ def _gear_faults(design: Design) -> Iterator[DesignError]:
 def _clearance_faults(design: Design) -> Iterator[DesignError]:
     """A tooth is half the pitch thick; what a space is wider takes the circular spline's teeth away."""
     gear = design.gear
-    thick = 1e3 * pi * gear.module_mm / 2
+    thick = UM_PER_MM * gear.tooth_thickness_mm
     limit = thick * cos(radians(gear.pressure_angle_deg))
     if gear.flank_clearance_um >= limit:
         yield DesignError(

@@ -7,14 +7,22 @@ together stand in `geometry.checks`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, radians
+from math import cos, pi, radians
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from flexspline.geometry import ranges
 from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
-from flexspline.geometry.fields import DesignTable, Length, Micrometre, Percent, within
+from flexspline.geometry.fields import (
+    MM_PER_UM,
+    UM_PER_MM,
+    DesignTable,
+    Length,
+    Micrometre,
+    Percent,
+    within,
+)
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.part import Part, PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
@@ -75,6 +83,16 @@ class Gear(DesignTable):
     )
 
     @property
+    def flank_clearance_mm(self) -> float:
+        """j_bn0 [mm]."""
+        return self.flank_clearance_um * MM_PER_UM
+
+    @property
+    def tooth_thickness_mm(self) -> float:
+        """πm/2 [mm]: half the pitch, on the pitch circle."""
+        return pi * self.module_mm / 2
+
+    @property
     def pitch_radius_mm(self) -> float:
         """m z1/2 [mm], of the flexspline."""
         return self.module_mm * self.teeth_flexspline / 2
@@ -92,7 +110,8 @@ class Gear(DesignTable):
     @property
     def bearing_play_limit_um(self) -> float:
         """c_max = 2a(1 − cos α) [µm]: there the working pressure angle is 0."""
-        return 2e3 * self.centre_distance_mm * (1 - cos(radians(self.pressure_angle_deg)))
+        angle = radians(self.pressure_angle_deg)
+        return 2 * UM_PER_MM * self.centre_distance_mm * (1 - cos(angle))
 
 
 class Bearing(DesignTable):
@@ -102,6 +121,11 @@ class Bearing(DesignTable):
     bearing_play_model: Literal["involute", "small_displacement"] = Field(
         default="involute", description="involute (c up to c_max) or small_displacement (c·sin α)"
     )
+
+    @property
+    def radial_clearance_mm(self) -> float:
+        """c [mm]."""
+        return self.radial_clearance_um * MM_PER_UM
 
 
 class Load(DesignTable):

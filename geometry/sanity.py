@@ -7,11 +7,11 @@ hats.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
 
 from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
+from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint, root_radius_mm
 from flexspline.geometry.rated import rated_warnings
 
@@ -165,7 +165,7 @@ def _micrometres(design: Design) -> Iterator[str]:
 
 
 def _clearance(design: Design) -> Iterator[str]:
-    clearance, thick = design.gear.flank_clearance_um, 1e3 * pi * design.gear.module_mm / 2
+    clearance, thick = design.gear.flank_clearance_um, UM_PER_MM * design.gear.tooth_thickness_mm
     if clearance > LARGEST_CLEARANCE * thick:
         yield (
             f"gear.flank_clearance_um = {clearance:g} is {clearance / thick:.0%} of a tooth's thickness, "

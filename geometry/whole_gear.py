@@ -11,6 +11,7 @@ from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.fields import UM_PER_MM
 
 LARGEST_STROKE = 0.1
 """Of the tube's inner radius: ratios in catalogues begin at 30, a stroke of 0.033. The model's displacements
@@ -44,10 +45,10 @@ def _faults(design: Design) -> Iterator[DesignError]:
             f"must be {span(low, high, 4)} mm: {z1} teeth of that module do not stand on the ring, whose "
             f"outer radius is {ring:.4g} mm",
         )
-    play = design.bearing.radial_clearance_um
-    if play / 1e3 >= 2 * design.w0_mm:
+    bearing = design.bearing
+    if bearing.radial_clearance_mm >= 2 * design.w0_mm:
         yield DesignError(
             "bearing.radial_clearance_um",
-            play,
-            f"must be below {2e3 * design.w0_mm:.4g} µm: twice the wave generator's stroke",
+            bearing.radial_clearance_um,
+            f"must be below {2 * UM_PER_MM * design.w0_mm:.4g} µm: twice the wave generator's stroke",
         )

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import FlexsplineError
+from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
@@ -18,7 +19,6 @@ from flexspline.pipeline.bearing_play import (
 from flexspline.pipeline.play_spread import play_spread
 
 ARCSEC_PER_RAD = 180 * 3600 / pi
-MM_PER_UM = 1e-3
 
 
 def series_compliance(K_b: float, K_e: float) -> float:
@@ -113,7 +113,7 @@ def backlash(design: Design, K_b_Nm_per_rad: float, K_e_Nm_per_rad: float) -> Ba
     torque, doubt = design.load.torque_Nm, design.uncertainty
     shaft = windup(torque, K_e_Nm_per_rad)
     flexspline = windup(torque, K_b_Nm_per_rad)
-    flank = clearance_angle(design, design.gear.flank_clearance_um * MM_PER_UM)
+    flank = clearance_angle(design, design.gear.flank_clearance_mm)
     play = clearance_angle(design, play_clearance(design))
     total = shaft + flexspline + flank + play
     play_std, beyond = play_spread(design.gear, design.bearing, doubt.radial_clearance_um)
@@ -146,7 +146,7 @@ def play_clearance(design: Design, model: str | None = None, play_um: float | No
     ------
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    play = (design.bearing.radial_clearance_um if play_um is None else play_um) * MM_PER_UM
+    play = design.bearing.radial_clearance_mm if play_um is None else play_um * MM_PER_UM
     alpha = radians(design.gear.pressure_angle_deg)
     if (model or design.bearing.bearing_play_model) == "small_displacement":
         return small_displacement_clearance(play, alpha)
@@ -160,9 +160,7 @@ def gap_rad(design: Design) -> float:
     ------
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    return clearance_angle(
-        design, design.gear.flank_clearance_um * MM_PER_UM + play_clearance(design)
-    )
+    return clearance_angle(design, design.gear.flank_clearance_mm + play_clearance(design))
 
 
 def angle_rad(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import pi, radians
+from math import radians
 
 import numpy as np
 
@@ -68,7 +68,6 @@ def gear_model(
     """
     require_whole_gear(design)
     bearing, spline, gear = flexible_bearing(design), circular_spline(design), design.gear
-    play = design.bearing.radial_clearance_um / 1e3
     shape = flexspline.shape
     assert not isinstance(shape, Shaft)
     pitch = gear.pitch_radius_mm
@@ -78,7 +77,7 @@ def gear_model(
         pitch_radius=pitch,
         lag=more / gear.teeth_circular_spline,
         stroke=gear.centre_distance_mm,
-        clearance=gear.flank_clearance_um / 1e3,
+        clearance=gear.flank_clearance_mm,
         pressure_angle=radians(gear.pressure_angle_deg),
         height=(pitch - middle) / middle,
         flanks=gear.flanks,
@@ -95,7 +94,7 @@ def gear_model(
     inside = gear.module_mm * gear.teeth_circular_spline / 2
     return GearModel(
         mesh,
-        _wave_generator(bearing, shape.inner_radius, play, races),
+        _wave_generator(bearing, shape.inner_radius, design.bearing.radial_clearance_mm, races),
         _rim(flexspline.without_holes(), pitch, ring, count, face),
         _race(shape.inner_radius, bearing.race_thickness, races, ring, groove, count),
         _spline(spline.root, spline.outer, rigid, inside, ring, face),
@@ -190,7 +189,7 @@ def pair_compliance(design: Design) -> float:
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
     teeth = (
         tooth(
-            lever, pi * gear.module_mm / 2, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
+            lever, gear.tooth_thickness_mm, radians(gear.pressure_angle_deg), ADDENDUM * gear.module_mm,
             f.ring_width_mm, each,
         )
         for each in materials

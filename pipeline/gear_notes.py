@@ -87,7 +87,7 @@ def _cuts_in(mesh: Mesh) -> str | None:
 
 def _why_both_press(design: Design, model: GearModel, unloaded: Equilibrium) -> str:
     stroke, full = model.wave_generator.deflection, design.gear.centre_distance_mm
-    play = design.bearing.radial_clearance_um / 2e3
+    play = design.bearing.radial_clearance_mm / 2
     if abs(stroke / full - 1) > LOW_RIM:
         return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
     if play > LOW_RIM * stroke:

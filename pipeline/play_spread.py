@@ -10,6 +10,7 @@ from math import erfc, inf, radians, sin, sqrt
 import numpy as np
 
 from flexspline.geometry.design import Bearing, Gear
+from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.bearing_play import involute_clearance
 
 REACH = 8.0
@@ -49,13 +50,13 @@ def play_spread(gear: Gear, bearing: Bearing, play_std_um: float) -> tuple[float
     integral does not. C beyond c_max has no answer in this model: it is left out, and its
     probability is returned instead of being hidden. C below 0 is preload, which the formula covers.
     """
-    s = play_std_um * 1e-3
+    s = play_std_um * MM_PER_UM
     alpha = radians(gear.pressure_angle_deg)
     if s == 0.0:
         return 0.0, 0.0
     if bearing.bearing_play_model == "small_displacement":
         return s * sin(alpha), 0.0
-    a, play = gear.centre_distance_mm, bearing.radial_clearance_um * 1e-3
+    a, play = gear.centre_distance_mm, bearing.radial_clearance_mm
     steps, weight = play_distribution(gear, bearing, play_std_um)
     here = involute_clearance(play, a, alpha)
     off = np.array([involute_clearance(play + s * t, a, alpha) - here for t in steps])

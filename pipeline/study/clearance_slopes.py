@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from math import radians, sin
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
-    MM_PER_UM,
     clearance_angle,
     play_clearance,
 )

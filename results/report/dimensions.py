@@ -26,8 +26,7 @@ def dimensions(design: Design) -> Iterable[Block]:
 
 def ratio(design: Design) -> str:
     """``100 : 1``, wave generator to flexspline while the circular spline stands still."""
-    g = design.gear
-    return f"{_number(g.teeth_flexspline / (g.teeth_circular_spline - g.teeth_flexspline))} : 1"
+    return f"{_number(design.gear.ratio)} : 1"
 
 
 def weights(design: Design) -> str:

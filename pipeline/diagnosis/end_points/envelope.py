@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.backlash import (
     ARCSEC_PER_RAD,
-    MM_PER_UM,
     clearance_angle,
     play_clearance,
 )
