@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.schema import Location, allowed, dotted, keys_of
 from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.toml_read import number_help
@@ -77,9 +77,7 @@ def _unknown(location: Location, kind: str | None) -> str:
                 return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
     if not table and key == "design":
         return "names a design: the file is a study, which `flexspline study` takes"
-    # a key may be 3000 letters long, and difflib's time grows with their square
-    near = get_close_matches(key[:200], known, n=1)
-    if near:
-        return f"unknown key; did you mean {near[0]}?"
+    if near := nearest_key(key, known):
+        return f"unknown key; did you mean {near}?"
     where = f"[{dotted(table)}]" if table else "the design"
     return f"unknown key; {where} takes {', '.join(known)}"

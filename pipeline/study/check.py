@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING
 from flexspline.geometry.keys import has_table_of, value_at
+from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.schema import allowed, node_at
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
@@ -87,8 +87,8 @@ def _check_design_key(study: Study, table: str, key: str) -> None:
         reason = "has no value in the design file that could scatter; state it there"
         raise StudyError(f'tolerance."{key}"', {}, reason)
     known = _numeric_keys(study.design)
-    near = get_close_matches(key[:200], known, n=1, cutoff=0.6)
-    reason = f"did you mean {near[0]}?" if near and near[0] != key else f"e.g. {known[0]}"
+    near = nearest_key(key, known)
+    reason = f"did you mean {near}?" if near and near != key else f"e.g. {known[0]}"
     raise StudyError(f'{table}."{key}"', {}, f"is no number of the design file; {reason}")
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Literal
 
+from flexspline.geometry.near_key import nearest_key
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 
 Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
@@ -59,7 +59,6 @@ def needed(asked: Iterable[str], usual: tuple[Solve, ...]) -> tuple[Solve, ...]:
 def not_a_figure(key: str) -> str:
     """Why a key is refused: the nearest known one, or all of them."""
     begins = [figure for figure in FIGURES if key and figure.startswith(key)]
-    near = begins or get_close_matches(key[:200], FIGURES, n=1, cutoff=0.6)
-    if near:
-        return f"unknown figure; did you mean {near[0]}?"
+    if near := begins[0] if begins else nearest_key(key, FIGURES):
+        return f"unknown figure; did you mean {near}?"
     return f"unknown figure; a study computes {', '.join(FIGURES)}"

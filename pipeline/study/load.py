@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.load import load_design, read_toml
+from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.toml_read import number_help
 from flexspline.pipeline.study.check import check
 from flexspline.pipeline.study.schema import KEYS, WORDS, StudyFile, pattern
@@ -65,8 +65,8 @@ def _said(fault: ErrorDetails) -> StudyError:
         known = KEYS.get(pattern(where[:-1]), ())
         if where[-1] in OF_DESIGN and len(where) == 1:
             return StudyError(key, fault["input"], NO_STUDY)
-        near = get_close_matches(str(where[-1])[:200], known, n=1, cutoff=0.6)
-        hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+        near = nearest_key(str(where[-1]), known)
+        hint = f"did you mean {near}?" if near else f"known are {', '.join(known)}"
         return StudyError(key, fault["input"], f"unknown key; {hint}")
     words = WORDS.get(pattern(where), "something else")
     if fault["type"] == "missing":

@@ -1,0 +1,24 @@
+"""The known key that a misspelt one is most like."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+LONGEST = 200
+"""Letters of a key that are compared: a file may hold one of thousands, and difflib's time grows with their
+square."""
+ALIKE = 0.6
+"""The least of difflib's ratio, from 0 (nothing in common) to 1 (equal): its default."""
+
+
+def nearest_key(key: str, known: Iterable[str]) -> str | None:
+    """That of the known keys which is most like `key`; None where none is much like it.
+
+    Examples
+    --------
+    >>> nearest_key("modul_mm", ["module_mm", "teeth_flexspline"])
+    'module_mm'
+    """
+    found = get_close_matches(key[:LONGEST], list(known), n=1, cutoff=ALIKE)
+    return found[0] if found else None
