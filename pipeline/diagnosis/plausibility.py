@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable
 
 import numpy as np
 
+from flexspline.pipeline.backlash import series_stiffness
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
@@ -193,7 +194,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
 
 
 def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | None:
-    stiffness = {"flexspline": K_b, "shaft": K_e, "series": 1 / (1 / K_b + 1 / K_e)}
+    stiffness = {"flexspline": K_b, "shaft": K_e, "series": series_stiffness(K_b, K_e)}
     parts: Iterable[tuple[str, ...]] = (specimens.part,)
     if not specimens.part_recorded:
         parts = ((name,) * len(specimens.part) for name in stiffness)

@@ -8,7 +8,7 @@ from math import hypot
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD, backlash, gap_rad, series_compliance
 from flexspline.pipeline.diagnosis.bend import Bend
 from flexspline.pipeline.diagnosis.measurement.history import History
 
@@ -53,7 +53,7 @@ def prediction_of(
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
     total = backlash(design, K_b_Nm_per_rad, K_e_Nm_per_rad)
-    compliance = (1 / K_b_Nm_per_rad + 1 / K_e_Nm_per_rad) * ARCSEC_PER_RAD
+    compliance = series_compliance(K_b_Nm_per_rad, K_e_Nm_per_rad) * ARCSEC_PER_RAD
     doubt = total.std_by_source_arcsec
     return Prediction(
         compliance,

@@ -10,6 +10,7 @@ from scipy.special import wrightomega
 from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.robust import rms
 
 
 def _held_still(history: History) -> History:
@@ -94,7 +95,7 @@ def _turned_at(
             return None
         slope, level = np.polyfit(t, torque[rows], 1)
         span = abs(torque[rows[-1]] - torque[rows[0]])
-        off = float(np.sqrt(np.mean((torque[rows] - level - slope * t) ** 2)))
+        off = rms(torque[rows] - level - slope * t)
         if span <= CLEAR * deadband_Nm or off > deadband_Nm + STRAIGHT * span:
             return None
         lines.append((slope, level))

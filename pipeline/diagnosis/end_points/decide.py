@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import hypot
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.decision import (
@@ -22,6 +20,7 @@ from flexspline.pipeline.diagnosis.end_points.evidence import UnitEvidence
 from flexspline.pipeline.diagnosis.end_points.race import UNNAMED, Hypothesis
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.robust import rms
 
 NAMING_NATS = RIVAL_EVIDENCE
 """The simulation within its uncertainty is a rival too."""
@@ -54,20 +53,22 @@ def decide(
         found.append(NamedCause(
             cause, probability(cause, scored), tuple(alternatives), magnitude, std,
             known_causes()[cause].unit, best.score - without,
-            float(np.sqrt(np.mean((term.column * best.best.mean[i])[term.column != 0] ** 2))),
+            rms((term.column * best.best.mean[i])[term.column != 0]),
             () if best.own is None else (names[best.own],),
         ))  # fmt: skip
-    rms = hypot(*(c.rms_arcsec for c in found))
     sure = best.score > NAMING_NATS and all(map(is_significant, found))
-    return decided(found, (), named_rms=rms, unnamed_rms=0.0, sure=sure)
+    return decided(
+        found, (), named_rms=hypot(*(c.rms_arcsec for c in found)), unnamed_rms=0.0, sure=sure
+    )
 
 
 def _unnamed(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Unexplained:
     """The curve of no cause that is likeliest."""
     term, amplitude = best.best.terms[-1], best.best.mean[-1]
-    rms = float(np.sqrt(np.mean((term.column * amplitude) ** 2)))
     p = chance(best.score, (h.score for h in hypotheses if UNNAMED not in h.causes))
-    return Unexplained("torque_Nm", rms, p, "a curve of the totals over torque")
+    return Unexplained(
+        "torque_Nm", rms(term.column * amplitude), p, "a curve of the totals over torque"
+    )
 
 
 def _channels(h: Hypothesis) -> set[str]:

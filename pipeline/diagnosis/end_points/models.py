@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.robust import rms
 
 FEWEST_UNITS = 3
 """To hold out one and still see what is common."""
@@ -107,10 +108,6 @@ def gain_of(deviations: UnitDeviations, best: Hypothesis, names: Sequence[str]) 
         for term, amplitude in zip(terms, trained.mean, strict=True):
             after[out] -= amplitude * term.column[out]
     return Gain(
-        f"each of {len(names)} units in turn", _rms(deviations.deviation), _rms(calibrated), _rms(after),
+        f"each of {len(names)} units in turn", rms(deviations.deviation), rms(calibrated), rms(after),
         best.best.reading, held_out_rows=tuple(range(len(deviations.deviation))),
     )  # fmt: skip
-
-
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(values**2)))

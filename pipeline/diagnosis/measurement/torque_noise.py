@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
 
 DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 FEWEST_FOR_NOISE = 8
 """Rows of a unit; of fewer a median of third differences rests on less than five."""
-MAD_PER_SIGMA, FIFTH_PER_SIGMA = 0.6745, 0.2533
-"""Of |x| for x normal with deviation 1: its median Φ⁻¹(3/4), and what a fifth of it lies below, Φ⁻¹(3/5)."""
+FIFTH_PER_SIGMA = 0.2533
+"""What a fifth of |x| lies below for x normal with deviation 1, Φ⁻¹(3/5)."""
 LARGEST_NOISE = 0.02
 """Of the largest torque: what looks like more is no noise."""
 

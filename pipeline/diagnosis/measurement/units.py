@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+
 Factors = Mapping[str, float]
 
 
@@ -25,7 +27,7 @@ TORQUE: Factors = {
 }  # fmt: skip
 ANGLE: Factors = {
     "arcsec": 1.0, "arcmin": 60.0, "deg": 3600.0, "mdeg": 3.6, "gon": 3240.0,
-    "urad": 0.18 * 3.6 / pi, "mrad": 180 * 3.6 / pi, "rad": 180 * 3600 / pi,
+    "urad": 0.18 * 3.6 / pi, "mrad": 180 * 3.6 / pi, "rad": ARCSEC_PER_RAD,
     "rev": ARCSEC_PER_TURN,
 }  # fmt: skip
 TIME: Factors = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}

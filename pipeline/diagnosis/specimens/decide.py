@@ -28,6 +28,7 @@ from flexspline.pipeline.diagnosis.decision import (
     probability,
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
@@ -69,7 +70,7 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
     decision = decided(
         found,
         unexplained,
-        named_rms=hypot(*(100 * _rms(race, best, (c,)) for c in best.named)),
+        named_rms=hypot(*(100 * _relative_rms(race, best, (c,)) for c in best.named)),
         unnamed_rms=hypot(*(u.rms for u in unexplained)),
         sure=all(map(is_significant, found)),
     )
@@ -108,7 +109,7 @@ def _named(
     return NamedCause(
         cause, probability(cause, ((f.named, f.score) for f in race.fits)), alternatives, value, std,
         UNITS.get(cause, "mm"), best.score - without,
-        ARCSEC_PER_RAD * torque_Nm * _rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
+        ARCSEC_PER_RAD * torque_Nm * _relative_rms(race, best, (cause,)) * float(np.mean(race.data.fe.total)),
         none=race.data.fe.base_zone if cause == LOAD_ZONE else 0.0,
     )  # fmt: skip
 
@@ -143,7 +144,7 @@ def _value(race: SpecimenRace, f: LaplaceFit, cause: str) -> tuple[float, float]
             return value, std
 
 
-def _rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) -> float:
+def _relative_rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) -> float:
     """Relative rms over the specimens of what some terms change."""
     at = f.mean.copy()
     for i, t in enumerate(f.terms):
@@ -152,9 +153,9 @@ def _rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) -> float:
     change = log_compliance(race.data.fe, f.terms, f.mean) - log_compliance(
         race.data.fe, f.terms, at
     )
-    return float(np.sqrt(np.mean(change**2)))
+    return rms(change)
 
 
 def _unexplained(race: SpecimenRace, best: LaplaceFit, term: SpecimenParameter) -> Unexplained:
     p = chance(best.score, (race.null, *(f.score for f in race.fits if term not in f.terms)))
-    return Unexplained(term.owner[1:], 100 * _rms(race, best, (term.owner,)), p, term.what)
+    return Unexplained(term.owner[1:], 100 * _relative_rms(race, best, (term.owner,)), p, term.what)

@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMeasurement
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_designs
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
@@ -58,7 +59,7 @@ def diagnose_specimens(
         fe,
         -np.log(specimens.stiffness_Nm_per_rad),
         None if std is None else std / specimens.stiffness_Nm_per_rad,
-        design.solver.tolerance_pct / 100,
+        design.solver.tolerance,
         design.uncertainty.youngs_modulus_pct / 100,
     )
     found, explanation = explain(bench, data, specimens, design)
@@ -73,8 +74,8 @@ def diagnose_specimens(
     gain = None
     if n >= FEWEST_HELD_OUT:
         gain = Gain(
-            f"each of {n} specimens in turn", _pct(before), _pct(calibrated), _pct(after),
-            _pct(chosen.noise), "%", tuple(range(n)),
+            f"each of {n} specimens in turn", 100 * rms(before), 100 * rms(calibrated), 100 * rms(after),
+            100 * rms(chosen.noise), "%", tuple(range(n)),
         )  # fmt: skip
     most = max(set(parts), key=parts.count)
     outcome = DiagnosisOutcome(
@@ -149,7 +150,3 @@ def _held_out(
             trained = fit(data.rows(rest), [t.rows(rest) for t in terms])
             out[i] = log_compliance(data.fe, terms, trained.mean)[i] - data.log_compliance[i]
     return before, calibrated, after
-
-
-def _pct(values: np.ndarray) -> float:
-    return 100 * float(np.sqrt(np.mean(values**2)))

@@ -19,6 +19,7 @@ from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
@@ -115,7 +116,7 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     base = float(((off / curve.std_arcsec) ** 2).sum())
     found = [fitted(one, chain, curve, nominal, start) for one in inputs.values()]
     found.sort(key=lambda one: one.chi_square)
-    plain = GearInputs("consistent", float(np.sqrt((off**2).mean())), base, len(off), tuple(found))
+    plain = GearInputs("consistent", rms(off), base, len(off), tuple(found))
     if chdtrc(len(off), base) > SURE:
         return plain
     best = found[0]
@@ -246,7 +247,7 @@ def _on_other_cycles(
         return None, None
     better = learn(_with_numerical(learnt, _angles(chain, learnt, start)))
     before, after = (other.angle_arcsec - _angles(each, other, start) for each in (chain, better))
-    return float(np.sqrt((before**2).mean())), float(np.sqrt((after**2).mean()))
+    return rms(before), rms(after)
 
 
 def _apart(

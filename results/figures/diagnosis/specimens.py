@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.results.diagnosis.words import channel_words, figures_text
 from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
@@ -105,7 +106,7 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
         axes = figure.add_axes((0.095, 0.185, 0.51, 0.62))
         bars = figure.add_axes((0.715, 0.185, 0.265, 0.62))
         x = np.arange(n)
-        noise = 100 * float(np.sqrt(np.mean(found.noise**2)))
+        noise = 100 * rms(found.noise)
         axes.axhspan(-2 * noise, 2 * noise, color="#e4e7ea", lw=0, label="noise ± 2σ")
         axes.axhline(0, color=MUTED, lw=0.8)
         for values, words, colour in (
