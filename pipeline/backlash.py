@@ -20,6 +20,9 @@ from flexspline.pipeline.play_spread import play_spread
 
 ARCSEC_PER_RAD = 180 * 3600 / pi
 
+TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play")
+"""Of the sum, in its order."""
+
 
 def series_compliance(K_b: float, K_e: float) -> float:
     """1/K_e + 1/K_b [rad/(N·m)] of flexspline and shaft one behind the other; both K in N·m/rad."""
@@ -66,6 +69,16 @@ class Backlash:
     std_by_source_arcsec: Mapping[str, float]
     play_beyond_limit: float
     model_form_arcsec: float | None
+
+    @property
+    def terms_arcsec(self) -> Mapping[str, float]:
+        """The four terms by name, in the sum's order."""
+        return {term: getattr(self, f"{term}_arcsec") for term in TERMS}
+
+    @property
+    def gap_arcsec(self) -> float:
+        """What flank clearance and bearing play leave free together."""
+        return self.flank_clearance_arcsec + self.bearing_play_arcsec
 
 
 def windup(torque_Nm: float, stiffness_Nm_per_rad: float) -> float:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from flexspline.pipeline.backlash import TERMS
 from flexspline.pipeline.gear_terms import TIGHT
 from flexspline.results.quantities import quantity
 
 
 def term_names() -> dict[str, str]:
     """Of the whole gear's terms, in the order of the sum; the gap of a tight gear is not in that."""
-    names = {
-        term: quantity(f"backlash_arcsec.{term}").name
-        for term in ("shaft", "flexspline", "flank_clearance", "bearing_play")
-    }
+    names = {term: quantity(f"backlash_arcsec.{term}").name for term in TERMS}
     return {**names, TIGHT: "Gap without any clearance", "total": "Together"}

@@ -94,8 +94,7 @@ def _solver(stiffness: Stiffness) -> Record:
 
 def backlash_record(total: Backlash) -> Record:
     """The four terms, their sum, and its standard deviation where the design states one."""
-    terms = ("shaft", "flexspline", "flank_clearance", "bearing_play", "total")
-    sums = {term: getattr(total, f"{term}_arcsec") for term in terms}
+    sums = {**total.terms_arcsec, "total": total.total_arcsec}
     record: Record = {"backlash_arcsec": sums}
     if total.std_arcsec is not None:
         sums["std"] = total.std_arcsec

@@ -143,11 +143,12 @@ def fast_K_e(design: Design) -> Stiffness:
 def _sum(design: Design, found: Mapping[str, float]) -> dict[str, float]:
     K_b, K_e = found[f"{design.solver.K_b_in_sum}_Nm_per_rad"], found["K_e_Nm_per_rad"]
     total = backlash(design, K_b, K_e)
-    terms = ["shaft", "flexspline", "flank_clearance", "bearing_play", "total"]
-    terms += ["std"] if total.std_arcsec is not None else []
+    sums = {**total.terms_arcsec, "total": total.total_arcsec}
+    if total.std_arcsec is not None:
+        sums["std"] = total.std_arcsec
     return {
         "K_series_Nm_per_rad": series_stiffness(K_b, K_e),
-        **{f"backlash_arcsec.{t}": float(getattr(total, f"{t}_arcsec")) for t in terms},
+        **{f"backlash_arcsec.{name}": float(value) for name, value in sums.items()},
     }
 
 

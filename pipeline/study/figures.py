@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from flexspline.geometry.near_key import nearest_key
+from flexspline.pipeline.backlash import TERMS
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 
 Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
@@ -21,12 +22,7 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
         *_stiffness("K_b"),
         *_stiffness("K_e"),
         "K_series_Nm_per_rad",
-        "backlash_arcsec.shaft",
-        "backlash_arcsec.flexspline",
-        "backlash_arcsec.flank_clearance",
-        "backlash_arcsec.bearing_play",
-        "backlash_arcsec.total",
-        "backlash_arcsec.std",
+        *(f"backlash_arcsec.{name}" for name in (*TERMS, "total", "std")),
     ),
     **{case: _stiffness(figure_of(case)) for case in RIM_CASES},
     "ellipse": ("wave_generator_peak_mises_MPa",),

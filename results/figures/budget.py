@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.backlash import TERMS, Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
 from flexspline.results.figures.words import fit, wrapped
@@ -17,7 +17,6 @@ from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, sa
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play")
 ADDED = "#b9a3cf"
 SUM = "#dfe3e7"
 CALIBRATION = "Calibration by measurement"
@@ -80,8 +79,8 @@ def write_budget(path: Path, backlash: Backlash, extended: ExtendedBacklash | No
 def _simulated(backlash: Backlash, more: bool) -> list[BudgetBar]:
     """The four terms and their sum."""
     total, start, rows = backlash.total_arcsec, 0.0, []
-    for term, colour in zip(TERMS, PALETTE, strict=True):
-        entry, size = quantity(f"backlash_arcsec.{term}"), getattr(backlash, f"{term}_arcsec")
+    for (term, size), colour in zip(backlash.terms_arcsec.items(), PALETTE, strict=True):
+        entry = quantity(f"backlash_arcsec.{term}")
         share = f"{100 * size / total:.0f} %"
         rows.append(BudgetBar(entry.name, start, size, colour, entry.short(size), share))
         start += size

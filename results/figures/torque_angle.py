@@ -71,7 +71,7 @@ def _annotate(
 ) -> None:
     high = float(np.interp(load, *branch))
     low = -high
-    gap = backlash.flank_clearance_arcsec + backlash.bearing_play_arcsec
+    gap = backlash.gap_arcsec
     arcsec = quantity("backlash_arcsec.total")
     end = np.array([REACH * load])
     highest = float(branch[1][-1])

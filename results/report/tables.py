@@ -46,9 +46,8 @@ def budget(content: ReportContent) -> list[Row]:
     """The four terms and their sum: value and share."""
     b = content.backlash
     rows = []
-    for term in ("shaft", "flexspline", "flank_clearance", "bearing_play", "total"):
+    for term, value in {**b.terms_arcsec, "total": b.total_arcsec}.items():
         entry = quantity(f"backlash_arcsec.{term}")
-        value = getattr(b, f"{term}_arcsec")
         share = f"{100 * value / b.total_arcsec:.0f} %"
         rows.append(_row(entry, value, "") | {"share": share, "term": term})
     return rows

@@ -180,5 +180,5 @@ def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
         "torque_Nm": torque.tolist(),
         "angle_arcsec": angle.tolist(),
         "spread_arcsec": band(torque, load, total).tolist(),
-        "gap_arcsec": total.flank_clearance_arcsec + total.bearing_play_arcsec,
+        "gap_arcsec": total.gap_arcsec,
     }

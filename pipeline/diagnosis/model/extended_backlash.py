@@ -68,7 +68,7 @@ def extended_backlash(
         twist += 2 * float(model.bend.at(np.array([torque_Nm]))[0])
     gap = model.gap_arcsec + own[1]
     windup = nominal.shaft_arcsec + nominal.flexspline_arcsec
-    free = nominal.flank_clearance_arcsec + nominal.bearing_play_arcsec
+    free = nominal.gap_arcsec
     return ExtendedBacklash(nominal, float(twist - windup + gap - free), added)
 
 
