@@ -13,6 +13,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
             f"{key} of the whole gear, {name}",
             f"K_{key[1]}",
             rounded=True,
+            group="gear",
         )
         for key, name in (
             ("K1", "from 0 to T1"),
@@ -21,7 +22,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         )
     ),
     *(
-        Quantity(key, key, "N·m", name, symbol, digits=3)
+        Quantity(key, key, "N·m", name, symbol, digits=3, group="gear torque")
         for key, name, symbol in (
             ("T1_Nm", "Torque T1", "T_1"),
             ("T2_Nm", "Torque T2", "T_2"),
@@ -35,6 +36,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Lost motion, between ± 4 % of rated torque",
         "θ_lm",
         decimals=1,
+        group="gear",
     ),
     Quantity(
         "lost_motion_torque_Nm",
@@ -43,6 +45,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Torque of the lost motion, each way",
         "T_lm",
         digits=3,
+        group="gear",
     ),
     Quantity(
         "free_angle_arcsec",
@@ -51,6 +54,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Free angle, clearance of both ways; K1 leaves it out",
         "θ_0",
         decimals=1,
+        group="gear",
     ),
     Quantity(
         "teeth_in_contact",
@@ -59,6 +63,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Teeth in contact at rated torque",
         "z_c",
         kind="count",
+        group="gear",
     ),
     Quantity(
         "preload_tooth_force_N",
@@ -75,6 +80,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Buckling torque of the flexspline's tube, estimate",
         "T_b",
         digits=2,
+        group="gear",
     ),
     Quantity(
         "ratcheting_torque_Nm",
@@ -83,6 +89,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Ratcheting torque, upper limit by loss of engagement",
         "T_r",
         digits=2,
+        group="gear",
     ),
     *(
         Quantity(

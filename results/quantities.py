@@ -1,6 +1,6 @@
 """The one table of quantities: result.json key, unit, long name, symbol and how it is printed.
 
-JSON, CSV, figures and the report all read it; no other file spells a unit or a symbol. The whole gear's
+JSON, CSV, charts and the report all read it: no other file names a figure of result.json. The whole gear's
 part of it stands in `gear_quantities.py`.
 """
 
@@ -211,6 +211,11 @@ QUANTITIES: tuple[Quantity, ...] = (
 )
 
 BY_KEY = {q.key: q for q in QUANTITIES}
+
+
+def quantities_of(group: str) -> tuple[Quantity, ...]:
+    """The quantities of a group, in the table's order."""
+    return tuple(q for q in QUANTITIES if q.group == group)
 
 
 def quantity(key: str) -> Quantity:

@@ -30,6 +30,8 @@ class Quantity:
     decimals : fixed decimals instead of significant digits.
     short_name : where there is room for a few words, as beside the live page's part; "" for none.
     note : beside it in the report: of a stiffness, what is held and what is driven.
+    group : of figures that are listed together: "gear", what the whole gear does; "gear torque", the torques
+        that divide its curve; "" for none.
     """
 
     key: str
@@ -43,6 +45,7 @@ class Quantity:
     decimals: int | None = None
     note: str = ""
     short_name: str = ""
+    group: Literal["", "gear", "gear torque"] = ""
 
     @property
     def mathtext(self) -> str:

@@ -11,6 +11,7 @@ from flexspline.geometry.errors import readable
 from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.results.gear_quantities import GEAR_QUANTITIES
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -167,11 +168,7 @@ def run_record(result: RunResult, wall_s: float) -> Record:
     }
 
 
-GEAR_FIGURES = (
-    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "T1_Nm", "T2_Nm", "rated_torque_Nm",
-    "lost_motion_arcsec", "lost_motion_torque_Nm", "free_angle_arcsec", "terms_torque_Nm",
-    "teeth_in_contact", "preload_tooth_force_N", "buckling_torque_Nm", "ratcheting_torque_Nm",
-)  # fmt: skip
+GEAR_FIGURES = (*(q.key for q in GEAR_QUANTITIES if "." not in q.key), "terms_torque_Nm")
 """Of the record, by their names in `GearCurve`."""
 
 

@@ -10,7 +10,8 @@ from flexspline.pipeline.gear_terms import TIGHT
 from flexspline.results.file_names import CURVE, LOADS
 from flexspline.results.gear_terms import term_names
 from flexspline.results.numbers import grouped
-from flexspline.results.quantities import quantity
+from flexspline.results.quantities import quantities_of, quantity
+from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
     Block,
@@ -24,12 +25,6 @@ from flexspline.results.report.document import (
 from flexspline.results.report.shown import shown
 from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 
-FIGURES = (
-    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "lost_motion_torque_Nm",
-    "free_angle_arcsec", "teeth_in_contact", "buckling_torque_Nm", "ratcheting_torque_Nm",
-)  # fmt: skip
-"""By their keys in result.json, in the order of the table."""
-
 
 def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     """What turns at the output with teeth, rim and bearing in contact."""
@@ -38,24 +33,25 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     if curve is None:
         yield Callout("amber", text=bold("Not found: ") + plain(f"{content.gear_missing}."))
         return
+    K1, K2, K3 = (symbol(quantity(f"K{n}_Nm_per_rad").symbol) for n in (1, 2, 3))
     yield Paragraph(
         plain(
             "The output under torque while the wave generator is locked: tooth pairs come into contact one "
             "after another, the rim may lift off its bearing, races and balls yield. Makers’ catalogues give "
             "such a curve as three slopes, "
         )
-        + symbol("K_1")
+        + K1
         + plain(" up to ")
-        + symbol("T_1")
-        + plain(f" = {curve.T1_Nm:.3g} N·m, ")
-        + symbol("K_2")
+        + _torque(curve, "T1_Nm")
+        + plain(", ")
+        + K2
         + plain(" up to ")
-        + symbol("T_2")
-        + plain(f" = {curve.T2_Nm:.3g} N·m, and ")
-        + symbol("K_3")
+        + _torque(curve, "T2_Nm")
+        + plain(", and ")
+        + K3
         + plain(" up to the rated torque ")
-        + symbol("T_N")
-        + plain(f" = {curve.rated_torque_Nm:.3g} N·m. Friction is not modelled.")
+        + _torque(curve, "rated_torque_Nm")
+        + plain(". Friction is not modelled.")
     )
     yield Table(
         columns=(
@@ -64,7 +60,11 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
             Column("Value", "right"),
             Column("Unit"),
         ),
-        rows=tuple(_figure(curve, key) for key in FIGURES if getattr(curve, key) is not None),
+        rows=tuple(
+            _figure(entry, value)
+            for entry in quantities_of("gear")
+            if (value := getattr(curve, entry.key)) is not None
+        ),
         caption=plain("The whole gear. ") + _shares(curve),
     )
     slopes = "Angle of the output over torque, and the torques between which the slopes are taken."
@@ -75,9 +75,13 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield from _assumed(curve)
 
 
-def _figure(curve: GearCurve, key: str) -> tuple[str | Words, ...]:
+def _torque(curve: GearCurve, key: str) -> Words:
     entry = quantity(key)
-    return entry.name, symbol(entry.symbol), bold(entry.text(getattr(curve, key))), entry.unit
+    return symbol(entry.symbol) + plain(f" = {getattr(curve, key):.{entry.digits}g} {entry.unit}")
+
+
+def _figure(entry: Quantity, value: float) -> tuple[str | Words, ...]:
+    return entry.name, symbol(entry.symbol), bold(entry.text(value)), entry.unit
 
 
 def _shares(curve: GearCurve) -> Words:

@@ -19,19 +19,18 @@ from flexspline.pipeline.linear_limit import linear_limit
 from flexspline.pipeline.live import left_out
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
+from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import REACH, band
 from flexspline.results.peaks import BORDER, marked
-from flexspline.results.quantities import bounds_kind, quantity
+from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
 from flexspline.results.style import PALETTE
 
 STIFFNESSES = (*FIGURES, "K_series")
 PEAKS = tuple(PART_OF)
-GEAR_ROWS = (
-    "K1_Nm_per_rad", "K2_Nm_per_rad", "K3_Nm_per_rad", "lost_motion_arcsec", "teeth_in_contact",
-)  # fmt: skip
-GEAR_MARKS = (("T_1", "T1_Nm"), ("T_2", "T2_Nm"), ("T_N", "rated_torque_Nm"))
+GEAR_ROWS = tuple(key for key in GIVEN_BY["gear"] if quantity(key).group == "gear")
+"""What the fast model gives of the whole gear."""
 LINE_POINTS = 25
 """Of the torque–angle line: it is straight, its band bends."""
 ESTIMATED = "≈\u2009"
@@ -141,7 +140,7 @@ def _gear(found: Found) -> Message:
             {"name": name, "value": value, "colour": colour}
             for (name, value), colour in zip(shares, PALETTE, strict=False)
         ],
-        "marks": [[symbol, found[key]] for symbol, key in GEAR_MARKS],
+        "marks": [[mark.symbol, found[mark.key]] for mark in quantities_of("gear torque")],
         "assumed": [f"{a['key']} = {a['value']:.4g}" for a in found["assumed"] if "." in a["key"]],
         "warnings": found["warnings"],
         "line": found.get("line"),
