@@ -1,4 +1,4 @@
-"""First mesh of a meridian: Delaunay refinement after Ruppert (J. Algorithms 18, 1995, 548-585).
+"""First mesh of a meridian: Delaunay refinement after Ruppert (`ruppert.py`).
 
 Boundary edges are halved until no vertex lies within their diametral circle, which makes each of
 them an edge of the Delaunay triangulation; then circumcentres of poorly shaped triangles are
@@ -9,21 +9,29 @@ Element size follows the local thickness by itself: one layer across a thin wall
 from __future__ import annotations
 
 from functools import lru_cache
-from math import ceil, pi, sin
+from math import ceil, pi
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import Delaunay, cKDTree
+from scipy.spatial import Delaunay
 
 from flexspline.fea.axisymmetric.meridian_mesh import (
     MeridianMesh,
     MeshingError,
-    edge_lengths,
     edge_middles,
     signed_areas,
 )
-from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.fea.axisymmetric.ruppert import (
+    circumcentres,
+    circumradii,
+    encroached,
+    entering,
+    independent,
+    is_flat,
+    is_poor,
+    lengths,
+)
 from flexspline.geometry.outline import SAME, Meridian, Segment
 
 CHORD_ANGLE = pi / 12
@@ -34,11 +42,6 @@ ROUNDS = 300
 """158 outlines of random designs took 11 to 25; what has no end is stopped by MOST_POINTS as a rule."""
 MOST_POINTS = 20_000
 """An outline without crossings needs a few hundred; one that crosses itself has no end."""
-FLAT = 1e-9
-"""A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
-the hull, between points of one straight segment, turned either way."""
-TOUCH = 1e-7
-"""Relative slack of circle tests: cocircular points of right-angled outlines count as outside."""
 
 
 @lru_cache(maxsize=8)  # both parts, the seat of half the width, and a few before them
@@ -58,7 +61,7 @@ def triangulate(outline: Meridian, inner: tuple[Segment, ...] = ()) -> MeridianM
     for _ in range(ROUNDS):
         if len(points) > MOST_POINTS:
             break
-        crowded = _encroached(points, edges)
+        crowded = encroached(points, edges)
         if not crowded.any():
             triangles = _inside(points, edges)
             added, crowded = _improvements(points, edges, triangles)
@@ -69,7 +72,7 @@ def triangulate(outline: Meridian, inner: tuple[Segment, ...] = ()) -> MeridianM
         points, edges, segment = _halved(lines, points, edges, segment, crowded)
     raise MeshingError(
         f"the outline cannot be meshed: still uneven with {len(points)} points, shortest boundary "
-        f"edge {_lengths(points, edges).min():.3g} mm; it crosses itself or has needle corners"
+        f"edge {lengths(points, edges).min():.3g} mm; it crosses itself or has needle corners"
     )
 
 
@@ -100,16 +103,6 @@ def _with_ends(points: np.ndarray, s: Segment) -> tuple[np.ndarray, list[int]]:
             points, away = np.vstack([points, end]), np.append(away, 0.0)
         ends.append(int(away.argmin()))
     return points, ends
-
-
-def _lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
-
-
-def _encroached(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Mask of edges with a vertex inside their diametral circle; the ends lie on the circle."""
-    nearest, _ = cKDTree(points).query(points[edges].mean(axis=1))
-    return nearest < _lengths(points, edges) / 2 * (1 - TOUCH)
 
 
 def _halved(
@@ -149,8 +142,7 @@ def _inside(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     own, corner = np.nonzero((across >= 0) & ~forward & ~backward)
     links = coo_matrix((np.ones(len(own)), (own, across[own, corner])), shape=2 * (len(side),))
     _, region = connected_components(links, directed=False)
-    longest = edge_lengths(points, triangles).max(axis=1)
-    inside = forward.any(axis=1) & (np.abs(area) > FLAT * longest**2)
+    inside = forward.any(axis=1) & ~is_flat(points, triangles)
     return triangles[np.isin(region, region[inside])]
 
 
@@ -160,40 +152,14 @@ def _improvements(
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
     corner = points[triangles]
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
-    area = signed_areas(points, triangles)
-    radius = sides.prod(axis=1) / (4 * np.maximum(area, ABOVE_ZERO))
-    bad = radius > sides.min(axis=1) / (2 * sin(SMALLEST_ANGLE))
-    if not bad.any():
+    radius = circumradii(sides, signed_areas(points, triangles))
+    poor = is_poor(sides, radius, SMALLEST_ANGLE)
+    if not poor.any():
         return np.empty((0, 2)), np.zeros(len(edges), bool)
-    order = np.argsort(-radius[bad])
-    centre = _circumcentres(corner[bad])[order]
-    reach = radius[bad][order]
-    tree = cKDTree(centre)
-    half = _lengths(points, edges) / 2 * (1 - TOUCH)
-    entered = tree.query_ball_point(points[edges].mean(axis=1), half)
-    free = np.ones(len(centre), bool)
-    free[np.array([i for found in entered for i in found], int)] = False
-    halve = np.array([len(found) > 0 for found in entered])
-    return _independent(centre[free], reach[free]), halve
-
-
-def _circumcentres(corner: np.ndarray) -> np.ndarray:
-    u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
-    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
-    return corner[:, 0] + off / twice[:, None]
-
-
-def _independent(centre: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Centres, largest circle first, none within reach of one taken before."""
-    if not len(centre):
-        return centre
-    near = cKDTree(centre).query_ball_point(centre, reach)
-    taken = np.zeros(len(centre), bool)
-    for i, others in enumerate(near):
-        taken[i] = not taken[others].any()
-    return centre[taken]
+    order = np.argsort(-radius[poor])
+    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
+    within, halve = entering(points, edges, centre)
+    return independent(centre[~within], reach[~within]), halve
 
 
 def _checked(

@@ -1,8 +1,8 @@
 """A triangulated sector of a plan in which every line of it is made of mesh edges.
 
 Delaunay's in the coordinates (ln r, φ): a conformal map, in which rings about the axis are straight and
-a sector is a rectangle. Lines are halved until no vertex lies within an edge's diametral circle (Ruppert,
-J. Algorithms 18, 1995, 548-585); poor triangles are improved only while they are large.
+a sector is a rectangle. Lines are halved until no vertex lies within an edge's diametral circle
+(`axisymmetric/ruppert.py`); poor triangles are improved only while they are large.
 """
 
 from __future__ import annotations
@@ -11,12 +11,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import Delaunay, cKDTree
+from scipy.spatial import Delaunay
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeshingError, edge_lengths, signed_areas
+from flexspline.fea.axisymmetric.ruppert import (
+    TOUCH,
+    circumcentres,
+    circumradii,
+    encroached,
+    entering,
+    independent,
+    is_flat,
+    is_poor,
+)
 from flexspline.fea.solid.plan_curves import Curve
 from flexspline.fea.solid.plan_edges import PlanEdges, keys
-from flexspline.geometry.above_zero import ABOVE_ZERO
 
 SMALLEST_ANGLE = np.radians(20)
 """Of large triangles: what Ruppert's proof covers."""
@@ -25,8 +34,6 @@ FLATTENED = 0.3
 OFF_LINE = 0.12
 """Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
 middle node moved by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
-TOUCH = 1e-7
-"""Relative slack of circle tests: rectangles' corners lie on one circle."""
 ROUNDS = 60
 """Plans of 150 random shafts took 30 at most."""
 MOST_POINTS = 4_000
@@ -57,10 +64,7 @@ def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> 
     for _ in range(ROUNDS):
         if len(own.points) > MOST_POINTS:
             break
-        length = own.lengths()
-        middle = own.points[own.ends].mean(axis=1)
-        nearest, _ = cKDTree(own.points).query(middle)
-        crowded = nearest < length / 2 * (1 - TOUCH)
+        crowded = encroached(own.points, own.ends)
         if crowded.any():
             own.split(crowded)
             continue
@@ -79,40 +83,27 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
     triangles = Delaunay(points).simplices.astype(np.int64)
     area = signed_areas(points, triangles)
     triangles[area < 0] = triangles[area < 0][:, ::-1]
-    longest = edge_lengths(points, triangles).max(axis=1)
-    return triangles[np.abs(area) > 1e-9 * longest**2]  # less is a line, by rounding on the hull
+    return triangles[~is_flat(points, triangles)]
 
 
 def _improvements(
     own: PlanEdges, triangles: np.ndarray, smallest_mm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Circumcentres (j, 2) worth adding, and the mask of edges to halve instead."""
-    none = np.zeros(len(own.ends), bool)
-    corner = own.points[triangles]
-    sides = edge_lengths(own.points, triangles)
-    radius = sides.prod(axis=1) / (
-        4 * np.maximum(np.abs(signed_areas(own.points, triangles)), ABOVE_ZERO)
-    )
+    corner, sides = own.points[triangles], edge_lengths(own.points, triangles)
+    radius = circumradii(sides, signed_areas(own.points, triangles))
     scale = np.exp(corner[:, :, 0].mean(axis=1))
-    bad = (radius > sides.min(axis=1) / (2 * np.sin(SMALLEST_ANGLE))) & (
-        sides.min(axis=1) * scale > smallest_mm
-    )
-    if not bad.any():
-        return np.empty((0, 2)), none
-    order = np.argsort(-radius[bad])
-    centre, reach = _circumcentres(corner[bad])[order], radius[bad][order]
-    inside = ((centre > own.points.min(axis=0)) & (centre < own.points.max(axis=0))).all(axis=1)
-    length, middle = own.lengths(), own.points[own.ends].mean(axis=1)
-    entered = cKDTree(centre).query_ball_point(middle, length / 2 * (1 - TOUCH))
-    free = inside.copy()
-    free[np.array([i for found in entered for i in found], int)] = False
-    halve = np.array([len(found) > 0 for found in entered])
-    halve &= length * np.exp(middle[:, 0]) > 2 * smallest_mm
-    taken = np.zeros(len(centre), bool)
-    near = cKDTree(centre).query_ball_point(centre, reach)
-    for i in np.flatnonzero(free):
-        taken[i] = not taken[near[i]].any()
-    return centre[taken], halve
+    poor = is_poor(sides, radius, SMALLEST_ANGLE) & (sides.min(axis=1) * scale > smallest_mm)
+    if not poor.any():
+        return np.empty((0, 2)), np.zeros(len(own.ends), bool)
+    order = np.argsort(-radius[poor])
+    centre, reach = circumcentres(corner[poor])[order], radius[poor][order]
+    within, halve = entering(own.points, own.ends, centre)
+    low, high = own.points.min(axis=0), own.points.max(axis=0)
+    free = ((centre > low) & (centre < high)).all(axis=1) & ~within
+    middle = own.points[own.ends].mean(axis=1)
+    halve &= own.lengths() * np.exp(middle[:, 0]) > 2 * smallest_mm
+    return independent(centre[free], reach[free]), halve
 
 
 def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -140,14 +131,6 @@ def _flattened(own: PlanEdges, triangles: np.ndarray) -> tuple[np.ndarray, np.nd
     free = np.setdiff1d(flat, lines)
     added = (own.points[free // n] + own.points[free % n]) / 2
     return added, np.isin(lines, np.union1d(flat, lines[at[near]]))
-
-
-def _circumcentres(corner: np.ndarray) -> np.ndarray:
-    u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
-    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
-    return np.asarray(corner[:, 0] + off / twice[:, None])
 
 
 def _checked(own: PlanEdges, triangles: np.ndarray) -> PlanMesh:

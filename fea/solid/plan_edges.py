@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
+from flexspline.fea.axisymmetric.ruppert import lengths
 from flexspline.fea.solid.plan_curves import Curve, pieces
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
@@ -56,8 +57,7 @@ class PlanEdges:
 
     def lengths(self) -> np.ndarray:
         """Of the edges in the map."""
-        a, b = self.points[self.ends[:, 0]], self.points[self.ends[:, 1]]
-        return np.asarray(np.linalg.norm(b - a, axis=1))
+        return lengths(self.points, self.ends)
 
     def middles(self) -> np.ndarray:
         """Of the edges' lines (k, 2), in the map."""

@@ -1,0 +1,77 @@
+"""Steps of Delaunay refinement (Ruppert, J. Algorithms 18, 1995, 548-585), shared by meridian and plan.
+
+Points are (n, 2), triangles (m, 3) counter-clockwise, edges (k, 2) of point numbers: of those lines
+that the mesh must keep.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from flexspline.fea.axisymmetric.meridian_mesh import edge_lengths, signed_areas
+from flexspline.geometry.above_zero import ABOVE_ZERO
+
+FLAT = 1e-9
+"""A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
+the hull, between points of one straight segment, turned either way."""
+TOUCH = 1e-7
+"""Relative slack of circle tests: cocircular points of right angles and rectangles count as outside."""
+
+
+def lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Of the edges (k,)."""
+    return np.asarray(np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1))
+
+
+def is_flat(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Mask (m,) of triangles that are lines but for rounding, turned either way."""
+    longest = edge_lengths(points, triangles).max(axis=1)
+    return np.asarray(np.abs(signed_areas(points, triangles)) <= FLAT * longest**2)
+
+
+def encroached(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Mask (k,) of edges with a point inside their diametral circle; the ends lie on the circle."""
+    nearest, _ = cKDTree(points).query(points[edges].mean(axis=1))
+    return np.asarray(nearest < lengths(points, edges) / 2 * (1 - TOUCH))
+
+
+def circumradii(sides: np.ndarray, areas: np.ndarray) -> np.ndarray:
+    """abc/(4A) (m,) of triangles by the lengths of their sides (m, 3) and their areas (m,), above 0."""
+    return np.asarray(sides.prod(axis=1) / (4 * np.maximum(areas, ABOVE_ZERO)))
+
+
+def circumcentres(corner: np.ndarray) -> np.ndarray:
+    """(m, 2) of triangles by their corners (m, 3, 2)."""
+    u, v = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+    twice = 2 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    off = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu])
+    return np.asarray(corner[:, 0] + off / twice[:, None])
+
+
+def is_poor(sides: np.ndarray, radii: np.ndarray, smallest_angle: float) -> np.ndarray:
+    """Mask (m,) of triangles with a smaller angle [rad]: the shortest side is 2R sin of the least one."""
+    return np.asarray(radii > sides.min(axis=1) / (2 * np.sin(smallest_angle)))
+
+
+def entering(
+    points: np.ndarray, edges: np.ndarray, centres: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Masks of centres (c,) inside the diametral circle of an edge, and of edges (k,) entered so."""
+    half = lengths(points, edges) / 2 * (1 - TOUCH)
+    found = cKDTree(centres).query_ball_point(points[edges].mean(axis=1), half)
+    within = np.zeros(len(centres), bool)
+    within[np.array([i for inside in found for i in inside], int)] = True
+    return within, np.array([len(inside) > 0 for inside in found])
+
+
+def independent(centres: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Of centres (c, 2), in their order, those (j, 2) not within `reach` (c,) of one taken before."""
+    if not len(centres):
+        return centres
+    near = cKDTree(centres).query_ball_point(centres, reach)
+    taken = np.zeros(len(centres), bool)
+    for i, others in enumerate(near):
+        taken[i] = not taken[others].any()
+    return np.asarray(centres[taken])
