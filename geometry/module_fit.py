@@ -5,7 +5,7 @@ from __future__ import annotations
 from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.design import Design
 
-FAR = 1.5
+WRONG_MODULE_RATIO = 1.5
 """Times too large or too small: no ring's thickness mends that."""
 
 
@@ -17,7 +17,7 @@ def root_radius_mm(design: Design) -> float:
 def module_hint(design: Design) -> str:
     """The module that ring and teeth ask for, where the stated one is far from it; else ""."""
     root, ring = root_radius_mm(design), design.flexspline.ring_radius
-    if 1 / FAR <= root / ring <= FAR:
+    if 1 / WRONG_MODULE_RATIO <= root / ring <= WRONG_MODULE_RATIO:
         return ""
     fits = ring / root * design.gear.module_mm
     return (

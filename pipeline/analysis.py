@@ -21,7 +21,7 @@ from flexspline.pipeline.backlash import Backlash, backlash
 from flexspline.pipeline.beside import beside
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import (
-    STRESS_TOLERANCE,
+    PEAK_STRESS_TOLERANCE,
     ellipse_field,
     ellipse_peak,
     half_seat_peak,
@@ -238,7 +238,7 @@ def torque_field(model: PartModel) -> SolidField:
             model.part.driven,
             torque,
             model.part.exclusion_mm,
-            STRESS_TOLERANCE,
+            PEAK_STRESS_TOLERANCE,
             Deadline(STAGE_SECONDS),
         )
     return replace(solved, peak=exact.peak)

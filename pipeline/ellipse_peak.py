@@ -27,13 +27,13 @@ from flexspline.pipeline.enclosed_part import may_answer
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.wave_generator import coarse_ellipse, solid_ellipse
 
-STRESS_TOLERANCE = 0.005
+PEAK_STRESS_TOLERANCE = 0.005
 """Change of a peak stress over two refinements at which the axisymmetric mesh is fine enough."""
 NARROW_SEAT = 0.5
 """Share of the ring's width that the seat has where it is asked how its width matters."""
 SEAT_TOLERANCE = 0.02
 """Change of that peak over two refinements: it says how much the width matters, by 5 to 30 %."""
-AGREEMENT = 2 * STRESS_TOLERANCE
+AGREEMENT = 2 * PEAK_STRESS_TOLERANCE
 """Relative difference of the two bodies' peaks up to which they are one: what both meshes leave open."""
 WITHOUT_HOLES = (
     "it is that of the part without its bolt holes, since the part with the ring of the holes cut out has "
@@ -136,7 +136,7 @@ def _of_body(
 
     def make(outline: Meridian, deadline: Deadline) -> tuple[StressPeak, float]:
         own = flexspline.material
-        field = ellipse_stress(outline, own, w0, apart, STRESS_TOLERANCE, deadline)
+        field = ellipse_stress(outline, own, w0, apart, PEAK_STRESS_TOLERANCE, deadline)
         return field.peak, _in_annulus(field, flexspline.part, bolts) if bolts else 0.0
 
     holes = {"circle_mm": bolts.radius, "hole_mm": bolts.hole_radius} if bolts else {}

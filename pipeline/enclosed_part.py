@@ -10,11 +10,11 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.enclosure import NestingError, enclosed
 from flexspline.pipeline.parts import PartModel
 
-SHARE = 0.3
+BODY_SHARE = 0.3
 """Of the tolerance: what the bounds of each body may take of it. The rest is left to what the holes take off
 K, ± 0.06 % on xb1-40, and both bodies still take 0.2 to 0.6 s a load case."""
-FIRST, FAR = 0.1, 3.0
-"""Distance of each body's own bounds at first [% of K], where SHARE asks for less; and the enclosure's
+FIRST_BOUNDS_PCT, FAR_HALF_WIDTHS = 0.1, 3.0
+"""Distance of each body's own bounds at first [% of K], where BODY_SHARE asks for less; and the enclosure's
 half-width over the tolerance beyond which it stays so: most of it is what the holes take off. Lobes, lift-off
 and free rim of a hat with sixteen holes, 0.1 % asked: ± 0.30, 0.75 and 1.46 % in 7.0 s of the processor,
 ± 0.32, 0.78 and 1.48 % in 4.9."""
@@ -36,17 +36,17 @@ def may_answer(model: PartModel) -> bool:
 def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
-    Where half of it is more than the tolerance, `shortfall` says why; where it is FAR more, the bodies are
-    solved no finer than to FIRST.
+    Where half of it is more than the tolerance, `shortfall` says why; where it is more than FAR_HALF_WIDTHS
+    tolerances, the bodies are solved no finer than to FIRST_BOUNDS_PCT.
 
     Raises
     ------
     NestingError
     ComputationError : of `solve`.
     """
-    finest_pct = SHARE * model.context.design.solver.tolerance_pct
-    found = _enclosed_to(model, solve, max(FIRST, finest_pct))
-    if finest_pct < FIRST and found.half_width <= FAR * model.tolerance:
+    finest_pct = BODY_SHARE * model.context.design.solver.tolerance_pct
+    found = _enclosed_to(model, solve, max(FIRST_BOUNDS_PCT, finest_pct))
+    if finest_pct < FIRST_BOUNDS_PCT and found.half_width <= FAR_HALF_WIDTHS * model.tolerance:
         found = _enclosed_to(model, solve, finest_pct)
     if found.half_width <= model.tolerance:
         return replace(found, shortfall="")

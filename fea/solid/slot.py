@@ -29,7 +29,7 @@ GROWTH = 1.6
 LARGEST_STEP = radians(20)
 """Far from the slot, where the shaft is in plain torsion: 15° and 20° differ by 6e-5 of the example's K,
 and parabolas of 20° lose 2e-5 of a circle's area."""
-NEAR, FAR, GROWTH_OF_EDGES = 0.3, 1.75, 1.6
+NEAR_RATIO, FAR_RATIO, GROWTH_RATIO = 0.3, 1.75, 1.6
 """Of the grading's values for the meridian: the revolved mesh repeats each triangle some 12 times, so their
 number counts, and short edges at singular points alone cost few. The example's shaft: K ± 0.30 % by 15 900
 elements; 0.2 and 1.5 give ± 0.15 % by 21 300; the grading as it is 0.6 % by 40 000. With 2.0 for the second a
@@ -79,7 +79,7 @@ class Block:
 
     def grading(self, asked: Grading) -> Grading:
         """The same wish of an error, for a revolved mesh of many steps."""
-        return Grading(NEAR * asked.near, FAR * asked.far, GROWTH_OF_EDGES * asked.growth)
+        return Grading(NEAR_RATIO * asked.near, FAR_RATIO * asked.far, GROWTH_RATIO * asked.growth)
 
     def finer(self, grading: Grading) -> Finer:
         """What the meridian must have beside the grading: shorter edges along `edges`, where the stress

@@ -8,7 +8,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
-from flexspline.pipeline.study.evaluate import LOBE_TOLERANCE, TORSION_TOLERANCE
+from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
 from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
@@ -25,8 +25,8 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
     """Sentences of the section "Scope and limits"; `of_best`: the warnings of the best designs."""
     said = [
         f"Fast model: bodies of revolution of the same meridian, without bolt holes and keyway; there K "
-        f"is between bounds at most {100 * TORSION_TOLERANCE:g} % apart, lobes "
-        f"{100 * LOBE_TOLERANCE:g} %.",
+        f"is between bounds at most {100 * STUDY_TORSION_TOLERANCE:g} % apart, lobes "
+        f"{100 * STUDY_LOBE_TOLERANCE:g} %.",
         *_holes(result),
         _mass(result.study.design),
     ]

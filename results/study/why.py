@@ -21,9 +21,9 @@ SAME = 1e-9
 """Of ranks that others make up to rounding."""
 AT_END = 0.02
 """Of a span: a best design so near its end would go on if it could."""
-FEWEST = 8
+FEWEST_RANKED_ROWS = 8
 """Rows from which a rank correlation says something, and beyond the dimensions a plane."""
-WORTH = 0.1
+WORTH_DEVIATIONS = 0.1
 """Standard deviations of a figure across a whole span: less is no influence that is worth a word."""
 
 
@@ -34,7 +34,7 @@ def influences(result: StudyResult) -> list[str]:
     influence of the dimension itself is left out.
     """
     rows = result.built
-    if len(rows) < FEWEST or result.about_scatter:  # where indices say what moves what
+    if len(rows) < FEWEST_RANKED_ROWS or result.about_scatter:  # where indices say what moves what
         return []
     said = []
     values = {key: np.array([r.values[key] for r in rows]) for key in result.study.file.vary}
@@ -117,7 +117,7 @@ def _may_help(result: StudyResult, key: str, outward: int) -> bool:
     """
     rows, file = result.built, result.study.file
     keys = list(file.vary)
-    if len(rows) < len(keys) + FEWEST:
+    if len(rows) < len(keys) + FEWEST_RANKED_ROWS:
         return True
     x = np.array([[r.values[k] for k in keys] for r in rows])
     plane = np.column_stack(
@@ -140,7 +140,7 @@ def _may_help(result: StudyResult, key: str, outward: int) -> bool:
         for k, limit in file.constraint.items()
         if _holds(limit, best[k])
     ]
-    return any(s > WORTH for s in (*gains, *eases))
+    return any(s > WORTH_DEVIATIONS for s in (*gains, *eases))
 
 
 def _holds(limit: Limit, value: float) -> bool:

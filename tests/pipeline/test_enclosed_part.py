@@ -15,7 +15,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
 from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.enclosed_part import FIRST, SHARE, TOO_FAR, enclosure_of
+from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
 from flexspline.pipeline.enclosure import NestingError, enclosed
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.parts import AnalysisContext, PartModel
@@ -157,11 +157,11 @@ def test_bodies_that_are_far_apart_are_not_solved_finely(
 
     part = model(design.changed({"solver.tolerance_pct": 0.1}), tmp_path)
     found = enclosure_of(part, solve)
-    bodies = 2
-    assert asked == [*[FIRST] * bodies, *[pytest.approx(SHARE * 0.1)] * bodies][: times * bodies]
+    of_two_bodies = [FIRST_BOUNDS_PCT] * 2 + [pytest.approx(BODY_SHARE * 0.1)] * 2
+    assert asked == of_two_bodies[: 2 * times]
     fine = enclosed(part.part, lambda body: torsional_stiffness(
         body.meridian, part.material, body.driven, 1e-5))  # fmt: skip
     # each end is off by its body's own bounds at most
-    assert found.half_width < fine.half_width + FIRST / 100
+    assert found.half_width < fine.half_width + FIRST_BOUNDS_PCT / 100
     assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + 1e-5)
     assert (found.shortfall == TOO_FAR) is (times == 1)

@@ -21,10 +21,10 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.revolved import lobes, torsion
 
-FE_TOLERANCE = 1e-3
+BENCH_TORSION_TOLERANCE = 1e-3
 """Relative, of the hole-free model's K: a step of `sensitivity.SMALLEST_STEP` changes K by more than ten
 times as much."""
-LOBE_TOLERANCE = 5e-3
+BENCH_LOBE_TOLERANCE = 5e-3
 """Relative, of the lobes' K, whose harmonics cost more: of the example cup (K_b 31 377 uniform, 26 832 at the
 lobes) it is 3 % of the way between them, a quarter of the narrower prior in `parameters.ZONES`."""
 PARTS: Mapping[str, tuple[PartName, ...]] = {
@@ -66,7 +66,7 @@ class Bench:
         material = Elastic.of(own.material)
         # where nothing is drilled, a circle and a diameter of holes may still be stated
         shape = own.shape.model_copy(update=NO_HOLES).model_dump(mode="json")
-        tolerance = LOBE_TOLERANCE if lobed else FE_TOLERANCE
+        tolerance = BENCH_LOBE_TOLERANCE if lobed else BENCH_TORSION_TOLERANCE
 
         def make() -> float:
             found = lobes(own, True, tolerance) if lobed else torsion(own, tolerance)

@@ -23,18 +23,18 @@ YLABELS: Mapping[Effect, str] = {
     "gap": "added gap in arcsec",
     "compliance": "added arcsec per N·m",
 }
-FAR = 0.4
+FAR_TORQUE_SHARE = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
 """Inches, as in `panels`; wider apart, for each panel has a title and an axis of its own."""
 OFFSET = "torque_offset"
-BESIDE = 25
+LETTERS_BESIDE = 25
 """Letters of the magnitude that fit beside a panel in full size."""
 
 
 def _size(line: str) -> float:
     """Points in which a bold line fits beside a panel."""
-    return 10.5 * min(1.0, BESIDE / len(line))
+    return 10.5 * min(1.0, LETTERS_BESIDE / len(line))
 
 
 def write_contributions(path: Path, shown: SweepPictureData) -> None:
@@ -89,7 +89,7 @@ def _panel(axes: Axes, shown: SweepPictureData, part: ContributionPanel) -> None
     if part.view == "gap":
         factor = 2 * np.sign(torque)
     elif part.view == "compliance":
-        chosen = chosen & (np.abs(torque) > FAR * shown.largest_Nm)
+        chosen = chosen & (np.abs(torque) > FAR_TORQUE_SHARE * shown.largest_Nm)
         factor = 1 / np.where(chosen, torque, 1.0)
     model, measured = factor * added, factor * (added + shown.left)
     x = part.channel.values

@@ -26,13 +26,13 @@ PANEL, TOP, BOTTOM, BETWEEN = 1.8, 0.95, 0.62, 0.72
 """Inches: height of a panel; above all, below all, and between rows of panels."""
 BINS = 14
 """Of a mean line over a panel of 3.2 inches: a quarter of an inch each."""
-FEWEST = 4
+FEWEST_OF_MEAN = 4
 """Values of which a mean is drawn: it scatters half as much as they."""
 LEVELS = 16
 """Distinct values up to which a channel is drawn level by level: as many as bins, about."""
 DODGE = 0.012
 """Share of a channel's range by which the branches stand apart where it has levels."""
-APART = 0.04
+CLUSTER_GAP_SHARE = 0.04
 """Share of a channel's range that, empty, parts clusters."""
 
 
@@ -138,10 +138,10 @@ def _panel(
 
 def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarray]:
     """Mean of y in bins of x: levels or clusters where they are few, else bins of equal count."""
-    if len(x) < FEWEST:
+    if len(x) < FEWEST_OF_MEAN:
         return np.empty(0), np.empty(0)
     sorted_x = np.sort(x)
-    gaps = np.flatnonzero(np.diff(sorted_x) > APART * np.ptp(x))
+    gaps = np.flatnonzero(np.diff(sorted_x) > CLUSTER_GAP_SHARE * np.ptp(x))
     if few:
         where, codes = np.unique(x, return_inverse=True)
     elif 1 < len(gaps) < LEVELS:  # a bin across a gap would put its mean where nothing was measured
@@ -152,7 +152,7 @@ def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarr
         codes = np.searchsorted(edges, x, side="right")
         where = np.arange(codes.max() + 1, dtype=float)
     count = np.bincount(codes, minlength=len(where))
-    good = count >= (1 if few else FEWEST)
+    good = count >= (1 if few else FEWEST_OF_MEAN)
     mean_x = np.bincount(codes, x, len(where)) / np.maximum(count, 1)
     mean_y = np.bincount(codes, y, len(where)) / np.maximum(count, 1)
     return mean_x[good], mean_y[good]
