@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
-FAR = 3.0
+FAR_DEVIATIONS = 3.0
 """Stated deviations: one calibration of a right simulation in 370 lies further off."""
 
 
@@ -34,7 +34,7 @@ class Calibration:
     compliance: Estimate | None = None
 
     def far_off(self, prediction: Prediction) -> tuple[FarOff, ...]:
-        """What lies more than `FAR` of its stated deviations from the simulation."""
+        """What lies more than `FAR_DEVIATIONS` of its stated deviations from the simulation."""
         measured = [("gap", self.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)]
         if self.compliance is not None:
             stated = prediction.compliance, prediction.compliance_std
@@ -42,7 +42,7 @@ class Calibration:
         return tuple(
             FarOff(name, found, abs(found.value - simulated) / std)
             for name, found, simulated, std in measured
-            if abs(found.value - simulated) > FAR * std > 0
+            if abs(found.value - simulated) > FAR_DEVIATIONS * std > 0
         )
 
 

@@ -23,7 +23,7 @@ from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
 ABSURD = 30.0
 """Times stiffer or softer than simulated, docs/contract.md, section 4."""
-LIKELY = 3.0
+LIKELY_RATIO = 3.0
 """Times that readings in the likely unit may be off: a real gear's twist is within."""
 RESOLVED = 10.0
 """Times the rms off the line that a slope's twist must have: a curve through the gap is no slope."""
@@ -122,7 +122,7 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
             elastic = size.simulated_arcsec - size.simulated_gap_arcsec
             simulated = elastic * TORQUE[unit] / torque.factor + size.simulated_gap_arcsec
             chord = float(np.log(max(abs(size.chord), TINY) * size.simulated_arcsec / simulated))
-            if abs(chord) < np.log(LIKELY):
+            if abs(chord) < np.log(LIKELY_RATIO):
                 off = max(off, abs(chord))
                 found.append((off, f"is {torque.head} in {unit}, not {symbol(torque.unit)}"))
     found += [(0.0, f"is {h.head} in {h.other}, not {h.unit}") for h in unit_hints(size, sweep)]
@@ -137,10 +137,10 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
 def likely_units(
     ratios: tuple[float, ...], column: ReadColumn, units: tuple[str, ...], factors: Factors
 ) -> list[tuple[str, float]]:
-    """Units in which readings `ratios` times too large would be right within `LIKELY`; how far off in ln."""
+    """Units in which readings `ratios` times too large are right within `LIKELY_RATIO`; how far off in ln."""
     size = np.clip(np.abs(ratios), TINY, 1 / TINY)
     off = {u: float(np.abs(np.log(size * factors[u] / column.factor)).max()) for u in units}
-    return [(u, off[u]) for u in units if u != column.unit and off[u] < np.log(LIKELY)]
+    return [(u, off[u]) for u in units if u != column.unit and off[u] < np.log(LIKELY_RATIO)]
 
 
 def likely_unit(

@@ -40,7 +40,7 @@ VERDICTS = {
     "insufficient": "Too little data for a verdict",
 }
 """Headings."""
-SURE = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
+EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.0, "likely"))
 """Nats of evidence, and how sure that is in words."""
 
 WIDER = 1.1
@@ -59,7 +59,7 @@ def sure_words(cause: NamedCause) -> str:
     if cause.alternatives:
         return "not decided"
     # the evidence may be strong that there is an effect, its size nevertheless uncertain
-    words = next((words for least, words in SURE if cause.evidence_nats >= least), "weak")
+    words = next((words for least, words in EVIDENCE_WORDS if cause.evidence_nats >= least), "weak")
     return words if cause.deviations >= SIZE_KNOWN else f"{words}, size uncertain"
 
 

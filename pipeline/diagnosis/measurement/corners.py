@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import PARTS, ramp_rate, rates_of
+from flexspline.pipeline.diagnosis.measurement.ramps import CYCLE_PARTS, ramp_rate, rates_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 SUDDEN = 0.3
@@ -43,7 +43,9 @@ def corners_of(history: History) -> list[Corner]:
         noise = torque_noise_Nm(history) / fast
         width = rates_of(history, rows).width
         cycle = len(rows) / (int(history.cycle[rows].max()) + 1)
-        widths = [w for w in (width, 2 * width, 4 * width) if w == width or w * PARTS <= cycle]
+        widths = [
+            w for w in (width, 2 * width, 4 * width) if w == width or w * CYCLE_PARTS <= cycle
+        ]
         change = _sudden(time, torque / fast, noise, widths)
         found += [
             Corner(unit, _met(time, torque, i, way), float(change[i]))

@@ -6,14 +6,15 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 
-FEWEST = 20
+FEWEST_CONSTANT_ROWS = 20
 """Rows: readings with noise seldom agree in both channels twice running."""
 
 
 def constant_lines(sweep: Sweep) -> tuple[int, int] | None:
     """First and last line in the file of the longest run with torque and angle exactly constant, both.
 
-    None where no run has `FEWEST` rows, and where most rows repeat the row before: the record has no noise.
+    None where no run has `FEWEST_CONSTANT_ROWS` rows, and where most rows repeat the row before: the record
+    has no noise.
     """
     history = sweep.history
     same = (np.diff(history.torque_Nm) == 0) & (np.diff(sweep.angle_arcsec) == 0)
@@ -21,7 +22,7 @@ def constant_lines(sweep: Sweep) -> tuple[int, int] | None:
     changes = np.concatenate([[0], np.flatnonzero(~same) + 1, [len(sweep)]])
     rows = np.diff(changes)
     longest = int(rows.argmax())
-    if rows[longest] < FEWEST:
+    if rows[longest] < FEWEST_CONSTANT_ROWS:
         return None
     first = int(changes[longest])
     others = np.delete(same, slice(first, first + int(rows[longest]) - 1))

@@ -6,8 +6,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import (
-    CLEAR,
-    FEWEST,
+    CLEAR_SIGMAS,
+    FEWEST_HOLD_ROWS,
     MOVING,
     ramp_rate,
     rates_of,
@@ -15,22 +15,22 @@ from flexspline.pipeline.diagnosis.measurement.ramps import (
 from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.torque_noise import DEADBAND_SIGMAS, torque_noise_Nm
 
-STILL = 0.08
+HOLD_RATE_SHARE = 0.08
 """A hold's torque moves at less than this share of the ramps' rate,"""
-BESIDE = 5
+BESIDE_ROWS = 5
 """Rows that are just before or after."""
-SPAN = 0.04
+HOLD_RANGE_SHARE = 0.04
 """Over a whole hold torque changes by less than this share of the largest."""
 RANGE_SIGMAS = 6.0
 """Range of 450 rows of normal noise, in its standard deviations, on average; of more rows it is larger."""
 SURE_SIGMAS = 3.0
 """Deviations of a hold's own rate by noise, by which it must be slower than what moves."""
-AROUND = 20
+AROUND_ROWS = 20
 """Rows whose mean says where torque is before and after a gap between two runs: to a fifth of its noise."""
 
 
 def holds(history: History) -> list[np.ndarray]:
-    """Rows of each stretch where torque stands still between two moves, at least `FEWEST` rows."""
+    """Rows of each stretch where torque stands still between two moves, at least `FEWEST_HOLD_ROWS` rows."""
     key = ("holds", 0.0)
     if key not in history.memo:
         history.memo[key] = _holds(history)
@@ -43,26 +43,27 @@ def _holds(history: History) -> list[np.ndarray]:
     if fast == 0:
         return []
     noise = torque_noise_Nm(history)
-    span = SPAN * float(np.abs(history.torque_Nm).max())
+    span = HOLD_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
     found = []
     for rows in history.unit_slices:
-        if len(rows) < 2 * FEWEST:
+        if len(rows) < 2 * FEWEST_HOLD_ROWS:
             continue
         assert history.time_s is not None
         rates = rates_of(history, rows)
         width, rate = rates.width, np.abs(rates.values)
         t = history.time_s[rows]
         floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
-        limit = np.minimum(np.maximum(STILL * fast, floor), MOVING * fast)
+        limit = np.minimum(np.maximum(HOLD_RATE_SHARE * fast, floor), MOVING * fast)
         torque = history.torque_Nm[rows]
         for i, j in _joined(runs(rate < limit), torque, t, width, noise, fast):
-            before, after = rate[max(0, i - width - BESIDE) : i], rate[j : j + width + BESIDE]
+            beside = width + BESIDE_ROWS
+            before, after = rate[max(0, i - beside) : i], rate[j : j + beside]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))
             hold = rows[i : j + width]
             spread = noise * max(RANGE_SIGMAS, _range_sigmas(len(hold)))
             level = np.ptp(history.torque_Nm[hold]) < span + spread
             if (
-                len(hold) >= FEWEST
+                len(hold) >= FEWEST_HOLD_ROWS
                 and sharp
                 and level
                 and _stands(torque, t, i, j + width, noise, fast)
@@ -90,14 +91,14 @@ def _joined(
 
     found: list[tuple[int, int]] = []
     for i, j in runs:
-        if found and i - found[-1][1] <= width + BESIDE:
+        if found and i - found[-1][1] <= width + BESIDE_ROWS:
             a, b = found[-1]
-            stepped = abs(level(max(a, b - AROUND), b) - level(i, min(j, i + AROUND)))
-            share = min(AROUND, (j - a) // 2)  # rows at either end, not the same ones
+            stepped = abs(level(max(a, b - AROUND_ROWS), b) - level(i, min(j, i + AROUND_ROWS)))
+            share = min(AROUND_ROWS, (j - a) // 2)  # rows at either end, not the same ones
             moved = abs(level(a, a + share) - level(j - share, j))
             passed = time_s[min(j, len(time_s) - 1)] - time_s[a]
-            still = STILL * fast_Nm_per_s * passed + noise_Nm / 2
-            if stepped < CLEAR / 2 * noise_Nm and moved < still:
+            still = HOLD_RATE_SHARE * fast_Nm_per_s * passed + noise_Nm / 2
+            if stepped < CLEAR_SIGMAS / 2 * noise_Nm and moved < still:
                 found[-1] = (a, j)
                 continue
         found.append((i, j))
@@ -115,7 +116,7 @@ def _stands(
     square = max(float((away**2).sum()), 1e-300)
     rate, doubt = abs(float(away @ torque)) / square, noise_Nm / square**0.5
     beside = min(fast, _rate_beside(torque_Nm, time_s, i, j))
-    return rate - doubt < STILL * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
+    return rate - doubt < HOLD_RATE_SHARE * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
 
 
 def _rate_beside(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int) -> float:

@@ -11,13 +11,13 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_
 
 MOVING = 0.3
 """and just before and after it at more than this."""
-FEWEST = 3
+FEWEST_HOLD_ROWS = 3
 """Rows of a hold: two are a turn between samples."""
-CLEAR = 8.0
+CLEAR_SIGMAS = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
-PARTS = 60
+CYCLE_PARTS = 60
 """Of a cycle."""
-FAST = 0.95
+FAST_QUANTILE = 0.95
 """Quantile of rates, or of steps, of rows that move, that is a ramp's."""
 NOISE_MOVES = 5.7
 """Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
@@ -42,15 +42,18 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     noise = torque_noise_Nm(history)
     widest = max(1, len(rows) // 20)
     # a ramp's step, from moves over a small part of a cycle
-    coarse = max(1, len(rows) // (PARTS * (int(history.cycle[rows].max()) + 1)))
+    coarse = max(1, len(rows) // (CYCLE_PARTS * (int(history.cycle[rows].max()) + 1)))
     far = np.abs(torque[coarse:] - torque[:-coarse])
     far = far[far > NOISE_MOVES * noise]
-    step = np.quantile(far, FAST) / coarse if len(far) else 0.0
-    fewest = int(np.clip(np.ceil(CLEAR * noise / max(step, 1e-12)), 1, widest))
+    step = np.quantile(far, FAST_QUANTILE) / coarse if len(far) else 0.0
+    fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, 1e-12)), 1, widest))
     width = 1  # a ramp may be shorter than that part
     while width < fewest:
         moved = np.abs(torque[width:] - torque[:-width])
-        if by_travel(moved, np.maximum(moved - NOISE_MOVES * noise, 0.0), 0.5) >= CLEAR * noise:
+        if (
+            by_travel(moved, np.maximum(moved - NOISE_MOVES * noise, 0.0), 0.5)
+            >= CLEAR_SIGMAS * noise
+        ):
             break
         width = min(2 * width, fewest)
     moved = torque[width:] - torque[:-width]
@@ -70,7 +73,7 @@ def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:
 
 def cycle_rate(history: History, rows: np.ndarray) -> float:
     """Torque rate [N·m/s] that half of a cycle's travel is slower than; 0 where too few rows say."""
-    if len(rows) < 2 * FEWEST:
+    if len(rows) < 2 * FEWEST_HOLD_ROWS:
         return 0.0
     found = rates_of(history, rows)
     return by_travel(np.abs(found.values), found.travel_Nm, 0.5)
@@ -89,12 +92,12 @@ def _ramp_rate(history: History) -> float:
         return 0.0
     found = []
     for rows in history.unit_slices:
-        if len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
+        if len(rows) < 2 * FEWEST_HOLD_ROWS or np.ptp(history.time_s[rows]) == 0:
             continue
         rates = rates_of(history, rows)
         rate = np.abs(rates.values[rates.travel_Nm > 0])  # most rows may lie in holds
         if len(rate):
-            fast = np.quantile(rate, FAST)
+            fast = np.quantile(rate, FAST_QUANTILE)
             found.append(float(np.median(rate[rate > MOVING * fast])))
     return float(np.median(found)) if found else 0.0
 
@@ -118,4 +121,4 @@ def shortest_lag_s(history: History) -> float:
     Over a shorter time the noise is a good part of the torque's change.
     """
     rate = ramp_rate(history)
-    return CLEAR * torque_noise_Nm(history) / rate if rate > 0 else 0.0
+    return CLEAR_SIGMAS * torque_noise_Nm(history) / rate if rate > 0 else 0.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 
-FEWEST = 20
+FEWEST_REPEATED_ROWS = 20
 """Rows: two readings of a hundred different values each repeat by chance so often in 10⁴⁰ records."""
 
 
@@ -27,7 +27,7 @@ def copied_rows(sweep: Sweep) -> int:
         return 0
     shift = int(np.bincount(behind[behind > 0]).argmax())
     count = n - shift
-    if count < FEWEST or not (read[shift:] == read[:count]).all():
+    if count < FEWEST_REPEATED_ROWS or not (read[shift:] == read[:count]).all():
         return 0
     several = (
         len({*zip(history.unit[:shift].tolist(), history.cycle[:shift].tolist(), strict=True)}) > 1

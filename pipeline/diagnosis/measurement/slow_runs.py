@@ -11,12 +11,12 @@ from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 
-SPAN = 0.005
+SLOW_RANGE_SHARE = 0.005
 """Of the largest torque, within which torque all but rests: a sixth of the shortest way between two breaks of
 an output that sticks, in made-up records (0.03)."""
-FEWEST = 4
+FEWEST_SLOW_ROWS = 4
 """Rows of a slow run."""
-SLOWER = 2.0
+SLOWER_RATIO = 2.0
 """Times the median number of rows that torque needs for the span."""
 
 
@@ -27,7 +27,7 @@ def resting(history: History) -> list[np.ndarray]:
     for rows in held:
         free[rows] = False
     torque = less_jitter(history).torque_Nm
-    span = SPAN * float(np.abs(history.torque_Nm).max())
+    span = SLOW_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
     pieces: list[np.ndarray] = []
     for rows in history.unit_slices:
         for first, end in runs(free[rows]):
@@ -35,7 +35,7 @@ def resting(history: History) -> list[np.ndarray]:
             pieces += [piece[a:b] for a, b in _longest(torque[piece], span)]
     if not pieces:
         return held
-    fewest = max(FEWEST, SLOWER * float(np.median([len(p) for p in pieces])))
+    fewest = max(FEWEST_SLOW_ROWS, SLOWER_RATIO * float(np.median([len(p) for p in pieces])))
     slow = [p for p in pieces if len(p) >= fewest]
     return sorted([*held, *slow], key=lambda rows: int(rows[0]))
 

@@ -11,16 +11,16 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
-FAR = 4.0
+FAR_SIGMAS = 4.0
 """Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
-USUAL, WIDEST = 7, 20
+USUAL_ROWS, WIDEST_ROWS = 7, 20
 """Rows on either side: torque amid 15 is known to 0.39 of its noise, its rate to 0.06 a row; amid 41 to
 0.23."""
-PART = 40
+CYCLE_PART = 40
 """Of a cycle, on either side: of a sine a parabola there leaves (2π/40)⁴/24 of its height at most, 3e-5."""
-BESIDE = 4
+CORNER_ROWS = 4
 """Rows by which a hold's ends and the corners there may differ, both together."""
-FEWEST = 4
+FEWEST_STRAIGHT_ROWS = 4
 """Rows of a straight way: a parabola leaves nothing of three."""
 
 
@@ -40,7 +40,7 @@ def jitter(history: History, width: int) -> np.ndarray:
         for hold in still(history):
             out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
         # beyond its noise it is a corner that was not seen
-        history.memo[key] = np.where(np.abs(out) < FAR * torque_noise_Nm(history), out, 0.0)
+        history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * torque_noise_Nm(history), out, 0.0)
     return history.memo[key]
 
 
@@ -52,7 +52,7 @@ def still(history: History) -> list[np.ndarray]:
         for unit, rows in enumerate(history.unit_slices):
             _, edges = _ways(history, corners, unit, rows)
             way[rows] = np.repeat(np.diff(edges), np.diff(edges))
-        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + BESIDE]
+        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + CORNER_ROWS]
     found: list[np.ndarray] = history.memo[key]
     return found
 
@@ -68,7 +68,7 @@ def _ways(
 
 def widest(history: History) -> int:
     """Rows on either side that many rows a cycle allow."""
-    return int(np.clip(len(history) / history.cycle_count / PART, USUAL, WIDEST))
+    return int(np.clip(len(history) / history.cycle_count / CYCLE_PART, USUAL_ROWS, WIDEST_ROWS))
 
 
 def less_jitter(history: History) -> History:
@@ -96,4 +96,4 @@ def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: 
     gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
     right = np.einsum("nwi,nw->ni", basis, torque[near])
     off = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
-    return np.where(last - first < FEWEST, 0.0, off)
+    return np.where(last - first < FEWEST_STRAIGHT_ROWS, 0.0, off)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST, by_travel, rates_of
+from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST_HOLD_ROWS, by_travel, rates_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 Ends = tuple[float, float]
@@ -115,7 +115,11 @@ def _turned(angle_deg: np.ndarray, ends: Ends) -> np.ndarray:
 
 def _rates(history: History, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """Rate [N·m/s] and travel [N·m] from each row of a unit on, or None without time."""
-    if history.time_s is None or len(rows) < 2 * FEWEST or np.ptp(history.time_s[rows]) == 0:
+    if (
+        history.time_s is None
+        or len(rows) < 2 * FEWEST_HOLD_ROWS
+        or np.ptp(history.time_s[rows]) == 0
+    ):
         return None
     found = rates_of(history, rows)
     return np.abs(found.values), found.travel_Nm

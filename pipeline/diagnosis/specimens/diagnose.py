@@ -21,10 +21,10 @@ from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance, s
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
 from flexspline.pipeline.parts import AnalysisContext
 
-FEWEST = 3
+FEWEST_SPECIMENS = 3
 """One for the modulus, one for a cause, one to see noise."""
 FEWEST_HELD_OUT = 4
-"""The rest then still has FEWEST specimens."""
+"""The rest then still has FEWEST_SPECIMENS specimens."""
 PLAINLY = 0.25
 """A file that does not say its part is the series' where the flexspline alone is this far off in ln K and
 the series less than half as far."""
@@ -49,7 +49,7 @@ def diagnose_specimens(
     """
     designs = row_designs(design, specimens)
     n = len(designs)
-    if n < FEWEST:
+    if n < FEWEST_SPECIMENS:
         return _insufficient(n), None
     bench = Bench(context, K_b, K_e, full)
     parts, guessed_by = _parts(bench, designs, specimens)
@@ -107,7 +107,7 @@ def explain(
 
 
 def _insufficient(n: int) -> DiagnosisOutcome:
-    reason = f"{n} specimen{'s' if n != 1 else ''}; modulus, one cause and the noise need {FEWEST}"
+    reason = f"{n} specimen{'s' if n != 1 else ''}; modulus, one cause and the noise need {FEWEST_SPECIMENS}"
     doing = "measure at least eight specimens whose length, wall and diaphragm differ"
     return DiagnosisOutcome(
         "insufficient",

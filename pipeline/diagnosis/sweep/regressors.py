@@ -10,7 +10,7 @@ from math import log
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL, jitter, widest
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -151,7 +151,7 @@ def _nuisance_regressor(
 
 
 NARROW = 2
-"""Rows on each side over which the torque is taken as a parabola; `USUAL` and `widest` beside it."""
+"""Rows on each side over which the torque is taken as a parabola; `USUAL_ROWS` and `widest` beside it."""
 NOISE_COLUMNS = 3
 
 
@@ -173,7 +173,7 @@ def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray,
             columns += [own * h.torque_Nm, own * h.sign / 2]
             prior += [p.compliance_std, p.gap_std_arcsec]
     columns += (
-        [jitter(h, w) for w in (NARROW, USUAL, widest(h))] if noise is None else list(noise.T)
+        [jitter(h, w) for w in (NARROW, USUAL_ROWS, widest(h))] if noise is None else list(noise.T)
     )
     prior += [p.compliance] * NOISE_COLUMNS
     return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)

@@ -26,17 +26,17 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
 
-NUMERICAL = 0.005
+NUMERICAL_SHARE = 0.005
 """Of the wind-up: what harmonics, places and stations move K by, at most (docs/whole-gear.md)."""
-SURE = 0.01
+MISFIT_P_VALUE = 0.01
 """Probability of a chi square as large below which a curve does not fit."""
-RIVAL = 6.0
+RIVAL_CHI_SQUARE = 6.0
 """Chi square by which a rival may fit worse: 2·3 nats, odds of 20 to 1."""
-ROUNDS = 4
+SECANT_STEPS = 4
 """Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""
-BEYOND = (0.25, 0.5, 1.0, 1.5, 2.0)
+RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
-MEASURABLE = 3.0
+MEASURABLE_DEVIATIONS = 3.0
 """Deviations of a place by which two rivals must differ to be told apart there."""
 KNOTS = 16
 """Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
@@ -117,12 +117,12 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     found = [fitted(one, chain, curve, nominal, start) for one in inputs.values()]
     found.sort(key=lambda one: one.chi_square)
     plain = GearInputs("consistent", rms(off), base, len(off), tuple(found))
-    if chdtrc(len(off), base) > SURE:
+    if chdtrc(len(off), base) > MISFIT_P_VALUE:
         return plain
     best = found[0]
-    if chdtrc(len(off) - 1, best.chi_square) < SURE:
+    if chdtrc(len(off) - 1, best.chi_square) < MISFIT_P_VALUE:
         return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)
-    rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL]
+    rivals = [f for f in found[1:] if f.chi_square < best.chi_square + RIVAL_CHI_SQUARE]
     one = inputs[best.key]
 
     def alone(learnt: CentralCurve) -> Chain:
@@ -159,11 +159,15 @@ def _of_pairs(
             learnt.std_arcsec,
         )
 
-    fit = [p for p in together(curve, inputs) if chdtrc(plain.places - 2, p.chi_square) >= SURE]
+    fit = [
+        p
+        for p in together(curve, inputs)
+        if chdtrc(plain.places - 2, p.chi_square) >= MISFIT_P_VALUE
+    ]
     if not fit:
         return replace(plain, outcome="unknown")
     best = fit[0]
-    pairs = tuple(p for p in fit if p.chi_square < best.chi_square + RIVAL)
+    pairs = tuple(p for p in fit if p.chi_square < best.chi_square + RIVAL_CHI_SQUARE)
     before, left = _on_other_cycles(
         lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis, start
     )
@@ -178,7 +182,7 @@ def fitted(
     best = (value, _chi_square(curve, angles))
     slope = np.zeros_like(nominal)
     states: list[Equilibrium] = []
-    for _ in range(ROUNDS):
+    for _ in range(SECANT_STEPS):
         gear = one.changed(chain, trial)
         try:
             if gear.model is not chain.model or not states:  # a spring in series turns no contact
@@ -229,7 +233,7 @@ def _chi_square(curve: CentralCurve, angles: np.ndarray) -> float:
 
 def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
     wind_up = nominal - nominal[0]
-    return replace(curve, std_arcsec=np.hypot(curve.std_arcsec, NUMERICAL * wind_up))
+    return replace(curve, std_arcsec=np.hypot(curve.std_arcsec, NUMERICAL_SHARE * wind_up))
 
 
 def _on_other_cycles(
@@ -257,13 +261,13 @@ def _apart(
     both: tuple[FittedInput, FittedInput],
 ) -> Apart | None:
     """Where the two differ most, if a place as sure as those measured shows it."""
-    torques = curve.largest_Nm * np.array(BEYOND)
+    torques = curve.largest_Nm * np.array(RIVAL_TORQUE_SHARES)
     first, second = (
         inputs[each.key].changed(chain, each.value).angles(torques.tolist()) * ARCSEC_PER_RAD
         for each in both
     )
     most = int(np.abs(first - second).argmax())
     difference = abs(float(first[most] - second[most]))
-    if difference < MEASURABLE * float(curve.std_arcsec.max()):
+    if difference < MEASURABLE_DEVIATIONS * float(curve.std_arcsec.max()):
         return None
     return Apart(float(torques[most]), difference)
