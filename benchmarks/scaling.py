@@ -66,7 +66,7 @@ def wedge_mesh(far: float) -> TetMesh:
 
 def one(path: str) -> dict[str, Any]:
     """Assembly and solution of one mesh in this process."""
-    from flexspline.fea.solid.cases import torsion
+    from flexspline.fea.solid.load_cases import torsion
     from flexspline.fea.solid.model import Model
     from flexspline.fea.solid.unfold import unfolded
     from flexspline.fea.types import Elastic

@@ -8,9 +8,9 @@ from typing import Any
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.cases import ellipse
 from flexspline.fea.solid.cyclic import half_repeat
 from flexspline.fea.solid.errors import TooManyElementsError
+from flexspline.fea.solid.load_cases import ellipse
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field
 from flexspline.fea.solid.swept_sizing import Finer

@@ -20,9 +20,9 @@ from flexspline.fea.deadline import Deadline
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.cases import lobes
 from flexspline.fea.solid.column import INTERFACE
 from flexspline.fea.solid.cyclic import half_repeat, larger_deg
+from flexspline.fea.solid.load_cases import lobes
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import EFFICIENCY, USUAL_EFFICIENCY, level_of
 from flexspline.fea.solid.stress import energy_error

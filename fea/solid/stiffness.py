@@ -20,7 +20,7 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.cases import Solved, torsion
+from flexspline.fea.solid.load_cases import Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading

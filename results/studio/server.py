@@ -15,11 +15,11 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import LARGEST_BYTES, design_from, tables_from
 from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.template import design_text, template
-from flexspline.results.studio.desk import Desk
 from flexspline.results.studio.fields import form, received
 from flexspline.results.studio.guard import Guard, add_headers
 from flexspline.results.studio.jobs import SERVED
-from flexspline.results.studio.looks import looks
+from flexspline.results.studio.page_style import page_style
+from flexspline.results.studio.session import Session
 from flexspline.results.studio.tab import Workers
 
 LARGEST_MESSAGE = 2 * LARGEST_BYTES
@@ -36,7 +36,7 @@ class Studio:
     guard: Guard
     design: Design
     workers: Workers = field(default_factory=Workers.of_this_machine)
-    desks: dict[str, Desk] = field(default_factory=dict)
+    sessions: dict[str, Session] = field(default_factory=dict)
     page: dict[str, tuple[bytes, str]] = field(default_factory=lambda: _page())
 
 
@@ -63,8 +63,8 @@ def application(studio: Studio) -> web.Application:
 async def _workers(app: web.Application) -> AsyncIterator[None]:
     app[STUDIO].workers.start()
     yield
-    for desk in list(app[STUDIO].desks.values()):
-        await desk.close()
+    for session in list(app[STUDIO].sessions.values()):
+        await session.close()
     app[STUDIO].workers.stop()
 
 
@@ -100,7 +100,7 @@ def _opened(design: Design) -> dict[str, Any]:
 
 async def _start(request: web.Request) -> web.Response:
     """The design that the command named, and how charts look."""
-    return _json({**_opened(request.app[STUDIO].design), "looks": looks()})
+    return _json({**_opened(request.app[STUDIO].design), "style": page_style()})
 
 
 async def _open(request: web.Request) -> web.Response:
@@ -129,11 +129,11 @@ async def _text(request: web.Request) -> web.Response:
 
 async def _measured(request: web.Request) -> web.Response:
     """A CSV for the tab's next diagnosis."""
-    desk = request.app[STUDIO].desks.get(request.match_info["tab"])
-    if desk is None:
+    session = request.app[STUDIO].sessions.get(request.match_info["tab"])
+    if session is None:
         raise web.HTTPNotFound
-    desk.measured = await _body(request, LARGEST_MEASURED)
-    return _json({"bytes": len(desk.measured)})
+    session.measured = await _body(request, LARGEST_MEASURED)
+    return _json({"bytes": len(session.measured)})
 
 
 async def _sent(request: web.Request) -> Any:
@@ -163,9 +163,9 @@ async def _body(request: web.Request, most: int) -> bytes:
 
 async def _made(request: web.Request) -> web.Response:
     """A file that a job of this tab made."""
-    desk = request.app[STUDIO].desks.get(request.match_info["tab"])
+    session = request.app[STUDIO].sessions.get(request.match_info["tab"])
     name = request.match_info["name"]
-    data = None if desk is None else desk.file(request.match_info["kind"], name)
+    data = None if session is None else session.file(request.match_info["kind"], name)
     if data is None:
         raise web.HTTPNotFound
     kind = SERVED["." + name.rpartition(".")[2]]
@@ -179,16 +179,16 @@ async def _live(request: web.Request) -> web.WebSocketResponse:
     studio = request.app[STUDIO]
     socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=20)
     await socket.prepare(request)
-    desk = Desk(studio.workers, socket)
-    studio.desks[desk.tab.key] = desk
+    session = Session(studio.workers, socket)
+    studio.sessions[session.tab.key] = session
     try:
-        await desk.open()
+        await session.open()
         async for note in socket:
             if note.type == WSMsgType.TEXT:
-                await desk.take(note.data)
+                await session.take(note.data)
             else:
-                await desk.refuse()
+                await session.refuse()
     finally:
-        del studio.desks[desk.tab.key]
-        await desk.close()
+        del studio.sessions[session.tab.key]
+        await session.close()
     return socket

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.results.renders.shown import magnification
-from flexspline.results.studio.thin import thinned
+from flexspline.results.studio.simplify import simplified
 
 _PIECES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """A triangle with edge middles (corners 0 to 2, middles of 01, 12, 02) as four straight ones."""
@@ -51,7 +51,7 @@ def field_message(view: str, field: RevolvedField) -> bytes:
         "direct": around[0],
         "shear": around[1],
         "triangles": _one_way(field.places, cells),
-        "rim": thinned(_rim(field.places, cells), _seen(field, around, size)),
+        "rim": simplified(_rim(field.places, cells), _seen(field, around, size)),
     }
     return _packed(head, arrays)
 

@@ -21,9 +21,9 @@ import numpy as np
 import pytest
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
-from flexspline.fea.solid.cases import Solved, ellipse, lobes
 from flexspline.fea.solid.cyclic import half_repeat, repeats_of
 from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.load_cases import Solved, ellipse, lobes
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from structured import sector_mesh
 
-from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import NODES
+from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic, TetMesh

@@ -15,13 +15,13 @@ from scipy.spatial import cKDTree
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.bisect import PAIRS, Simplices, halved
-from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
 from flexspline.fea.solid.elements import element_volumes, facet_areas, jacobian_ratio
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layer_sizes import volume
 from flexspline.fea.solid.layered import finer_layers, layered_mesh
 from flexspline.fea.solid.layers import Layers
+from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.mesh import MeshSpec, mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.plan import triangulated

@@ -13,10 +13,10 @@ import pytest
 
 from flexspline.fea.solid import iteration, memory, twolevel
 from flexspline.fea.solid.assembly import NodeFrames
-from flexspline.fea.solid.cases import Solved, ellipse, lobes, torsion
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import IterationError, MemoryShortError, SolveError
 from flexspline.fea.solid.iteration import conjugate_gradients
+from flexspline.fea.solid.load_cases import Solved, ellipse, lobes, torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.solver import solve

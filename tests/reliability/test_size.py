@@ -24,7 +24,7 @@ KEYED = bases.EXAMPLES / "keyed-shaft.toml"
 SOLVE = """
 import json, resource, sys, time
 from dataclasses import replace
-from flexspline.fea.solid.cases import torsion
+from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import MemoryShortError

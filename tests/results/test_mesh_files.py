@@ -15,7 +15,7 @@ import pytest
 from hand_made_tube import INNER, LENGTH, OUTER, RING_START, tube
 from typer.testing import CliRunner
 
-from flexspline.fea.solid.cases import torsion
+from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import DesignError

@@ -16,8 +16,8 @@ import pytest
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.fea.solid.cases import ellipse, lobes
 from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.load_cases import ellipse, lobes
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.peak import SharpEdges, stress_field

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flexspline.fea.solid.cases import Solved, lobes, torsion
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
+from flexspline.fea.solid.load_cases import Solved, lobes, torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
 from flexspline.fea.solid.stress import energy_error

@@ -11,8 +11,8 @@ from dataclasses import replace
 import pytest
 from hole_free import EXAMPLES, SOLUTIONS, mesher, solved
 
-from flexspline.fea.solid.cases import torsion
 from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.load_cases import torsion
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading

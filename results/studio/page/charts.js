@@ -3,7 +3,7 @@
 import { el, grouped, signed, svg } from "./dom.js";
 
 // The four terms end to end, the total with one standard deviation.
-export function chartBudget(budget, looks, pinned, solid) {
+export function chartBudget(budget, style, pinned, solid) {
   const rows = Object.fromEntries(budget.rows.map((row) => [row.key.split(".")[1], row]));
   const total = rows.total.value;
   const most = (total + (rows.std?.value ?? 0)) * 1.02;
@@ -17,7 +17,7 @@ export function chartBudget(budget, looks, pinned, solid) {
   }
   const std = (100 * (rows.std?.value ?? 0)) / most;
   if (std) bar.append(svg("path", { d: `M${from - std} 3.5H${from + std}M${from - std} 1.5V5.5M${from + std} 1.5V5.5`,
-    class: "deviation", stroke: looks.accent }));
+    class: "deviation", stroke: style.accent }));
   const line = (row, swatch) => {
     const other = pinned?.rows.find((entry) => entry.key === row.key);
     const solved = solid?.rows.find((entry) => entry.key === row.key);
@@ -56,7 +56,7 @@ const HIGH = 218; // where the window has room
 const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
 
 // θ(T): two elastic branches, the gap between them, one standard deviation as a band.
-export function chartLine(line, budget, looks, pinned, tall) {
+export function chartLine(line, budget, style, pinned, tall) {
   const { torque_Nm: torque, angle_arcsec: angle, spread_arcsec: spread, load_Nm: load, gap_arcsec: gap } = line;
   const H = tall && innerWidth >= 1600 && innerHeight >= 960 ? HIGH : LOW;
   const reach = Math.max(torque.at(-1), pinned ? pinned.torque_Nm.at(-1) : 0);
@@ -81,7 +81,7 @@ export function chartLine(line, budget, looks, pinned, tall) {
     const high = angle.map((a, i) => a + spread[i]);
     const low = angle.map((a, i) => a - spread[i]);
     const around = `${points(torque, high, sign)} ${points([...torque].reverse(), low.reverse(), sign)}`;
-    chart.append(svg("polygon", { points: around, class: "band", fill: looks.palette[1] }));
+    chart.append(svg("polygon", { points: around, class: "band", fill: style.palette[1] }));
     if (pinned) chart.append(svg("polyline", { points: points(pinned.torque_Nm, pinned.angle_arcsec, sign), class: "curve pinned" }));
     chart.append(svg("polyline", { points: points(torque, angle, sign), class: "curve" }));
   }

@@ -10,8 +10,8 @@ const GEAR = "gear"; // its figures and its curve come together
 const DRAWN = "backlash"; // the sum and its line come together, and so have one number
 
 export class Figures {
-  constructor(root, looks) {
-    Object.assign(this, { root, looks, now: null, pinned: null, solid: null, numbers: {} });
+  constructor(root, style) {
+    Object.assign(this, { root, style, now: null, pinned: null, solid: null, numbers: {} });
     this.whose = el("p", { id: "whose", class: "note", role: "status", hidden: true });
     this.stiffness = el("section", {});
     this.work = el("section", { id: "solid" });
@@ -86,9 +86,9 @@ export class Figures {
     this.backlash.replaceChildren(this.heading("Backlash between −T and +T", "arcsec"));
     if (now.budget) {
       this.backlash.append(
-        chartBudget(now.budget, this.looks, pinned?.budget, solid && !solid.old ? solid.budget : null),
+        chartBudget(now.budget, this.style, pinned?.budget, solid && !solid.old ? solid.budget : null),
         this.heading("Output angle, wave generator locked", "arcsec over N·m"),
-        chartLine(now.line, now.budget, this.looks, pinned?.line, !this.narrow),
+        chartLine(now.line, now.budget, this.style, pinned?.line, !this.narrow),
       );
     }
     this.drawGear(now.gear, pinned?.gear);

@@ -30,8 +30,8 @@ if (before?.good) {
   }
 }
 
-const figures = new Figures(document.getElementById("answers"), started.looks);
-const stage = new Stage(started.looks, { view: state.view, chosen: (view) => { state.view = view; send(); } });
+const figures = new Figures(document.getElementById("answers"), started.style);
+const stage = new Stage(started.style, { view: state.view, chosen: (view) => { state.view = view; send(); } });
 const form = new Form(document.getElementById("form"), { changed: send, broke, restructured: reopen });
 const works = {};
 for (const [kind, words, tip] of [
@@ -50,7 +50,7 @@ for (const kind of ["step", "report"]) {
 figures.root.append(pins.list);
 
 document.getElementById("tools").append(
-  ...started.looks.kinds.map((kind) => el("button", { id: `new-${kind}`, onclick: () => open(`open?kind=${kind}`, "") }, `New ${kind}`)),
+  ...started.style.kinds.map((kind) => el("button", { id: `new-${kind}`, onclick: () => open(`open?kind=${kind}`, "") }, `New ${kind}`)),
   el("button", { id: "load", onclick: () => pick(".toml", load) }, "Open"),
   el("button", { id: "save", onclick: save }, "Save"),
   works.step.button,

@@ -9,9 +9,9 @@ const TICKS = 4;
 const PATIENCE_MS = 400; // so long may colours of the design before stay: no flicker while a slider moves
 
 // The part in 3-D; where the browser cannot draw it, one line instead.
-function drawing(root, looks) {
+function drawing(root, style) {
   try {
-    return new View(root, looks);
+    return new View(root, style);
   } catch {
     root.append(el("p", { id: "no-picture" }, "This browser shows no 3-D picture (WebGL is off or missing). All figures are here."));
     return new NoView();
@@ -26,15 +26,15 @@ class NoView {
 }
 
 export class Stage {
-  constructor(looks, { view, chosen }) {
-    this.looks = looks;
+  constructor(style, { view, chosen }) {
+    this.style = style;
     this.number = 0;
     this.view = view;
-    this.canvas = drawing(document.getElementById("canvas"), looks);
+    this.canvas = drawing(document.getElementById("canvas"), style);
     this.scale = document.getElementById("scale");
     this.caption = document.getElementById("caption");
     const choice = el("select", { id: "case", "aria-label": "Load case shown" },
-      ...Object.entries(looks.views).map(([key, words]) => el("option", { value: key }, words)));
+      ...Object.entries(style.views).map(([key, words]) => el("option", { value: key }, words)));
     choice.value = view;
     choice.addEventListener("change", () => {
       this.view = choice.value;
@@ -112,7 +112,7 @@ export class Stage {
     const bar = el("canvas", { width: 1, height: 256, class: "bar" });
     const pen = bar.getContext("2d");
     for (let i = 0; i < 256; i++) {
-      pen.fillStyle = `rgb(${this.looks.scale.slice(3 * i, 3 * i + 3).join()})`;
+      pen.fillStyle = `rgb(${this.style.scale.slice(3 * i, 3 * i + 3).join()})`;
       pen.fillRect(0, 255 - i, 1, 1);
     }
     this.scale.replaceChildren(el("p", { class: "unit" }, "von Mises, MPa"),
@@ -160,7 +160,7 @@ export class Stage {
     pen.font = `600 ${15 * k}px ${style.fontFamily}`;
     pen.fillText(this.shown.name, 16 * k, 28 * k);
     pen.font = `${12 * k}px ${style.fontFamily}`;
-    pen.fillText(`${this.looks.views[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
+    pen.fillText(`${this.style.views[this.view]}, von Mises stress in MPa`, 16 * k, 46 * k);
     const bar = this.scale.querySelector("canvas");
     if (bar && !this.scale.hidden) {
       const [x, y, h] = [sheet.width - 92 * k, 70 * k, Math.min(220 * k, sheet.height - 110 * k)];

@@ -7,7 +7,7 @@ import * as THREE from "./three.module.min.js";
 const STEEL = 0xaeb7bf;
 
 export class View {
-  constructor(root, looks) {
+  constructor(root, style) {
     this.root = root;
     this.options = { open: false, deformed: true };
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
@@ -20,7 +20,7 @@ export class View {
     const key = new THREE.DirectionalLight(0xffffff, 1.5);
     key.position.set(-0.6, 0.8, 1);
     this.camera.add(key);
-    const scale = new Uint8Array(1024).map((_, i) => (i % 4 === 3 ? 255 : looks.scale[3 * (i >> 2) + (i % 4)]));
+    const scale = new Uint8Array(1024).map((_, i) => (i % 4 === 3 ? 255 : style.scale[3 * (i >> 2) + (i % 4)]));
     const map = new THREE.DataTexture(scale, 256, 1);
     Object.assign(map, { colorSpace: THREE.SRGBColorSpace, magFilter: THREE.LinearFilter, needsUpdate: true });
     const side = THREE.DoubleSide;
@@ -29,7 +29,7 @@ export class View {
     this.plain = new THREE.MeshLambertMaterial({ color: STEEL, side, ...back });
     this.part = new THREE.Mesh(new THREE.BufferGeometry(), this.plain);
     this.lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f2429, transparent: true, opacity: 0.55 }));
-    this.mark = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14), new THREE.MeshBasicMaterial({ color: looks.accent }));
+    this.mark = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14), new THREE.MeshBasicMaterial({ color: style.accent }));
     this.mark.visible = false;
     this.scene.add(this.part, this.lines, this.mark);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);

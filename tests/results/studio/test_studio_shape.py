@@ -13,7 +13,7 @@ from flexspline.geometry.template import template
 from flexspline.pipeline.live import View, field
 from flexspline.pipeline.revolved import revolved
 from flexspline.results.studio.shape import field_message
-from flexspline.results.studio.thin import thinned
+from flexspline.results.studio.simplify import simplified
 
 
 def ring(count: int) -> np.ndarray:
@@ -26,7 +26,7 @@ def test_a_square_keeps_its_corners_alone() -> None:
     none, all_ = np.zeros(20), np.full(20, 10.0)
     r = np.concatenate([side, all_, 10 - side, none])
     z = np.concatenate([none, side, all_, 10 - side])
-    kept = thinned(ring(80), np.column_stack([r, z]))
+    kept = simplified(ring(80), np.column_stack([r, z]))
     assert sorted(kept[:, 0].tolist()) == [0, 20, 40, 60]
     assert sorted(kept[:, 1].tolist()) == [0, 20, 40, 60]
 
@@ -36,14 +36,14 @@ def test_a_colour_that_changes_is_kept_on_a_straight_side() -> None:
     colour[20] = 5.0
     seen = np.column_stack([place, 0 * place, colour])
     open_chain = np.column_stack([np.arange(40), np.arange(1, 41)])
-    assert thinned(open_chain, seen)[:, 0].tolist() == [0, 19, 20, 21]
+    assert simplified(open_chain, seen)[:, 0].tolist() == [0, 19, 20, 21]
 
 
 def test_two_loops_stay_two() -> None:
     phi = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     circle = 100 * np.column_stack([np.cos(phi), np.sin(phi)])
     rim = np.concatenate([ring(60), 60 + ring(60)])
-    kept = thinned(rim, np.concatenate([circle, 3 * circle]))
+    kept = simplified(rim, np.concatenate([circle, 3 * circle]))
     assert sorted(kept[:, 0].tolist()) == sorted(kept[:, 1].tolist())
     assert ((kept < 60).all(axis=1) | (kept >= 60).all(axis=1)).all()
     # a chord over an angle a is off by R(1 - cos(a/2)) ≤ 1 at most

@@ -7,7 +7,7 @@ import numpy as np
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
 
-def thinned(rim: np.ndarray, seen: np.ndarray) -> np.ndarray:
+def simplified(rim: np.ndarray, seen: np.ndarray) -> np.ndarray:
     """Edges (k, 2), each from its start to its end, with runs of them replaced by their chord.
 
     `seen` (count, f), beginning with the place: no node that is left out is farther than 1 in any of

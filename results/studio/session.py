@@ -16,7 +16,7 @@ from flexspline.results.studio.results import told
 from flexspline.results.studio.tab import Tab, Workers
 
 
-class Desk:
+class Session:
     """A tab with its jobs: at most one of each kind; a new one replaces the old one and its files."""
 
     def __init__(self, workers: Workers, socket: web.WebSocketResponse) -> None:

@@ -18,7 +18,7 @@ VIEW_TITLES: Mapping[View, str] = {
 
 
 @cache
-def looks() -> dict[str, Any]:
+def page_style() -> dict[str, Any]:
     """Kinds; views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
     from matplotlib import colormaps
 
