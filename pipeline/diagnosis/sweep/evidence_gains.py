@@ -63,6 +63,15 @@ class RegressorGroup:
             out[self.of_owner.get(o, _NONE)] = True
         return out
 
+    def best_of_owners(self, score: np.ndarray, most: int) -> np.ndarray:
+        """Places of each owner's members with the highest scores (m,), at most so many of one owner."""
+        places = list(self.of_owner.values())
+        owner = np.repeat(np.arange(len(places)), [len(mine) for mine in places])
+        order = np.concatenate(places)
+        order = order[np.lexsort((-score[order], owner))]
+        rank = np.arange(len(owner)) - np.searchsorted(owner, owner)
+        return order[rank < most]
+
     def gains(
         self,
         evidence: GaussianEvidence,

@@ -164,17 +164,15 @@ class Search:
             )  # fmt: skip
             barred = group.barred(present, shut)
             score = np.where(valid & ~barred, gain + prior, -np.inf)
-            for mine in group.of_owner.values():
-                order = mine[np.argsort(-score[mine])][: None if not c.terms else 2]
-                for j in order:
-                    term = int(group.members[j])
-                    if np.isfinite(score[j]) and term not in c.terms:
-                        key = frozenset((*c.terms, term))
-                        if key not in self._seen:
-                            self._seen.add(key)
-                            found.append(Candidate(
-                                (*c.terms, term), c.log_evidence + float(gain[j]), c.score + float(score[j])
-                            ))  # fmt: skip
+            for j in group.best_of_owners(score, len(group.members) if not c.terms else 2).tolist():
+                term = int(group.members[j])
+                if np.isfinite(score[j]) and term not in c.terms:
+                    key = frozenset((*c.terms, term))
+                    if key not in self._seen:
+                        self._seen.add(key)
+                        found.append(Candidate(
+                            (*c.terms, term), c.log_evidence + float(gain[j]), c.score + float(score[j])
+                        ))  # fmt: skip
         for f in found:
             self._remember(f)
         return found
