@@ -49,7 +49,10 @@ crossing is better taken too large than too small."""
 WEIGHINGS = 3
 """Fits, each with the weights (Huber's) of the last one's residual."""
 COARSE = 3
-"""Of the forms, every third is tried at first: where no late angle is the best of these, none is."""
+"""Of the forms, every third is tried at first: where no late angle is the best of these, none is. Else those
+beside the best of each kind are tried too."""
+COARSE_ROWS = 1000
+"""Rows looked at meanwhile: enough to tell forms that lie three steps apart."""
 FINE = 9
 """Times tried between two neighbours of the first search."""
 KINDS = (FILTER, DELAY, BOTH)
@@ -144,18 +147,32 @@ def _searched(crossed: _Crossed) -> _Searched:
     known = [at_a_place(history), behind_friction(history)]
     known += [list(of_time(history, kind)) for kind in OTHERS]
     by_time = [list(of_time(history, kind)) for kind in KINDS]
-    for every in (COARSE, 1):
-        others = [crossed.best(tried[::every]) for tried in known]
-        own = max((crossed.best(tried[::every]) for tried in by_time), key=_likeliest)
-        best = max((own, *others), key=_likeliest)
-        # local polynomials take the gap's step for noise: what the best form leaves is less
-        crossed = replace(crossed, noise_arcsec=max(best.left_arcsec, FINEST_ARCSEC))
-        if best is not own:
-            break
-    else:
-        others += _rubbed(crossed, others[1])
+    coarse = replace(crossed, most_rows=COARSE_ROWS)
+    others = [coarse.best(tried[::COARSE]) for tried in known]
+    owns = [coarse.best(tried[::COARSE]) for tried in by_time]
+    own = max(owns, key=_likeliest)
+    best = max((own, *others), key=_likeliest)
+    # local polynomials take the gap's step for noise: what the best form leaves is less
+    crossed = replace(crossed, noise_arcsec=_left_by(best))
+    if best is own:
+        others = [crossed.best(_beside(*pair)) for pair in zip(known, others, strict=True)]
+        owns = [crossed.best(_beside(*pair)) for pair in zip(by_time, owns, strict=True)]
+        own = max(owns, key=_likeliest)
+        crossed = replace(crossed, noise_arcsec=_left_by(max((own, *others), key=_likeliest)))
+        if max(others, key=_likeliest).log_likelihood < own.log_likelihood:
+            others += _rubbed(crossed, others[1])
     own, *others = (crossed.of(fit.tried) for fit in (own, *others))
     return _Searched(crossed, own, max(others, key=_likeliest))
+
+
+def _beside(tried: list[Tried], best: _Fit) -> list[Tried]:
+    """The best of the forms that were tried at first, and those up to its neighbours."""
+    at = next(i for i, one in enumerate(tried) if one is best.tried)
+    return tried[max(0, at - COARSE + 1) : at + COARSE]
+
+
+def _left_by(fit: _Fit) -> float:
+    return max(fit.left_arcsec, FINEST_ARCSEC)
 
 
 def _behind(alone: _Searched, whole: _Searched) -> float:
@@ -228,7 +245,7 @@ def _likeliest(fit: _Fit) -> float:
 class _Crossed:
     """A record, whose angle is smooth functions of torque with any loop, and the gap's step in one form.
 
-    `found` : what else the angle may hold (n,), in any size.
+    `found` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen.
     """
 
     history: History
@@ -236,12 +253,13 @@ class _Crossed:
     gap_arcsec: float
     noise_arcsec: float
     found: tuple[np.ndarray, ...] = ()
+    most_rows: int = MOST_FIRST_ROWS
 
     @cached_property
     def rows(self) -> np.ndarray:
         """Rows that count: friction's memory from before the record, and turns, say nothing of the gap."""
         good = np.flatnonzero(~settling(self.history) & ~turning(self.history))
-        return good[:: max(1, len(good) // MOST_FIRST_ROWS)]
+        return good[:: max(1, len(good) // self.most_rows)]
 
     @cached_property
     def smooth(self) -> np.ndarray:
