@@ -32,7 +32,7 @@ def check(found: Sequence[Mark]) -> None:
 
 
 def test_demands_on_fixed_seeds() -> None:
-    check(marks(FIXED_SEED, 40))
+    check(marks(FIXED_SEED, 24))
 
 
 @pytest.mark.long

@@ -116,7 +116,7 @@ def test_right_cause_first(suite_cache: Path, capsys: pytest.CaptureFixture) -> 
     """What FE says of the cups is in the suite's cache; of the hats only the wall is looked at."""
     hats = ("clean", "softer", "wall")
     sets = [
-        Asked("xb1-40", AS_IN_THE_EXAMPLE, 5),
+        Asked("xb1-40", AS_IN_THE_EXAMPLE, 4),
         Asked("hat-25", 3, 1, hats, (f"flexspline.{KEYS['wall']}",)),
     ]
     judged(list(answers(suite_cache, sets, np.random.default_rng(20))), capsys)

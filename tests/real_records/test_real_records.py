@@ -104,7 +104,9 @@ def test_the_joint_s_loops_are_as_the_plot_shows() -> None:
     assert max(ways[3::2]) - min(ways[3::2]) < 0.03
 
 
-@pytest.mark.parametrize("rows", [LAST_REVERSAL, MIDWAY, len(JOINT)])
+@pytest.mark.parametrize(
+    "rows", [pytest.param(LAST_REVERSAL, marks=pytest.mark.long), MIDWAY, len(JOINT)]
+)
 def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     tmp_path: Path, rows: int
 ) -> None:
@@ -131,7 +133,7 @@ def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     assert found.calibration.compliance.value == pytest.approx(by_hand, rel=0.05)
 
 
-@pytest.mark.parametrize("rows", [LAST_REVERSAL, len(JOINT)])
+@pytest.mark.parametrize("rows", [LAST_REVERSAL, pytest.param(len(JOINT), marks=pytest.mark.long)])
 def test_a_clock_does_not_tell_what_one_speed_cannot(tmp_path: Path, rows: int) -> None:
     """A row each 0.1 s: whatever the loop is taken for, the other may have made it."""
     found = joint(tmp_path, rows, row_s=0.1)

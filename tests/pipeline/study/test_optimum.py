@@ -40,7 +40,9 @@ def two_valleys(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return height, 20 + 3 * (x + y)
 
 
-@pytest.mark.parametrize("seed", [1, 2, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 3))]
+)
 def test_no_worse_than_a_dense_grid_of_a_function_with_two_valleys(
     seed: int, tmp_path: Path
 ) -> None:
