@@ -57,7 +57,7 @@ class NamedCause:
 class Unexplained:
     """Structure that no named cause explains: in which channel, how large, how surely, what it is like.
 
-    `limit` : a physical limit that the best explanation breaks; `what` is then a sentence.
+    `rms` in `unit`. `limit` : a physical limit that the best explanation breaks; `what` is then a sentence.
     """
 
     channel: str
@@ -65,6 +65,7 @@ class Unexplained:
     p_value: float
     what: str
     limit: bool = False
+    unit: str = "arcsec"
 
 
 @dataclass(frozen=True)

@@ -38,9 +38,8 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         if cause.alternatives:
             lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
-        left = (
-            f"left over in {channel_words(u.channel)}: {figures_text(u.rms)} arcsec rms, {u.what}"
-        )
+        rms = f"{figures_text(u.rms)} {u.unit} rms"
+        left = f"left over in {channel_words(u.channel)}: {rms}, {u.what}"
         lines += _wrapped(left, "  ", "    ")
     if diagnosis.calibration is not None:
         lines += _wrapped(

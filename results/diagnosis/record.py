@@ -11,6 +11,7 @@ from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.summary import summary, verdict_heading
+from flexspline.results.diagnosis.words import cause_title, magnitude_words, sure_words
 from flexspline.results.file_names import EXTENDED_MODEL
 from flexspline.results.records import heading
 
@@ -29,7 +30,13 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
         **data_record(diagnosis),
         "causes": [_cause(c) for c in outcome.causes],
         "unexplained": [
-            {"channel": u.channel, "rms": u.rms, "p_value": u.p_value, "what": u.what}
+            {
+                "channel": u.channel,
+                "rms": u.rms,
+                "unit": u.unit,
+                "p_value": u.p_value,
+                "what": u.what,
+            }
             for u in outcome.unexplained
         ],
         "notes": list(notes(diagnosis)),
@@ -53,6 +60,9 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
 def _cause(cause: NamedCause) -> Record:
     record: Record = {
         "id": cause.id,
+        "title": cause_title(cause),
+        "size": magnitude_words(cause),
+        "confidence": sure_words(cause),
         "probability": cause.probability,
         "alternatives": list(cause.alternatives),
         "magnitude": cause.magnitude,

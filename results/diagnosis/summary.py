@@ -128,7 +128,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
     if most.rms < STANDS_OUT * outcome.gain.noise_floor:
         return ""
     channel = channel_words(most.channel)
-    return f" Without a name: {most.what} in {channel}, {most.rms:.2g} {outcome.gain.unit} rms."
+    return f" Without a name: {most.what} in {channel}, {most.rms:.2g} {most.unit} rms."
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:

@@ -13,6 +13,7 @@ CHANNELS = {
     "angle": "the angle itself",
     "angle_arcsec": "the angle itself",
     "specimen": "further specimens",
+    "specimen_order": "the order of the specimens",
     "repeat": "repetition",
     "sweep": "a closed sweep",
     "direction": "direction of loading",

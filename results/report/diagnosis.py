@@ -129,7 +129,7 @@ def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
     yield Heading("What no known cause explains")
     yield Table(
         columns=(
-            Column("Channel"), Column("Form", grow=1), Column("Size, arcsec rms"),
+            Column("Channel"), Column("Form", grow=1), Column(f"Size, {left[0].unit} rms"),
             Column("Probability by chance"),
         ),
         rows=tuple(

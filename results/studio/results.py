@@ -6,16 +6,7 @@ import json
 from typing import Any
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.results.diagnosis.words import (
-    capital,
-    cause_title,
-    channel_words,
-    figures_text,
-    magnitude_words,
-    sure_words,
-    title_of,
-)
+from flexspline.results.diagnosis.words import capital, channel_words, figures_text, title_of
 from flexspline.results.studio.answer import message
 from flexspline.results.studio.jobs import Kind
 
@@ -46,7 +37,8 @@ def _diagnosis(record: Told) -> Told:
         "summary": capital(record["summary"]),
         "causes": [_cause(c) for c in record["causes"]],
         "unexplained": [
-            f"{capital(channel_words(u['channel']))}: {u['what']}, {figures_text(u['rms'], 2)} rms"
+            f"{capital(channel_words(u['channel']))}: {u['what']}, {figures_text(u['rms'], 2)} "
+            f"{u['unit']} rms"
             for u in record["unexplained"]
         ],
         "gain": None if gain is None else _gain(gain),
@@ -56,26 +48,11 @@ def _diagnosis(record: Told) -> Told:
 
 
 def _cause(entry: Told) -> Told:
-    keys = (
-        "id",
-        "probability",
-        "magnitude",
-        "magnitude_std",
-        "unit",
-        "evidence_nats",
-        "rms_arcsec",
-    )
-    cause = NamedCause(
-        alternatives=tuple(entry["alternatives"]),
-        own_units=tuple(entry.get("units", ())),
-        ahead_Nm=float(entry.get("ahead_of_gap_Nm", 0.0)),
-        **{key: entry[key] for key in keys},
-    )
     return {
-        "title": capital(cause_title(cause)),
-        "magnitude": magnitude_words(cause),
-        "sure": sure_words(cause),
-        "others": ", ".join(map(title_of, cause.alternatives)),
+        "title": capital(entry["title"]),
+        "magnitude": entry["size"],
+        "sure": entry["confidence"],
+        "others": ", ".join(map(title_of, entry["alternatives"])),
     }
 
 

@@ -14,11 +14,22 @@ from flexspline.pipeline.diagnosis.causes.cause import Cause
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
+    NamedCause,
+    NextMeasurement,
+    Unexplained,
+)
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.record import diagnosis_record
 from flexspline.results.diagnosis.summary import left_out, summary
+from flexspline.results.records import as_json
+from flexspline.results.report.diagnosis import diagnosis_document
+from flexspline.results.studio.results import told
 
 DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
 NONE = np.zeros(0)
@@ -79,3 +90,33 @@ def test_a_ratio_says_of_what(cause: Cause) -> None:
     diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(1.0, 1.0, 0.0, 0.0), found)
     (note,) = (n for n in notes(diagnosis) if n.startswith("size of"))
     assert note == f"size of {cause.title_at(2.0)}: {cause.ratio}"
+
+
+def test_what_specimens_leave_is_in_percent_everywhere() -> None:
+    trend = Unexplained(
+        "specimen_order", 6.5, 1e-5, "a trend over the order of specimens", unit="%"
+    )
+    outcome = DiagnosisOutcome("unknown", unexplained=(trend,))
+    found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    record = diagnosis_record(found)
+    assert record["unexplained"][0]["unit"] == "%"
+    table = diagnosis_table(found, Path("out"))
+    assert "left over in the order of the specimens: 6.50 % rms" in " ".join(table.split())
+    report = repr(diagnosis_document(found, (), StiffnessPair(1.0, 1.0)).blocks)
+    assert "Size, % rms" in report
+    page = told("diagnose", DESIGN, as_json(record))
+    (line,) = page["diagnosis"]["unexplained"]
+    assert line.endswith("6.5 % rms")
+    assert not any("arcsec rms" in said for said in (table, report, line))
+
+
+def test_the_live_page_says_a_cause_as_the_table_does() -> None:
+    friction = replace(named("friction_hysteresis", 12.0, "arcsec"), widest_arcsec=30.0)
+    zone = replace(named("load_zone", 1.4, "1"), none=1.0)  # 0.8 of its deviations from none
+    outcome = DiagnosisOutcome("named", (friction, zone))
+    found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    page = told("diagnose", DESIGN, as_json(diagnosis_record(found)))["diagnosis"]
+    loop, load = page["causes"]
+    assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
+    assert loop["magnitude"] == "12.00 ± 0.50 arcsec at T = 0"
+    assert load["sure"] == "beyond doubt, its size is not"

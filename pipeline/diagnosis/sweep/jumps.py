@@ -11,17 +11,16 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
 
 BLOCKS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
-SURE = 1e-4
-"""p-value, as of a channel's structure (`residual_tests.py`)."""
 FINEST_ARCSEC = 1e-4
 """Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
 ROUNDED = 12.0
 """A step's square over the variance of what is rounded to it."""
 FEWEST = 20
-"""Steps: of so few large ones the test reaches 4.5 deviations at the most; `SURE` asks for 4.1."""
+"""Steps: of so few large ones the test reaches 4.5 deviations at the most; `SIGNIFICANT` asks for 4.1."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     pieces = stretches_of(history, kept)
     found = [_skewness(left, motion, pieces, rows) for rows in BLOCKS]
     p_value = min(1.0, len(BLOCKS) * float(ndtr(-max(found))))
-    if p_value > SURE:
+    if p_value > SIGNIFICANT:
         return None
     saw_tooth = float(np.sqrt(max(float(np.var(left)) - prepared.noise.white, 0.0)))
     step = encoder_step(prepared.sweep.angle_arcsec)

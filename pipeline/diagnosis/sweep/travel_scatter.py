@@ -13,12 +13,12 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import (
     ROUNDED,
-    SURE,
     Jumps,
     encoder_step,
     undithered,
 )
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
 
 REACHES = (0.015, 0.04, 0.1)
 """Shares of the largest torque within which what sticks is forgotten: a factor of 2.6 apart, within which
@@ -58,7 +58,7 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     deviations, variance = max(found)
     p_value = min(1.0, len(REACHES) * float(ndtr(-deviations)))
     rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
-    if p_value > SURE or variance < ROUNDED * rounding:
+    if p_value > SIGNIFICANT or variance < ROUNDED * rounding:
         return None
     return Jumps(p_value, float(np.sqrt(variance)))
 

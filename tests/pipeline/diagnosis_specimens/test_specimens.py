@@ -213,7 +213,11 @@ def test_one_odd_specimen_is_unknown(bench, fe) -> None:
 def test_a_drift_over_the_order_is_unknown(bench, fe) -> None:
     outcome, _ = diagnosed(bench, noisy(fe.flexspline, 7) * (1 + 0.1 * np.linspace(-1, 1, 8)))
     assert outcome.verdict == "unknown"
-    assert outcome.unexplained[0].channel == "specimen_order"
+    (left,) = outcome.unexplained
+    assert (left.channel, left.unit) == ("specimen_order", "%")
+    assert left.rms == pytest.approx(
+        6.5, rel=0.2
+    )  # a line from −10 to 10 % has 10/√3, of 8 places 6.5
 
 
 def test_two_specimens_are_too_few(bench, fe) -> None:
