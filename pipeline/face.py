@@ -5,6 +5,7 @@ Results are kept in the same cache as the commands'. Nothing is printed.
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import Literal
 
@@ -15,14 +16,13 @@ from flexspline.geometry.part import PartName
 from flexspline.pipeline.analysis import analysis_context, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
-from flexspline.pipeline.diagnosis.measurement.record import read_measurement
+from flexspline.pipeline.default_folder import default_folder
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
-from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
+from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.gear import GearCurve, gear_curve
-from flexspline.pipeline.gear_chain import chain_of
 from flexspline.pipeline.load_cases import rim_stiffness
 from flexspline.pipeline.no_design import require_design
 from flexspline.pipeline.part_stiffness import part_stiffness
@@ -207,7 +207,7 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     """
     path = Path(path)
     asked = load_study(path)
-    folder = Path(out) if out is not None else path.parent / f"{path.stem}.out"
+    folder = Path(out) if out is not None else default_folder(path)
     store = trial_store_of(asked, folder)
     return whole_study(asked, store, lambda progress: None, lambda line: None)
 
@@ -253,17 +253,16 @@ def diagnose(
     True
     """
     require_design(design)
-    read_measurement(Path(path), counts_per_turn)  # a bad file is refused before the long work
-    context = analysis_context(design)
-    solved = context if K_b is None and K_e is None else None
-    if against == "gear":
-        refuse_given(K_b, K_e)
-    used = stiffness_pair(context, K_b, K_e)
-    chain = chain_of(context) if against == "gear" else None
-    return diagnose_file(
-        design, Path(path), used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error, solved, counts_per_turn,
-        chain, tuple(f"{n} = {K:g}" for n, K in (("K_b", K_b), ("K_e", K_e)) if K is not None),
-    )  # fmt: skip
+    found, _ = diagnose_with_stiffness(
+        design,
+        Path(path),
+        (K_b, K_e),
+        ("K_b = ", "K_e = "),
+        cache(lambda: analysis_context(design)),
+        counts_per_turn,
+        gear=against == "gear",
+    )
+    return found
 
 
 def predict(

@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from flexspline.geometry.errors import DesignError
+from flexspline.pipeline.default_folder import default_folder
 from flexspline.pipeline.temporary_files import discard
 from flexspline.results.atomic import refuse_fixed
 from flexspline.results.folder_lock import hold, locked
@@ -31,7 +32,7 @@ def folder_of(path: Path, out: Path | None, files: Iterable[str], shared: bool =
         the place of one of the files cannot be replaced.
     OSError : the disk is full.
     """
-    folder = out if out is not None else path.parent / f"{path.stem}.out"
+    folder = out if out is not None else default_folder(path)
     try:
         if folder.exists() and not folder.is_dir():
             raise DesignError("--out", str(folder), "is a file; name a folder")

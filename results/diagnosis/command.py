@@ -94,10 +94,6 @@ def diagnose(
 
         job = begin(design, out, of_diagnosis(CAPTIONS))
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        if against == GEAR:
-            from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
-
-            refuse_given(kb, ke)
         said = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
         show(said, json)
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
-from flexspline.pipeline.diagnosis.measurement.record import read_measurement
-from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
+from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.files import write_diagnosis
 from flexspline.results.diagnosis.record import diagnosis_record
@@ -31,25 +29,17 @@ def diagnose_and_write(
     ------
     DesignError, ComputationError, MeasurementError
     """
-    read_measurement(measured, counts_per_turn)  # refuse a bad file before the long work
-    stated = _stated(given)
-    used = given_pair(*given) or stiffness_pair(job.context, *given)
-    chain = None
-    if gear:
-        from flexspline.pipeline.gear_chain import chain_of
-
-        chain = chain_of(job.context)
-    with job.progress.stage("diagnosis"):
-        found = diagnose_file(
-            job.design, measured, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            None if stated else job.context, counts_per_turn, chain, stated,
-        )  # fmt: skip
+    found, used = diagnose_with_stiffness(
+        job.design,
+        measured,
+        given,
+        ("--Kb ", "--Ke "),
+        lambda: job.context,
+        counts_per_turn,
+        gear,
+        job.progress,
+    )
     record = diagnosis_record(found)
     with job.progress.stage("figures and report"):
         write_diagnosis(job.folder, found, record, used, (job.file,))
     return as_json(record) if json else diagnosis_table(found, job.folder)
-
-
-def _stated(given: tuple[float | None, float | None]) -> tuple[str, ...]:
-    options = zip(("--Kb", "--Ke"), given, strict=True)
-    return tuple(f"{name} {value:g}" for name, value in options if value is not None)

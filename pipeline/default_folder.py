@@ -1,0 +1,8 @@
+"""Where results go unless a user names a folder."""
+
+from pathlib import Path
+
+
+def default_folder(file: Path) -> Path:
+    """NAME.out beside the file NAME.toml."""
+    return file.parent / f"{file.stem}.out"
