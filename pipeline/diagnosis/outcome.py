@@ -10,6 +10,8 @@ from typing import Literal
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.shortage import Shortage
+from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 
 Verdict = Literal["consistent", "named", "ambiguous", "unknown", "insufficient"]
 
@@ -57,15 +59,19 @@ class NamedCause:
 class Unexplained:
     """Structure that no named cause explains: in which channel, how large, how surely, what it is like.
 
-    `rms` in `unit`. `limit` : a physical limit that the best explanation breaks; `what` is then a sentence.
+    `rms` in `unit`.
     """
 
     channel: str
     rms: float
     p_value: float
-    what: str
-    limit: bool = False
+    structure: Structure
     unit: str = "arcsec"
+
+    @property
+    def limit(self) -> bool:
+        """Whether it is a physical limit that the best explanation breaks."""
+        return isinstance(self.structure, BrokenLimit)
 
 
 @dataclass(frozen=True)
@@ -88,6 +94,32 @@ class Gain:
 
 
 Aim = Literal["more_data", "find_structure", "confirm", "separate"]
+DoingKind = Literal[
+    "whole_sweeps",
+    "more_specimens",
+    "warmer",
+    "other_rates",
+    "beyond_own_rates",
+    "hold",
+    "larger_torque",
+    "other_positions",
+    "more_cycles",
+    "compare_channels",
+    "compare_channels_and_cell",
+    "weigh_torque_cell",
+    "same_ends",
+    "other_ends",
+    "closed_sweep",
+    "closed_sweeps",
+]
+
+
+@dataclass(frozen=True)
+class Doing:
+    """What a rig is to do; `torques_Nm`: of end points, or the largest of each sweep, where it names them."""
+
+    kind: DoingKind
+    torques_Nm: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -98,7 +130,8 @@ class NextMeasurement:
     ----------
     vary : the channel or thing to vary. aim : what it is for.
     causes : ids: the one to confirm, or the one to tell from all others.
-    doing : what to do, of a plan. where : the structure to find, the unit to measure.
+    doing : what to do, of a plan; None: what shows the cause, or structure in the channel.
+    unit : the unit to measure. structure : what to find, None of a plan of its own.
     separation : by how many units of noise the two nearest rivals then differ.
     same_points : the same for end points at the torques measured, None where they were not compared.
     dimension_mm : of a specimen to make, and as drawn.
@@ -107,11 +140,12 @@ class NextMeasurement:
     vary: str
     aim: Aim
     causes: tuple[str, ...] = ()
-    doing: str = ""
-    where: str = ""
+    doing: Doing | None = None
+    unit: str = ""
     separation: float = 0.0
     same_points: float | None = None
     dimension_mm: tuple[float, float] | None = None
+    structure: Structure | None = None
 
 
 @dataclass(frozen=True)
@@ -127,5 +161,5 @@ class DiagnosisOutcome:
     unexplained: tuple[Unexplained, ...] = ()
     gain: Gain | None = None
     next_measurement: NextMeasurement | None = None
-    too_little: str = ""
+    too_little: Shortage | None = None
     gains_at_levels: tuple[Gain, ...] = ()

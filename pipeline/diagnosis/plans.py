@@ -10,6 +10,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import Doing
 
 FREE = 1e4
 """Times the largest predicted angle: a standard deviation that leaves a calibration to the data."""
@@ -17,10 +18,10 @@ FREE = 1e4
 
 @dataclass(frozen=True)
 class MeasurementPlan:
-    """Something a rig can do: which channel it varies, in words, and the record it would give."""
+    """Something a rig can do: which channel it varies, what to do, and the record it would give."""
 
     vary: str
-    doing: str
+    doing: Doing
     history: History
 
 
@@ -29,7 +30,7 @@ class PlanSeparation:
     """A plan and how far the two rivals that are nearest to each other are apart, in units of noise."""
 
     vary: str
-    doing: str
+    doing: Doing
     separation: float
 
 

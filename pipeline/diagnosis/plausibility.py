@@ -7,6 +7,14 @@ from collections.abc import Collection, Iterable
 import numpy as np
 
 from flexspline.pipeline.backlash import series_stiffness
+from flexspline.pipeline.diagnosis.absurd_size import (
+    Absurd,
+    FarReading,
+    FarTwist,
+    Still,
+    Turned,
+    absurd_words,
+)
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
@@ -19,6 +27,7 @@ from flexspline.pipeline.diagnosis.measurement.units import (
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.slope_hints import ANGLE_UNITS, TORQUE_UNITS, unit_hints
+from flexspline.pipeline.diagnosis.structure import FarSlope, UnitSuspect
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
 ABSURD = 30.0
@@ -35,8 +44,6 @@ AS_LIKELY = 1.5
 """Times further off than the best unit, and a unit is still asked for."""
 TINY = 1e-12
 """Ratios are cut here, for their logarithms."""
-TURNED, CONNECTED = "turned?", "connected?"
-"""Ends of refusals that no stiffness explains: a sign, and a reading that never changes."""
 OPPOSITE = -1 / 3
 """Of the simulated twist: no friction or drift turns it over."""
 
@@ -58,33 +65,27 @@ def refuse_absurd(
     """
     if isinstance(measurement, Sweep):
         size = sweep_size(measurement.history, measurement.angle_arcsec, prediction)
-        reason = None if size is None else absurd_sweep(size, measurement)
+        absurd = None if size is None else absurd_sweep(size, measurement)
     elif isinstance(measurement, EndPoints):
-        reason = _absurd_end_points(measurement, prediction)
+        absurd = _absurd_end_points(measurement, prediction)
     else:
-        reason = _absurd_specimens(measurement, K_b, K_e)
-    if reason:
-        doubted = "" if reason.endswith((TURNED, CONNECTED)) else given_words(given)
-        raise MeasurementError(measurement.path, None, reason + doubted)
+        absurd = _absurd_specimens(measurement, K_b, K_e)
+    if absurd is not None:
+        raise MeasurementError(measurement.path, None, absurd_words(absurd, given))
 
 
-def given_words(given: Collection[str]) -> str:
-    """A sentence that names the stiffnesses that a person stated; "" of none."""
-    return f" Or check the stiffness given: {', '.join(given)} (N·m/rad)." if given else ""
-
-
-def absurd_sweep(size: SweepSize, sweep: Sweep) -> str | None:
-    """Why the size of a sweep is absurd, in one clause; None where it is not."""
+def absurd_sweep(size: SweepSize, sweep: Sweep) -> Absurd | None:
+    """What is absurd of the size of a sweep; None where nothing is."""
     if np.ptp(sweep.angle_arcsec) == 0:
-        return f"the angle is the same in all rows: was its channel {CONNECTED}"
+        return Still()
     low, high = size.chord_range
     if low > ABSURD or high < -ABSURD or -1 / ABSURD < low <= high < 1 / ABSURD:
-        return _twist_words(size.chord, sweep) + suspects(size, sweep)
+        return _far_twist(size.chord, size, sweep)
     if high < OPPOSITE:
-        return f"the angle falls where torque rises: is the sign of angle or torque {TURNED}"
+        return Turned("sweep")
     if size.span_arcsec > ABSURD * (size.simulated_arcsec + POSITION_ERROR_arcsec):
-        return _twist_words(size.span_arcsec / size.simulated_arcsec, sweep) + suspects(size, sweep)
-    return slope_words(size, sweep) if slope_beyond(size, ABSURD) else None
+        return _far_twist(size.span_arcsec / size.simulated_arcsec, size, sweep)
+    return far_slope(size, sweep) if slope_beyond(size, ABSURD) else None
 
 
 def slope_beyond(size: SweepSize, limit: float) -> bool:
@@ -96,27 +97,26 @@ def slope_beyond(size: SweepSize, limit: float) -> bool:
     return most < 1 / limit and simulated > RESOLVED * size.residual_arcsec
 
 
-def slope_words(size: SweepSize, sweep: Sweep) -> str:
+def far_slope(size: SweepSize, sweep: Sweep) -> FarSlope:
     """How much stiffer or softer the gear would be, and why that may seem so."""
-    ratio = size.compliance
-    stiff = f"{times(1 / ratio)} stiffer" if 0 < ratio < 1 else f"{times(ratio)} softer"
-    said = (
-        f"the gear would be {stiff} than simulated"
-        if ratio > 0
-        else "the angle does not follow the torque"
-    )
-    return said + suspects(size, sweep)
+    return FarSlope(size.compliance, suspects(size, sweep), abs(size.chord) >= NOTHING)
 
 
-def suspects(size: SweepSize, sweep: Sweep) -> str:
-    """Units in which the readings would be right, the likeliest first, as a question."""
+def _far_twist(ratio: float, size: SweepSize, sweep: Sweep) -> FarTwist:
+    column = sweep.read_as.column("angle")
+    head = column.head if column else ""
+    return FarTwist(ratio, suspects(size, sweep), abs(size.chord) >= NOTHING, head)
+
+
+def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
+    """Units in which the readings would be right, the likeliest first."""
     angle, torque = (sweep.read_as.column(name) for name in ("angle", "torque"))
-    found: list[tuple[float, str]] = []
+    found: list[tuple[float, UnitSuspect]] = []
     if angle:
         if abs(size.chord) > 1 and _whole(sweep.angle_arcsec / angle.factor):
-            found.append((0.0, f"is {angle.head} in counts of an encoder (--counts-per-turn N)"))
+            found.append((0.0, UnitSuspect(angle.head)))
         for unit, off in likely_units((size.chord, size.compliance), angle, ANGLE_UNITS, ANGLE):
-            found.append((off, f"is {angle.head} in {unit}, not {symbol(angle.unit)}"))
+            found.append((off, UnitSuspect(angle.head, unit, symbol(angle.unit))))
     if torque and size.compliance:
         for unit, off in likely_units((1 / size.compliance,), torque, TORQUE_UNITS, TORQUE):
             elastic = size.simulated_arcsec - size.simulated_gap_arcsec
@@ -124,14 +124,11 @@ def suspects(size: SweepSize, sweep: Sweep) -> str:
             chord = float(np.log(max(abs(size.chord), TINY) * size.simulated_arcsec / simulated))
             if abs(chord) < np.log(LIKELY_RATIO):
                 off = max(off, abs(chord))
-                found.append((off, f"is {torque.head} in {unit}, not {symbol(torque.unit)}"))
-    found += [(0.0, f"is {h.head} in {h.other}, not {h.unit}") for h in unit_hints(size, sweep)]
+                found.append((off, UnitSuspect(torque.head, unit, symbol(torque.unit))))
+    found += [(0.0, UnitSuspect(h.head, h.other, h.unit)) for h in unit_hints(size, sweep)]
     best = min((off for off, _ in found), default=0.0)
-    likely = (words for off, words in sorted(found) if off <= best + np.log(AS_LIKELY))
-    asked = list(dict.fromkeys(likely))
-    if abs(size.chord) < NOTHING:
-        asked.append("was the channel of the angle connected")
-    return ": " + (", or ".join(asked) or "are the units of angle and torque right") + "?"
+    likely = (one for off, one in sorted(found) if off <= best + np.log(AS_LIKELY))
+    return tuple(dict.fromkeys(likely))
 
 
 def likely_units(
@@ -151,18 +148,11 @@ def likely_unit(
     return min(found, key=lambda pair: pair[1])[0] if found else ""
 
 
-def times(ratio: float) -> str:
-    """A ratio in words: "3440 times", or "1/206 of"."""
-    size = abs(ratio)
-    if size >= 1:
-        return f"{float(f'{size:.3g}'):g} times"
-    return f"1/{float(f'{1 / size:.3g}'):g} of" if size > 1e-6 else "next to nothing of"
-
-
-def _twist_words(ratio: float, sweep: Sweep) -> str:
-    column = sweep.read_as.column("angle")
-    turned = " with its sign turned" if ratio < 0 else ""
-    return f"{column.head if column else 'the angle'} is {times(ratio)} the simulated twist{turned}"
+def _suspect(column: ReadColumn | None, unit: str) -> UnitSuspect | None:
+    """The column in that unit; None where there is no column or no likely unit."""
+    if column is None or not unit:
+        return None
+    return UnitSuspect(column.head, unit, symbol(column.unit))
 
 
 def _whole(readings: np.ndarray) -> bool:
@@ -174,7 +164,7 @@ def _beyond(ratio: float) -> bool:
     return ratio > ABSURD or ratio < 1 / ABSURD
 
 
-def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
+def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | None:
     simulated = 2 * points.torque_Nm * prediction.compliance + prediction.gap_arcsec
     if not np.all(simulated > 0):
         return None
@@ -182,18 +172,11 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> str | None:
     if _beyond(abs(ratio)):
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
-        ask = (
-            f"are they in {unit}, not {symbol(column.unit)}"
-            if column and unit
-            else "is the unit right"
-        )
-        return f"the angles are {times(ratio)} the simulated ones: {ask}?"
-    if ratio < OPPOSITE:
-        return f"angle_plus lies below angle_minus: are the two columns, or the sign, {TURNED}"
-    return None
+        return FarReading("end_points", ratio, _suspect(column, unit))
+    return Turned("end_points") if ratio < OPPOSITE else None
 
 
-def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | None:
+def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> Absurd | None:
     stiffness = {"flexspline": K_b, "shaft": K_e, "series": series_stiffness(K_b, K_e)}
     parts: Iterable[tuple[str, ...]] = (specimens.part,)
     if not specimens.part_recorded:
@@ -207,10 +190,5 @@ def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> str | Non
     ratio = min(ratios, key=lambda r: abs(np.log(r)))
     column = specimens.read_as.column("stiffness")
     unit = likely_unit(ratio, column, tuple(STIFFNESS), STIFFNESS)
-    ask = (
-        f"is it in {symbol(unit)}, not {symbol(column.unit)}"
-        if column and unit
-        else "is the unit right"
-    )
-    head = column.head if column else "the stiffness"
-    return f"{head} is {times(ratio)} the simulated one: {ask}?"
+    head = column.head if column else ""
+    return FarReading("specimens", ratio, _suspect(column, symbol(unit) if unit else ""), head)

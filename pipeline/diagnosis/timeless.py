@@ -1,8 +1,7 @@
-"""Words of a record without time: rows stand for seconds in the computation, and must not be called so."""
+"""A record without time: rows stand for seconds in the computation, and must not be called so."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
@@ -10,15 +9,12 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurem
 PER_SECOND, PER_ROW = "N·m/s", "N·m/row"
 TIME, ROW = "time_s", "row"
 """The channel that such a record lacks, and the one that it has in its place."""
-_IN_TIME = re.compile(r"\b(in|of|with) time\b")
 
 
 def in_rows(outcome: DiagnosisOutcome) -> DiagnosisOutcome:
     """The outcome with rates per row in place of per second, and structure over rows in place of time."""
     causes = (replace(c, unit=c.unit.replace(PER_SECOND, PER_ROW)) for c in outcome.causes)
-    unexplained = (
-        replace(u, channel=over_rows(u.channel), what=_along(u.what)) for u in outcome.unexplained
-    )
+    unexplained = (replace(u, channel=over_rows(u.channel)) for u in outcome.unexplained)
     return replace(
         outcome,
         causes=tuple(causes),
@@ -32,12 +28,8 @@ def over_rows(channel: str) -> str:
     return ROW if channel == TIME else channel
 
 
-def _along(what: str) -> str:
-    return _IN_TIME.sub("along the record", what)
-
-
 def _next(after: NextMeasurement | None) -> NextMeasurement | None:
     """What is still to be found; a measurement that tells named causes apart may need time."""
     if after is None or after.aim != "find_structure":
         return after
-    return replace(after, vary=over_rows(after.vary), where=_along(after.where))
+    return replace(after, vary=over_rows(after.vary))

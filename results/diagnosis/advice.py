@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
-from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
+from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
+from flexspline.pipeline.diagnosis.sweep.next_measurement import MORE_CYCLES, WARMER_K
+from flexspline.results.diagnosis.structure_words import words_of
 from flexspline.results.diagnosis.words import channel_words, title_of
 
 CONFIRMS = {
@@ -14,6 +19,10 @@ CONFIRMS = {
 }
 """What confirms a cause that specimens show."""
 
+COMPARE = (
+    "compare the filters of the torque and the angle channel, and whether both are read at one instant; then "
+    "repeat the sweep ten times slower: "
+)
 SHOWS_STRUCTURE = {
     "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; what "
     "repeats belongs to the gear, and how it grows with the amplitude says what it may be",
@@ -31,10 +40,41 @@ SHOWS_STRUCTURE = {
 """What shows structure in a channel, everything else held."""
 
 
+DOING: Mapping[DoingKind, str] = {
+    "whole_sweeps": "sweep the torque 0 → +T → 0 → −T → 0 twice, with at least 100 rows a cycle",
+    "more_specimens": "measure at least eight specimens whose length, wall and diaphragm differ",
+    "warmer": f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
+    "other_rates": "repeat the sweep ten times slower and ten times faster",
+    "beyond_own_rates": "repeat the sweep ten times slower than its slowest cycle and ten times faster than "
+    "its quickest",
+    "hold": "hold the torque at both ends for twenty ramps",
+    "larger_torque": "sweep to a quarter, half, and one and a half times the largest torque",
+    "other_positions": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+    "more_cycles": f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
+    "compare_channels": f"{COMPARE}what a late reading does is then a tenth as large",
+    "compare_channels_and_cell": f"{COMPARE}what a late reading opens is then a tenth as wide, what a "
+    "hysteresis of the torque cell opens as wide as before",
+    "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
+    "both ways",
+    "same_ends": f"the same end points {TIMES_OVER} times over",
+    "other_ends": "end points at ± {torques} N·m",
+    "closed_sweep": "a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",
+    "closed_sweeps": "closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = "
+    "{torques} N·m",
+}
+"""What a rig is to do."""
+
+
+def doing_words(doing: Doing) -> str:
+    """What to do."""
+    torques = ", ".join(f"{torque:g}" for torque in doing.torques_Nm)
+    return DOING[doing.kind].format(torques=torques)
+
+
 def why(after: NextMeasurement, kind: MeasurementKind) -> str:
     """What to measure next and why, of the kind of measurement that was diagnosed."""
-    if after.aim == "more_data":
-        return after.doing
+    if after.aim == "more_data" and after.doing is not None:
+        return doing_words(after.doing)
     return {"sweep": _of_sweep, "end_points": _of_end_points, "specimens": _of_specimens}[kind](
         after
     )
@@ -42,18 +82,19 @@ def why(after: NextMeasurement, kind: MeasurementKind) -> str:
 
 def _of_sweep(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
-        if after.doing:
-            return after.doing
-        where = f" ({after.where})" if after.where else ""
+        if after.doing is not None:
+            return doing_words(after.doing)
+        where = f" ({words_of(after.structure, after.vary)})" if after.structure else ""
         return f"the structure lies in {channel_words(after.vary)}{where}: {_alone(after.vary)}"
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
-        return f"to confirm {cause.title}: {after.doing or cause.reveals}"
+        doing = cause.reveals if after.doing is None else doing_words(after.doing)
+        return f"to confirm {cause.title}: {doing}"
     titles = _one_from_others(after)
-    if not after.doing:
+    if after.doing is None:
         return f"to tell {titles}: {cause.reveals}"
     apart = f"their predictions then differ by {after.separation:.0f} times the noise"
-    return f"{after.doing}: {apart}; it tells {titles}"
+    return f"{doing_words(after.doing)}: {apart}; it tells {titles}"
 
 
 def _alone(channel: str) -> str:
@@ -64,7 +105,8 @@ def _of_end_points(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
         return "closed torque sweeps show the whole curve, not its ends"
     titles = ", ".join(map(title_of, after.causes))
-    here = f"on unit {after.where}: {after.doing}"
+    reveals = known_causes()[after.causes[0]].reveals
+    here = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
     if after.aim != "separate":
         return f"{here}; it would confirm or clear the suspicion of {titles}"
     apart = (
@@ -78,7 +120,8 @@ def _of_end_points(after: NextMeasurement) -> str:
 
 def _of_specimens(after: NextMeasurement) -> str:
     if after.aim == "find_structure":
-        return f"the structure is {after.where}: repeat those specimens, in another order"
+        what = words_of(after.structure, after.vary) if after.structure else after.vary
+        return f"the structure is {what}: repeat those specimens, in another order"
     if after.aim == "confirm":
         test = CONFIRMS.get(after.causes[0])
         return f"to confirm it: {test}" if test else f"measure {after.vary} of the specimens"

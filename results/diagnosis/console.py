@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
     calibrated_words,
@@ -39,7 +40,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
             lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
         rms = f"{figures_text(u.rms)} {u.unit} rms"
-        left = f"left over in {channel_words(u.channel)}: {rms}, {u.what}"
+        left = f"left over in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
         lines += _wrapped(left, "  ", "    ")
     if diagnosis.calibration is not None:
         lines += _wrapped(

@@ -10,6 +10,7 @@ from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import cause_title, magnitude_words, sure_words
 from flexspline.results.file_names import EXTENDED_MODEL
@@ -35,7 +36,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> Record:
                 "rms": u.rms,
                 "unit": u.unit,
                 "p_value": u.p_value,
-                "what": u.what,
+                "what": structure_words(u),
             }
             for u in outcome.unexplained
         ],

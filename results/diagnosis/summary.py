@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.absurd_size import given_words
 from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
-from flexspline.pipeline.diagnosis.plausibility import given_words
 from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
+from flexspline.pipeline.diagnosis.structure import FarSlope
+from flexspline.results.diagnosis.shortage_words import shortage_words
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
@@ -60,8 +63,8 @@ def _hint(diagnosis: Diagnosis) -> str:
     if not isinstance(sweep, Sweep):
         return ""
     if any(u.limit for u in diagnosis.outcome.unexplained):
-        asked = any(u.limit and u.what.endswith("?") for u in diagnosis.outcome.unexplained)
-        return given_words(diagnosis.given) if asked else ""  # it asks for units itself
+        slopes = (isinstance(u.structure, FarSlope) for u in diagnosis.outcome.unexplained)
+        return given_words(diagnosis.given) if any(slopes) else ""  # it asks for units itself
     hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes)
     if hint is None:
         return ""
@@ -100,7 +103,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:
         case "insufficient":
-            return f"Too little data to say anything: {outcome.too_little}."
+            return f"Too little data to say anything: {too_little(outcome)}."
         case "consistent":
             noise = "" if points else " and the noise"
             return f"{AGREES[diagnosis.kind]} with the simulation within its stated uncertainty{noise}."
@@ -120,6 +123,11 @@ def _verdict(diagnosis: Diagnosis) -> str:
             return _unknown(outcome, specimens)
 
 
+def too_little(outcome: DiagnosisOutcome) -> str:
+    """Why there are too few data; "" where there are enough."""
+    return "" if outcome.too_little is None else shortage_words(outcome.too_little)
+
+
 def _left_over(outcome: DiagnosisOutcome) -> str:
     """Beside what is named: the largest structure without a name, where it stands out of the noise."""
     if outcome.gain is None or not outcome.unexplained:
@@ -128,7 +136,7 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
     if most.rms < STANDS_OUT * outcome.gain.noise_floor:
         return ""
     channel = channel_words(most.channel)
-    return f" Without a name: {most.what} in {channel}, {most.rms:.2g} {most.unit} rms."
+    return f" Without a name: {structure_words(most)} in {channel}, {most.rms:.2g} {most.unit} rms."
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:
@@ -166,9 +174,9 @@ def _rivals(causes: Sequence[NamedCause]) -> str:
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
     known = f" Beside it: {_listed(outcome.causes)}." if outcome.causes else ""
     if specimens:
-        what = "; ".join(u.what for u in outcome.unexplained)
+        what = "; ".join(map(structure_words, outcome.unexplained))
         return f"There is structure that no known cause explains: {what}.{known}"
-    broken = [u.what for u in outcome.unexplained if u.limit]
+    broken = [structure_words(u) for u in outcome.unexplained if u.limit]
     if broken:
         said = f"No cause is named: {'; '.join(broken)}"
         return said if said.endswith("?") else f"{said}."

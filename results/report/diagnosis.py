@@ -12,6 +12,7 @@ from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
     capital,
@@ -135,7 +136,7 @@ def _unexplained(left: Sequence[Unexplained]) -> Iterable[Block]:
         rows=tuple(
             (
                 capital(channel_words(u.channel)),
-                capital(u.what),
+                capital(structure_words(u)),
                 figures_text(u.rms, 2),
                 "less than 1 in a million" if u.p_value < 1e-6 else f"1 in {grouped(1 / u.p_value, 0)}",
             )

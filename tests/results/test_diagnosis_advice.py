@@ -5,6 +5,7 @@ import pytest
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.results.diagnosis.advice import SHOWS_STRUCTURE, why
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.words import CHANNELS
@@ -12,8 +13,12 @@ from flexspline.results.diagnosis.words import CHANNELS
 
 @pytest.mark.parametrize("channel", sorted({*CHANNELS, *SHOWS_STRUCTURE}))
 def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
-    said = why(NextMeasurement(channel, "find_structure", where="jumps"), "sweep")
-    assert said.startswith(f"the structure lies in {CHANNELS[channel]} (jumps): ")
+    said = why(
+        NextMeasurement(channel, "find_structure", structure=(UnnamedForm("jumps"),)), "sweep"
+    )
+    assert said.startswith(
+        f"the structure lies in {CHANNELS[channel]} (jumps with the torque's motion; "
+    )
     assert "_" not in said
 
 

@@ -16,11 +16,13 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
+    Doing,
     NamedCause,
     NextMeasurement,
     Unexplained,
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.console import diagnosis_table
@@ -77,7 +79,9 @@ def test_every_kind_writes_a_magnitude_alike(kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_rival_is_named_in_the_advice(kind) -> None:
     rivals = ("series_compliance", "friction_hysteresis")
-    after = NextMeasurement("torque_Nm", "separate", rivals, "do so", "3", 5.0, None, (2.0, 1.0))
+    after = NextMeasurement(
+        "torque_Nm", "separate", rivals, Doing("hold"), "3", 5.0, None, (2.0, 1.0)
+    )
     said = why(after, kind)
     assert "elastic part left out of the simulation" in said
     assert "friction hysteresis" in said
@@ -93,9 +97,7 @@ def test_a_ratio_says_of_what(cause: Cause) -> None:
 
 
 def test_what_specimens_leave_is_in_percent_everywhere() -> None:
-    trend = Unexplained(
-        "specimen_order", 6.5, 1e-5, "a trend over the order of specimens", unit="%"
-    )
+    trend = Unexplained("specimen_order", 6.5, 1e-5, (UnnamedForm("trend"),), unit="%")
     outcome = DiagnosisOutcome("unknown", unexplained=(trend,))
     found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
     record = diagnosis_record(found)

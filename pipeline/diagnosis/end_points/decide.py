@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.end_points.race import UNNAMED, Hypothesis
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 
 NAMING_NATS = RIVAL_EVIDENCE
 """The simulation within its uncertainty is a rival too."""
@@ -66,9 +67,8 @@ def _unnamed(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Unexplained:
     """The curve of no cause that is likeliest."""
     term, amplitude = best.best.terms[-1], best.best.mean[-1]
     p = chance(best.score, (h.score for h in hypotheses if UNNAMED not in h.causes))
-    return Unexplained(
-        "torque_Nm", rms(term.column * amplitude), p, "a curve of the totals over torque"
-    )
+    form = UnnamedForm("curve_of_totals")
+    return Unexplained("torque_Nm", rms(term.column * amplitude), p, (form,))
 
 
 def _channels(h: Hypothesis) -> set[str]:

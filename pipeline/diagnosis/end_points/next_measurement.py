@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.end_points.finding import UnitFinding
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import Doing, NextMeasurement
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, PlanSeparation, separations
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
@@ -19,6 +19,8 @@ AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none."""
 ROWS = 64
 """Of one loop."""
+TIMES_OVER = ROWS // 2
+"""The same two end points, in as many rows."""
 READING_ARCSEC = 1.0
 """No reading is taken to be better than this when plans are compared."""
 
@@ -29,22 +31,22 @@ def plans(torque_Nm: float) -> list[MeasurementPlan]:
     quarter = np.arange(1, ROWS // 4 + 1) / (ROWS // 4)
     loop = np.concatenate([quarter, 1 - quarter, -quarter, quarter - 1])
     one = np.concatenate([loop, loop])
-    listed = ", ".join(f"{a * torque_Nm:g}" for a in AMPLITUDES)
+    listed = tuple(a * torque_Nm for a in AMPLITUDES)
     return [
         MeasurementPlan(
             "repeat",
-            f"the same end points {ROWS // 2} times over",
-            _history(np.tile([torque_Nm, -torque_Nm], ROWS // 2)),
+            Doing("same_ends"),
+            _history(np.tile([torque_Nm, -torque_Nm], TIMES_OVER)),
         ),
-        MeasurementPlan("torque_Nm", f"end points at ± {listed} N·m", _history(np.array(ends))),
+        MeasurementPlan("torque_Nm", Doing("other_ends", listed), _history(np.array(ends))),
         MeasurementPlan(
             "sweep",
-            f"a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torque_Nm:g} N·m",
+            Doing("closed_sweep", (torque_Nm,)),
             _history(torque_Nm * one),
         ),
         MeasurementPlan(
             "torque_amplitude",
-            f"closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = {listed} N·m",
+            Doing("closed_sweeps", listed),
             _history(np.concatenate([a * torque_Nm * loop for a in AMPLITUDES])),
         ),
     ]
@@ -79,7 +81,7 @@ def next_measurement(
     first = decision.causes[0]
     if not plans:
         cause = known_causes()[first.id]
-        return NextMeasurement(cause.vary, "confirm", (first.id,), cause.reveals, worst.unit)
+        return NextMeasurement(cause.vary, "confirm", (first.id,), unit=worst.unit)
     best = plans[0]
     same = next((p.separation for p in plans[1:] if p.vary == "torque_Nm"), None)
     return NextMeasurement(

@@ -159,4 +159,5 @@ def _relative_rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) ->
 def _unexplained(race: SpecimenRace, best: LaplaceFit, term: SpecimenParameter) -> Unexplained:
     p = chance(best.score, (race.null, *(f.score for f in race.fits if term not in f.terms)))
     rms = 100 * _relative_rms(race, best, (term.owner,))
-    return Unexplained(term.owner[1:], rms, p, term.what, unit="%")
+    assert term.form is not None
+    return Unexplained(term.owner[1:], rms, p, (term.form,), unit="%")

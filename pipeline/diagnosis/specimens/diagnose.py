@@ -9,8 +9,9 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain, NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Doing, Gain, NextMeasurement
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.shortage import FewSpecimens
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_designs
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
@@ -107,12 +108,10 @@ def explain(
 
 
 def _insufficient(n: int) -> DiagnosisOutcome:
-    reason = f"{n} specimen{'s' if n != 1 else ''}; modulus, one cause and the noise need {FEWEST_SPECIMENS}"
-    doing = "measure at least eight specimens whose length, wall and diaphragm differ"
     return DiagnosisOutcome(
         "insufficient",
-        next_measurement=NextMeasurement("specimen", "more_data", doing=doing),
-        too_little=reason,
+        next_measurement=NextMeasurement("specimen", "more_data", doing=Doing("more_specimens")),
+        too_little=FewSpecimens(n, FEWEST_SPECIMENS),
     )
 
 

@@ -32,7 +32,7 @@ def next_specimen(
     match decision.verdict:
         case "unknown":
             u = decision.unexplained[0]
-            return NextMeasurement(u.channel, "find_structure", where=u.what)
+            return NextMeasurement(u.channel, "find_structure", structure=u.structure)
         case "ambiguous" if explanation.rivals:
             return _separating(explanation, bench, design, part, noise)
         case "named" | "ambiguous":

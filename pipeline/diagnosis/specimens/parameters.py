@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances
 from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 
 MODULUS_SPREAD = 0.1
 """Standard deviation of ln E where the material is another one than stated."""
@@ -40,7 +41,7 @@ class SpecimenParameter:
     owner : the id of the cause (docs/contract.md), or "?" and a channel.
     kind : "modulus", "series", "zone", "geometry" or "column".
     spread, centre : prior standard deviation and mean of the parameter.
-    positive : whether it cannot be below 0. odds : log prior probability. what : in words, for columns.
+    positive : whether it cannot be below 0. odds : log prior probability. form : of columns.
     parts : parts whose modulus changes. sensitivity, column : where the kind needs them.
     within : a dimension within its tolerance, which is no finding.
     """
@@ -50,7 +51,7 @@ class SpecimenParameter:
     spread: float
     odds: float
     positive: bool = False
-    what: str = ""
+    form: UnnamedForm | None = None
     parts: tuple[str, ...] = ()
     sensitivity: Sensitivity | None = None
     column: np.ndarray | None = None
@@ -111,11 +112,11 @@ def specimen_parameters(
 def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[SpecimenParameter]:
     """Structure without a name: over the order of specimens, over each dimension, one specimen's own."""
     order = np.linspace(-1, 1, n)
-    shapes: list[tuple[str, str, np.ndarray]] = [
-        ("?specimen_order", "a trend over the order of specimens", order),
-        ("?specimen_order", "a bend over the order of specimens", order**2 - (order**2).mean()),
-        ("?specimen_order", "specimens that alternate", np.cos(np.pi * np.arange(n))),
-        ("?specimen_order", "a step half way through the specimens", np.sign(order)),
+    shapes: list[tuple[str, UnnamedForm, np.ndarray]] = [
+        ("?specimen_order", UnnamedForm("trend"), order),
+        ("?specimen_order", UnnamedForm("bend"), order**2 - (order**2).mean()),
+        ("?specimen_order", UnnamedForm("alternating"), np.cos(np.pi * np.arange(n))),
+        ("?specimen_order", UnnamedForm("half_step"), np.sign(order)),
     ]
     for key, values in overrides.items():
         if np.ptp(values) > 0:
@@ -123,17 +124,17 @@ def _columns(n: int, overrides: Mapping[str, np.ndarray]) -> list[SpecimenParame
             bend = x**2 - (x**2).mean()
             slope = (x @ bend) / (x @ x)
             shapes += [
-                (f"?{key}", f"a trend over {key}", x),
-                (f"?{key}", f"a bend over {key}", bend - slope * x),
+                (f"?{key}", UnnamedForm("trend"), x),
+                (f"?{key}", UnnamedForm("bend"), bend - slope * x),
             ]
     shapes += [
-        ("?specimen", f"specimen {i + 1} by itself", (np.arange(n) == i).astype(float))
+        ("?specimen", UnnamedForm("one_specimen", i + 1), (np.arange(n) == i).astype(float))
         for i in range(n)
     ]
     odds = UNNAMED_NATS - float(np.log(len(shapes)))
     return [
-        SpecimenParameter(owner, "column", UNNAMED_SPREAD, odds, what=what, column=column)
-        for owner, what, column in shapes
+        SpecimenParameter(owner, "column", UNNAMED_SPREAD, odds, form=form, column=column)
+        for owner, form, column in shapes
     ]
 
 

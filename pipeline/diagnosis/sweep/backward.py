@@ -7,14 +7,14 @@ reading opens grows with the rate and friction's loop does not, so the quickest 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import gammaincinv
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC, Noise
-from flexspline.pipeline.diagnosis.outcome import NextMeasurement, Unexplained
+from flexspline.pipeline.diagnosis.structure import BackwardLoop
 from flexspline.pipeline.diagnosis.sweep.loads import Loads
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
@@ -35,78 +35,12 @@ WITHIN_LOADS = (
     "thermal_clearance", "wear", "sensor_drift", "?temperature_C", "kinematic_error", "position_stiffness",
 )  # fmt: skip
 """Owners of terms that change with time or the input within a load; that of the temperature has no name."""
-ABSENT = {
-    "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
-    "input_angle_deg": "a wave generator that turns with the load (its angle)",
-}
-"""What an honest gear or rig may do that gives such loops, by the channel that would show it."""
+WOULD_SHOW = ("temperature_C", "input_angle_deg")
+"""Channels that would show what else may give such loops: a gap that shrinks as the gear warms, a wave
+generator that turns with the load."""
 FOLLOWS = 0.2
 """Share of the slowest loads' width that goes with the rate, up to which loops do not grow: all of a late
 reading's does."""
-LATE = NextMeasurement(
-    "torque_rate",
-    "find_structure",
-    doing="compare the filters of the torque and the angle channel, and whether both are read at one "
-    "instant; then repeat the sweep ten times slower: what a late reading opens is then a tenth as wide, "
-    "what a hysteresis of the torque cell opens as wide as before",
-)
-CELL = NextMeasurement(
-    "torque_Nm",
-    "find_structure",
-    doing="load and unload the torque cell against known weights, and compare its reading both ways",
-)
-
-
-@dataclass(frozen=True)
-class BackwardLoop:
-    """Loops run backwards: by how much the angle is lower while torque falls, in the mean [arcsec].
-
-    Attributes
-    ----------
-    loops : so many. rate_Nm_per_s : of the quickest, where only those do; else None.
-    delay_s : by which a late torque reading explains how loops differ with their rate, with its standard
-        deviation; None where the rates do not differ, or where that does not explain it. grows : whether
-        the loops do with the rate; None where rates do not differ. unrecorded : what else may look like it,
-        in words, where its channel is missing.
-    """
-
-    width_arcsec: float
-    loops: int
-    rate_Nm_per_s: float | None
-    delay_s: tuple[float, float] | None
-    grows: bool | None
-    unrecorded: tuple[str, ...] = ()
-
-    @property
-    def said(self) -> Unexplained:
-        """As structure without a name that breaks a limit."""
-        which = "the loops run" if self.rate_Nm_per_s is None else (
-            f"the quickest loops, at {self.rate_Nm_per_s:.3g} N·m/s, run"
-        )  # fmt: skip
-        what = (
-            f"{which} backwards: in the mean of {self.loops} the angle is {self.width_arcsec:.3g} "
-            "arcsec lower while torque falls than while it rises, so that the gear would give energy, which "
-            f"none does; most likely {self._likely}"
-        )
-        if self.unrecorded:
-            what += f". Not recorded, and able to look like it: {' and '.join(self.unrecorded)}"
-        return Unexplained("torque_rate", self.width_arcsec / 2, 0.0, what, limit=True)
-
-    @property
-    def _likely(self) -> str:
-        if self.grows is False:
-            return "the torque cell has a hysteresis of its own, as the loops do not grow with the rate"
-        late = "by a filter or a delay"
-        if self.delay_s is not None:
-            delay, std = self.delay_s
-            late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
-        late = f"the torque reading lags the angle reading, {late}, or the two are not read at one instant"
-        return late if self.grows else f"{late}, or the torque cell has a hysteresis of its own"
-
-    @property
-    def next(self) -> NextMeasurement:
-        """What tells more."""
-        return CELL if self.grows is False else LATE
 
 
 def backward_of(prepared: PreparedSweep, explained: ExplainedSweep) -> BackwardLoop | None:
@@ -138,9 +72,7 @@ def backward_loop(
         found = _backward(loads.only(loads.rates * QUICK > quickest), angle_arcsec, noise)
     if found is None:
         return None
-    unrecorded = tuple(
-        said for channel, said in ABSENT.items() if getattr(history, channel) is None
-    )
+    unrecorded = tuple(channel for channel in WOULD_SHOW if getattr(history, channel) is None)
     delay = torque_delay_s(loads, angle_arcsec, band_Nm)
     grows = True if quickest or delay else _grow(loads, angle_arcsec)
     return BackwardLoop(*found, quickest, delay, grows, unrecorded)

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import (
     MANY_LEVELS,
     levels,
@@ -24,8 +25,6 @@ STEADY_K = 0.3
 """A temperature that varies by less is constant to a usual sensor's ±0.3 K at 0 °C (IEC 60751, class B)."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
-ZERO_OF_CYCLE = "a zero of its own in each cycle"
-ZERO_OF_POSITION = "a zero of its own at each position"
 DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
@@ -44,7 +43,7 @@ def over_time(rig: Rig) -> Made:
     """A smooth drift of the zero."""
     t = _passed(rig)
     if t is not None:
-        yield "time_s", "a smooth function of time", smooth(2 * t - 1)
+        yield "time_s", UnnamedForm("smooth"), smooth(2 * t - 1)
 
 
 def changing_stiffness(rig: Rig) -> Made:
@@ -55,7 +54,7 @@ def changing_stiffness(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     for degree in DEGREES:
         powers = np.column_stack([t**k for k in range(1, degree + 1)])
-        yield "time_s", "a stiffness that changes with time", torque[:, None] * powers
+        yield "time_s", UnnamedForm("changing_stiffness"), torque[:, None] * powers
 
 
 def waves_and_steps(rig: Rig) -> Made:
@@ -64,7 +63,7 @@ def waves_and_steps(rig: Rig) -> Made:
     if t is None:
         return
     for k in WAVES:
-        yield "time_s", "a wave in time", wave(t, k)
+        yield "time_s", UnnamedForm("wave"), wave(t, k)
     for rows in rig.history.unit_slices:
         for place in np.linspace(0, 1, STEPS + 2)[1:-1]:
             yield from step_from(rig, int(rows[int(place * len(rows))]))
@@ -74,8 +73,8 @@ def step_from(rig: Rig, row: int) -> Made:
     """The zero jumps at a row, until its unit ends."""
     unit = rig.history.unit
     after = (unit == unit[row]) & (np.arange(len(unit)) >= row)
-    where = f" of unit {unit[row] + 1}" if len(rig.history.unit_slices) > 1 else ""
-    yield "time_s", f"a step in time{where}", after[:, None].astype(float)
+    of_one = int(unit[row]) + 1 if len(rig.history.unit_slices) > 1 else 0
+    yield "time_s", UnnamedForm("step", of_one), after[:, None].astype(float)
 
 
 def over_cycle(rig: Rig) -> Made:
@@ -84,16 +83,16 @@ def over_cycle(rig: Rig) -> Made:
         return
     own = levels(rig.history.cycle.astype(float))
     torque = rig.history.torque_Nm / rig.torque_Nm
-    yield "cycle", ZERO_OF_CYCLE, own
-    yield "cycle", "a stiffness of its own in each cycle", own * torque[:, None]
+    yield "cycle", UnnamedForm("own_zero"), own
+    yield "cycle", UnnamedForm("own_stiffness"), own * torque[:, None]
     ramp = rig.history.cycle / (rig.cycles - 1)
     for power in (1.0, 0.5):
         yield (
             "cycle",
-            "a stiffness that changes from cycle to cycle",
+            UnnamedForm("changing_stiffness"),
             (ramp**power * torque)[:, None],
         )
-    yield "cycle", "a gap of its own in each cycle", own * rig.history.sign[:, None]
+    yield "cycle", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 
 
 def over_temperature(rig: Rig) -> Made:
@@ -108,25 +107,25 @@ def over_temperature(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     warm = (temperature - REFERENCE_C) / max(np.abs(temperature - REFERENCE_C).max(), 1e-9)
     centred = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
-    yield "temperature_C", "a zero that changes with temperature", warm[:, None]
-    yield "temperature_C", "a zero that changes with temperature", smooth(centred, 3)
-    yield "temperature_C", "a stiffness that changes with temperature", (warm * torque)[:, None]
+    yield "temperature_C", UnnamedForm("changing_zero"), warm[:, None]
+    yield "temperature_C", UnnamedForm("changing_zero"), smooth(centred, 3)
+    yield "temperature_C", UnnamedForm("changing_stiffness"), (warm * torque)[:, None]
     side = rig.history.sign
     linear = np.column_stack([side, warm * side])
     curved = warm**2 * side
     bent = curved - linear @ np.linalg.lstsq(linear, curved, rcond=None)[0]
     if np.std(bent) > LEAST_BENT * np.std(curved):
-        yield "temperature_C", "a gap not linear in temperature", bent[:, None]
+        yield "temperature_C", UnnamedForm("bent_gap"), bent[:, None]
 
 
 def zeros_apart(rig: Rig) -> Made:
     """A zero of each cycle's and of each position's own, none shared with its neighbours."""
     if rig.cycles > 1:
-        yield "cycle", ZERO_OF_CYCLE, levels(rig.history.cycle.astype(float), MANY_LEVELS)
+        yield "cycle", UnnamedForm("own_zero"), levels(rig.history.cycle.astype(float), MANY_LEVELS)
     if _telling(rig):
         assert rig.history.input_angle_deg is not None
         position = np.mod(rig.history.input_angle_deg, 360.0)
-        yield "input_angle_deg", ZERO_OF_POSITION, levels(position, MANY_LEVELS)
+        yield "input_angle_deg", UnnamedForm("own_zero"), levels(position, MANY_LEVELS)
 
 
 def _telling(rig: Rig) -> bool:
@@ -143,9 +142,9 @@ def over_position(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     own = levels(np.mod(angle, 360.0))
     if _telling(rig):
-        yield "input_angle_deg", ZERO_OF_POSITION, own
-        yield "input_angle_deg", "a stiffness of its own at each position", own * torque[:, None]
-    yield "input_angle_deg", "a gap of its own at each position", own * rig.history.sign[:, None]
+        yield "input_angle_deg", UnnamedForm("own_zero"), own
+        yield "input_angle_deg", UnnamedForm("own_stiffness"), own * torque[:, None]
+    yield "input_angle_deg", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
 
 
 def over_unit(rig: Rig) -> Made:
@@ -157,5 +156,5 @@ def over_unit(rig: Rig) -> Made:
     for u, rows in enumerate(units):
         own = np.zeros(len(torque))
         own[rows] = 1.0
-        yield "unit", f"a gain of unit {u + 1}'s own", (own * torque)[:, None]
-        yield "unit", f"a gap of unit {u + 1}'s own", (own * rig.history.sign)[:, None]
+        yield "unit", UnnamedForm("own_stiffness", u + 1), (own * torque)[:, None]
+        yield "unit", UnnamedForm("own_gap", u + 1), (own * rig.history.sign)[:, None]

@@ -38,17 +38,24 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.doubt import Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
+    Doing,
+    NextMeasurement,
+    Unexplained,
+)
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.shortage import ConstantTorque, FewRows, FewTorques, Shortage
+from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
-from flexspline.pipeline.diagnosis.sweep.backward import BackwardLoop, backward_of
+from flexspline.pipeline.diagnosis.sweep.backward import backward_of
 from flexspline.pipeline.diagnosis.sweep.credit import unnamed_share
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
-from flexspline.pipeline.diagnosis.sweep.late_angle import LateAngle, late_angle_of
+from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
-from flexspline.pipeline.diagnosis.sweep.next_measurement import next_measurement
+from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
@@ -86,15 +93,15 @@ def diagnose_sweep(
 ) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
     """The verdict on a sweep and what stands behind it; None where there are too few data."""
     shortage = _too_little(sweep)
-    if shortage:
+    if shortage is not None:
         return _insufficient(shortage), None
     try:
         prepared = prepare(thinned(sweep), prediction)
     except TooFewRowsError as error:
-        return _insufficient(str(error)), None
+        return _insufficient(FewRows(error.count, error.wanted)), None
     explained = with_friction_ahead(prepared) or with_torque_offset(run_race(prepared))
     identified = explained.identified
-    if hidden := drowned(explained):
+    if (hidden := drowned(explained)) is not None:
         return _insufficient(hidden), None
     causes = named_causes(explained)
     tests = channel_tests(explained.prepared, identified.fit)
@@ -122,7 +129,8 @@ def diagnose_sweep(
         decision = Decision("unknown", (), (broken, *decision.unexplained))
     misread = _misread(prepared, explained, decision)
     if misread is not None:  # whatever else was found is what the race made of it
-        decision = Decision("unknown", (), (misread.said,))
+        late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
+        decision = Decision("unknown", (), (late,))
     ids = [c.id for c in decision.causes]
     gain = gain_of(explained, ids)
     levels = gains_at_levels(explained, ids) if ids else ()
@@ -133,7 +141,7 @@ def diagnose_sweep(
         decision.causes,
         decision.unexplained,
         gain,
-        misread.next if misread else next_measurement(explained, decision),
+        after_late(misread) if misread else next_measurement(explained, decision),
         gains_at_levels=levels,
     )
     written = written_model(explained, sweep, ids, gain)
@@ -154,14 +162,14 @@ def _misread(
     return found
 
 
-def _too_little(sweep: Sweep) -> str | None:
+def _too_little(sweep: Sweep) -> Shortage | None:
     torque = sweep.history.torque_Nm
     largest = float(np.abs(torque).max())
     if largest == 0 or np.ptp(torque) < STILL * largest:
-        return "the torque is constant, so neither stiffness nor gap can be seen"
+        return ConstantTorque()
     different = len(np.unique(np.round(torque / largest, 2)))
     if different < FEWEST_TORQUES and not _is_creep_test(sweep):
-        return "fewer than four different torques"
+        return FewTorques(FEWEST_TORQUES)
     return None
 
 
@@ -170,10 +178,10 @@ def _is_creep_test(sweep: Sweep) -> bool:
     return len(holds(sweep.history)) >= FEWEST_HOLDS
 
 
-def _insufficient(shortage: str) -> DiagnosisOutcome:
-    doing = "sweep the torque 0 → +T → 0 → −T → 0 twice, with at least 100 rows a cycle"
+def _insufficient(shortage: Shortage) -> DiagnosisOutcome:
+    whole = NextMeasurement("torque_Nm", "more_data", doing=Doing("whole_sweeps"))
     return DiagnosisOutcome(
         "insufficient",
-        next_measurement=NextMeasurement("torque_Nm", "more_data", doing=doing),
+        next_measurement=whole,
         too_little=shortage,
     )

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
+from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
@@ -66,11 +67,8 @@ def refuted(levels: Iterable[Gain]) -> Unexplained | None:
     if worst is None:
         return None
     without = min(worst.rmse_before, worst.rmse_calibrated)
-    what = (
-        f"what was found does not hold at {worst.held_out}: learnt on the other rows it misses these by "
-        f"{worst.rmse_after:.3g} arcsec rms, the simulation without it by {without:.3g}"
-    )
-    return Unexplained(worst.channel, worst.rmse_after, 0.0, what, limit=True)
+    missed = MissedLevel(worst.held_out, worst.rmse_after, without)
+    return Unexplained(worst.channel, worst.rmse_after, 0.0, missed)
 
 
 def _does_harm(gain: Gain) -> bool:

@@ -5,37 +5,15 @@ In a record of few rows, each a step of the torque, nothing else tells this from
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.shortage import Leaps
 
 FAR = 10.0
 """Times the median move between two rows: of normal noise one move in 70 billion goes so far."""
 FEWEST = 3
 """Leaps, all with the torque: one may be a touch of the rig; spikes go there and back."""
-
-
-@dataclass(frozen=True)
-class Leaps:
-    """How many, the smallest and largest, the torques between which they come, the usual move."""
-
-    count: int
-    sizes_arcsec: tuple[float, float]
-    torques_Nm: tuple[float, float]
-    usual_arcsec: float
-
-    @property
-    def said(self) -> str:
-        """As a reason for which a record says nothing."""
-        (least, most), (low, high) = self.sizes_arcsec, self.torques_Nm
-        where = f"{low:.3g} to {high:.3g}".replace("-", "−")
-        return (
-            f"the angle leaps {self.count} times with the torque, by {least:.0f} to {most:.0f} arcsec at "
-            f"{where} N·m, and moves by {self.usual_arcsec:.2g} arcsec from row to row else: "
-            "something sticks and breaks away"
-        )
 
 
 def leaps_of(history: History, angle_arcsec: np.ndarray) -> Leaps | None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
-from flexspline.pipeline.diagnosis.plausibility import slope_beyond, slope_words
+from flexspline.pipeline.diagnosis.plausibility import far_slope, slope_beyond
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.shortage import Drowned, Leaping
+from flexspline.pipeline.diagnosis.structure import NegativeGap
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leaps import leaps_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.size import simulated_twist_arcsec, sweep_size
-from flexspline.pipeline.diagnosis.sweep.slip import OUTER, slip_of
+from flexspline.pipeline.diagnosis.sweep.slip import slip_of
 
 MOST = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
@@ -29,37 +31,25 @@ def broken_limit(
     prepared, fit = explained.prepared, explained.identified.fit
     slip = slip_of(prepared.rig.history, prepared.sweep.angle_arcsec)
     if slip is not None:
-        what = (
-            f"the output slips: each time torque passes {OUTER:.0%} of its largest value and comes back, "
-            f"the angle has gone on by {slip.way_arcsec:.0f} arcsec, {slip.times:.0f} times what springs "
-            "there; a lock, a clamp or a friction joint gives way"
-        )
-        return Unexplained("torque_Nm", slip.way_arcsec, 0.0, what, limit=True)
+        return Unexplained("torque_Nm", slip.way_arcsec, 0.0, slip)
     size = sweep_size(prepared.rig.history, prepared.sweep.angle_arcsec, prepared.prediction)
     if size is not None and slope_beyond(size, MOST):
-        return Unexplained(
-            "torque_Nm", size.residual_arcsec, 0.0, slope_words(size, sweep), limit=True
-        )
+        return Unexplained("torque_Nm", size.residual_arcsec, 0.0, far_slope(size, sweep))
     gap, std = _gap(fit, causes, prepared.prediction)
     if gap + SURE * std < 0:
-        what = (
-            f"the best explanation needs a gap of {gap:.3g} ± {std:.2g} arcsec, which no gear has"
-        )
-        return Unexplained("torque_Nm", abs(gap) / 2, 0.0, what, limit=True)
+        return Unexplained("torque_Nm", abs(gap) / 2, 0.0, NegativeGap(gap, std))
     return None
 
 
-def drowned(explained: ExplainedSweep) -> str:
-    """Why noise, or what passes for it, hides everything; "" where one reading's is below the whole twist."""
+def drowned(explained: ExplainedSweep) -> Drowned | Leaping | None:
+    """Noise, or leaps that pass for it, that hide everything; None where one reading's is below the twist."""
     prepared = explained.prepared
     noise = explained.identified.search.evidence.noise.std_arcsec
     twist = simulated_twist_arcsec(prepared.rig.history.torque_Nm, prepared.prediction)
     if noise <= twist:
-        return ""
+        return None
     leaps = leaps_of(prepared.sweep.history, prepared.sweep.angle_arcsec)
-    if leaps is not None:
-        return f"{leaps.said}; the simulated twist is {twist:.0f} arcsec"
-    return f"the noise of one reading, {noise:.3g} arcsec, exceeds the simulated twist, {twist:.3g} arcsec"
+    return Drowned(noise, twist) if leaps is None else Leaping(leaps, twist)
 
 
 def _gap(

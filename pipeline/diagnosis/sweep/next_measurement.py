@@ -11,9 +11,10 @@ from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
-from flexspline.pipeline.diagnosis.outcome import Aim, NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import Aim, Doing, NextMeasurement
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
+from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
@@ -31,7 +32,7 @@ LONG_HOLD = 20.0
 """Ramps: two decades of time from a fifth of a ramp on, where creep and lag go apart."""
 FASTER = 10.0
 """Times faster and slower: what lags changes by a factor of 100 between the two, friction not at all."""
-LARGER = "sweep to a quarter, half, and one and a half times the largest torque"
+LARGER = Doing("larger_torque")
 """What no record of its largest torque has: how an effect goes on beyond it."""
 MORE_CYCLES = 40
 """Wear that saturates is over by then (`wear.RUN_IN_CYCLES` reaches 6), even wear adds in proportion."""
@@ -69,22 +70,22 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0
     many = [place0 + p for p in POSITIONS_DEG]
     k = len(many)
-    slower, faster, said = _rates_beyond(prepared.sweep.history, ramp)
+    slower, faster, beyond = _rates_beyond(prepared.sweep.history, ramp)
     same = (place0, place0)
     return [
         MeasurementPlan(
             "temperature_C",
-            f"repeat the sweep {WARMER_K:g} K warmer, soaked, wave generator untouched",
+            Doing("warmer"),
             cycles(warmer=(0.0, WARMER_K), places=same, numbers=(last, last)),
         ),
         MeasurementPlan(
             "torque_rate",
-            said,
+            Doing("beyond_own_rates" if beyond else "other_rates"),
             cycles((1.0,) * 3, (1.0, slower, faster), (0.0,) * 3, (place0,) * 3, (last,) * 3),
         ),
         MeasurementPlan(
             "hold",
-            "hold the torque at both ends for twenty ramps",
+            Doing("hold"),
             cycles(places=same, numbers=(last, last), hold=LONG_HOLD),
         ),
         MeasurementPlan(
@@ -94,28 +95,27 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         ),
         MeasurementPlan(
             "input_angle_deg",
-            "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
+            Doing("other_positions"),
             cycles((1.0,) * k, (1.0,) * k, (0.0,) * k, many, (last,) * k),
         ),
         MeasurementPlan(
             "cycle",
-            f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
+            Doing("more_cycles"),
             cycles(places=same, numbers=(last, last + MORE_CYCLES)),
         ),
     ]
 
 
-def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, str]:
-    """Ramps of a slower and a faster sweep as multiples of the typical one, and the plan in words.
+def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
+    """Ramps of a slower and a faster sweep as multiples of the typical one, and whether cycles differ.
 
-    Where cycles differ by `FASTER` already, ten times beyond the slowest and the quickest.
+    Where they differ by `FASTER` already, ten times beyond the slowest and the quickest.
     """
     quickest, slowest = rate_range(history)
     if quickest < FASTER * slowest or slowest == 0:
-        return FASTER, 1 / FASTER, "repeat the sweep ten times slower and ten times faster"
+        return FASTER, 1 / FASTER, False
     typical = float(np.abs(history.torque_Nm).max()) / ramp_s
-    words = "repeat the sweep ten times slower than its slowest cycle and ten times faster than its quickest"
-    return FASTER * typical / slowest, typical / (FASTER * quickest), words
+    return FASTER * typical / slowest, typical / (FASTER * quickest), True
 
 
 def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, np.ndarray]:
@@ -141,7 +141,7 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     """What to measure next: to find the unknown, to part rivals, or to confirm the smallest cause."""
     if decision.verdict == "unknown" and decision.unexplained:
         worst = decision.unexplained[0]
-        return NextMeasurement(worst.channel, "find_structure", where=worst.what)
+        return NextMeasurement(worst.channel, "find_structure", structure=worst.structure)
     unsure = [c for c in decision.causes if c.alternatives] or list(decision.causes[-1:])
     if not unsure:
         return None
@@ -149,7 +149,8 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     aim: Aim = "separate" if rivals else "confirm"
     models = _rival_models(explained, decision, cause) if rivals else []
     if len(models) < 2:
-        vary, doing = known_causes()[cause].vary, ""
+        vary = known_causes()[cause].vary
+        doing: Doing | None = None
         if aim == "confirm" and vary == "torque_rate" and _has_rates(explained):
             vary, doing = "torque_amplitude", LARGER
         if rivals == ("series_compliance",):  # a loop shrinks with its amplitude, a spring does not
@@ -158,6 +159,17 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     noise = explained.prepared.noise.std_arcsec
     best = most_telling(plans(explained.prepared), models, noise)
     return NextMeasurement(best.vary, aim, (cause, *rivals), best.doing, separation=best.separation)
+
+
+def after_late(late: BackwardLoop | LateAngle) -> NextMeasurement:
+    """What tells more of a reading that comes late, or of a torque cell with a hysteresis."""
+    if isinstance(late, LateAngle):
+        return NextMeasurement("torque_rate", "find_structure", doing=Doing("compare_channels"))
+    if late.grows is False:
+        return NextMeasurement("torque_Nm", "find_structure", doing=Doing("weigh_torque_cell"))
+    return NextMeasurement(
+        "torque_rate", "find_structure", doing=Doing("compare_channels_and_cell")
+    )
 
 
 def _has_rates(explained: ExplainedSweep) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
     changing_stiffness,
     over_cycle,
@@ -47,10 +48,10 @@ NEW_SHARE = 0.25
 
 @dataclass(frozen=True)
 class NuisanceTerm:
-    """A flexible term: which channel it lives in, what it is, and its columns (n, k)."""
+    """A flexible term: which channel it lives in, its form, and its columns (n, k)."""
 
     channel: str
-    what: str
+    form: UnnamedForm
     columns: np.ndarray
     spread: float
     """Prior size of an amplitude, as a share of the predicted angle."""
@@ -86,7 +87,7 @@ def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
     onto = {less: _projection(columns, share) for less, columns in taken.items()}
     found = []
     for kind in kinds:
-        for channel, what, columns in kind.make(rig):
+        for channel, form, columns in kind.make(rig):
             rest = columns
             if kind.less is not None:
                 rest = columns - taken[kind.less] @ (onto[kind.less] @ columns)
@@ -97,7 +98,7 @@ def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
                 found.append(
                     NuisanceTerm(
                         channel,
-                        what,
+                        form,
                         rest[:, good] / rms[good],
                         kind.spread,
                         kind.positive,

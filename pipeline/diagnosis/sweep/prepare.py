@@ -37,10 +37,7 @@ class TooFewRowsError(FlexsplineError, ValueError):
 
     def __init__(self, count: int, wanted: int) -> None:
         self.count, self.wanted = count, wanted
-        super().__init__(
-            f"only {count} rows lie outside the gap's crossing and the torque's turns;"
-            f" {wanted} are needed"
-        )
+        super().__init__(f"{count} rows of {wanted}")
 
 
 @dataclass(frozen=True)

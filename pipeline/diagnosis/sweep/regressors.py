@@ -11,6 +11,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import USUAL_ROWS, jitter, widest
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.nuisance_terms import NuisanceTerm, nuisance_terms
 
 ZERO_STD_ARCSEC = 1e5
@@ -24,7 +25,7 @@ class Regressor:
     cause: Cause | None
     shape: Shape
     channel: str
-    what: str
+    form: UnnamedForm | None
     at: slice
     prior: np.ndarray
     """(k,) standard deviations of the amplitudes."""
@@ -126,7 +127,7 @@ def design_matrix(
             share = -log(len(shapes))
             against = frozenset({cause.id} if cause.stands_alone(shape) else ())
             terms.append(
-                Regressor(cause, shape, "", cause.title, at, spread, cause.positive, share, against)
+                Regressor(cause, shape, "", None, at, spread, cause.positive, share, against)
             )
             blocks.append(block.astype(np.float32))
             width += k
@@ -145,7 +146,7 @@ def _nuisance_regressor(
     k = rival.columns.shape[1]
     prior = np.full(k, rival.spread * rig.scale_arcsec)
     return Regressor(
-        None, {}, rival.channel, rival.what, slice(at, at + k), prior, rival.positive, -log(alike),
+        None, {}, rival.channel, rival.form, slice(at, at + k), prior, rival.positive, -log(alike),
         rival.against,
     )  # fmt: skip
 

@@ -12,14 +12,13 @@ from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 YIELDS = (0.4, 0.55, 0.7, 0.85)
 """Of the largest torque: where a lock gives way. Lower, the gear's own friction does the same."""
 MOST_LOADS = 40
 """Loads with a way of their own each; where there are more, all follow one law."""
-GIVES_WAY = "a lock or clamp that gives way under torque"
-RINGS = "ringing after sudden changes of torque"
 DAMPED = ((0.05, 1.12), (0.12, 1.3))
 """Damping ratio, and ratio of neighbouring periods: a ring of damping ζ lasts 1/(2πζ) periods, within which
 neighbours so near drift apart by less than a sixth of a turn."""
@@ -42,18 +41,22 @@ def giving_way(rig: Rig) -> Made:
     limits = np.array(YIELDS) * largest
     held = stops(history, history.torque_Nm, limits, np.zeros(len(limits)))
     for state in held.T:
-        yield "torque_amplitude", GIVES_WAY, (history.torque_Nm - state)[:, None]
+        yield "torque_amplitude", UnnamedForm("gives_way"), (history.torque_Nm - state)[:, None]
     for limit in limits:
         way = _ways(history, limit)
         if np.ptp(way) > 0:
-            yield "torque_amplitude", GIVES_WAY, way[:, None]
+            yield "torque_amplitude", UnnamedForm("gives_way"), way[:, None]
     load = _loads(history, limits[0])
     if 2 <= load.max() + 1 <= MOST_LOADS:
-        yield "torque_amplitude", GIVES_WAY, _own(_ways(history, limits[0]), load)
+        yield "torque_amplitude", UnnamedForm("gives_way"), _own(_ways(history, limits[0]), load)
         for limit in limits[
             1:3
         ]:  # the middle ones: amplitudes of each load's own fit those between
-            yield "torque_amplitude", GIVES_WAY, _own(_highest(history, limit, load), load)
+            yield (
+                "torque_amplitude",
+                UnnamedForm("gives_way"),
+                _own(_highest(history, limit, load), load),
+            )
 
 
 def _own(way: np.ndarray, load: np.ndarray) -> np.ndarray:
@@ -128,7 +131,7 @@ def ringing(rig: Rig) -> Made:
         omega = 2 * np.pi / (shortest * ratio ** np.arange(count))
         pole = omega * (-damping + 1j * np.sqrt(1 - damping**2))
         for own in _rung(history, corners, pole).T:
-            yield "torque_rate", RINGS, np.column_stack([own.real, own.imag])
+            yield "torque_rate", UnnamedForm("rings"), np.column_stack([own.real, own.imag])
 
 
 def _rung(history: History, corners: Sequence[Corner], pole: np.ndarray) -> np.ndarray:

@@ -6,12 +6,12 @@ the angle is where it was, but for the width of a friction loop. What slips stay
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.structure import Slip
 
 OUTER = 0.6
 """Of the largest torque: beyond it the gear is loaded, below it the gap is crossed."""
@@ -22,14 +22,6 @@ BACK = -1.0
 """Of the same: an angle that goes on under torque one way and comes back under the other is a drift."""
 FEWEST_ROWS = 3
 """Of a load: of fewer nothing is seen."""
-
-
-@dataclass(frozen=True)
-class Slip:
-    """`way_arcsec` that the output goes on in a load, and how many `times` what it springs there."""
-
-    way_arcsec: float
-    times: float
 
 
 def slip_of(history: History, angle_arcsec: np.ndarray) -> Slip | None:

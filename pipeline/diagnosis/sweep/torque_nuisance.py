@@ -17,9 +17,9 @@ from flexspline.pipeline.diagnosis.causes.operators import (
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import smooth, wave
 
-LEADS = "output leads torque"
 LEADING_THRESHOLDS = (0.08, 0.2, 0.4, 0.8)
 """Shares of the largest torque, within those of `friction_hysteresis`, which they reverse."""
 LEADING_LAGS = (0.05, 0.15, 0.4)
@@ -29,8 +29,8 @@ SOFTENING = (1.3, 1.6, 2.0, 2.5, 3.0, 4.0)
 RIPPLES = range(3, 33)
 """Half periods over the range of torque or angle."""
 
-Made = Iterator[tuple[str, str, np.ndarray]]
-"""Channel, what it is, columns (n, k)."""
+Made = Iterator[tuple[str, UnnamedForm, np.ndarray]]
+"""Channel, form, columns (n, k)."""
 
 
 def _steady(rig: Rig) -> np.ndarray:
@@ -41,9 +41,9 @@ def _steady(rig: Rig) -> np.ndarray:
 def over_torque(rig: Rig) -> Made:
     """Smooth, even and rippled functions of torque."""
     torque = _steady(rig)
-    yield "torque_Nm", "a smooth function of torque", smooth(torque)
-    yield "torque_Nm", "a curve of torque, equal for both signs", (torque**2)[:, None]
-    yield from _ripples(torque, "torque_Nm", "a ripple over torque")
+    yield "torque_Nm", UnnamedForm("smooth"), smooth(torque)
+    yield "torque_Nm", UnnamedForm("even_curve"), (torque**2)[:, None]
+    yield from _ripples(torque, "torque_Nm")
 
 
 def softening(rig: Rig) -> Made:
@@ -51,21 +51,19 @@ def softening(rig: Rig) -> Made:
     torque = _steady(rig)
     for power in SOFTENING:
         soft = np.abs(torque) ** power * rig.history.sign
-        yield "torque_Nm", "stiffness that falls with load", soft[:, None]
+        yield "torque_Nm", UnnamedForm("softening"), soft[:, None]
 
 
 def over_angle(rig: Rig) -> Made:
     """Ripples over the output angle as simulated."""
     steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
     angle = rig.prediction.angle_arcsec(steady)
-    yield from _ripples(
-        angle / np.abs(angle).max(), "angle_arcsec", "a ripple over the output angle"
-    )
+    yield from _ripples(angle / np.abs(angle).max(), "angle_arcsec")
 
 
-def _ripples(x: np.ndarray, channel: str, what: str) -> Made:
+def _ripples(x: np.ndarray, channel: str) -> Made:
     for k in RIPPLES:
-        yield channel, what, wave((x + 1) / 2, k)
+        yield channel, UnnamedForm("ripple"), wave((x + 1) / 2, k)
 
 
 def over_direction(rig: Rig) -> Made:
@@ -73,21 +71,25 @@ def over_direction(rig: Rig) -> Made:
     torque = rig.history.torque_Nm / rig.torque_Nm
     direction = direction_of_loading(rig.history)
     basis = np.column_stack([direction * torque, direction * torque**3])
-    yield "direction", "a loop that differs between the two sides", basis
+    yield "direction", UnnamedForm("uneven_loop"), basis
 
 
 def leading(rig: Rig) -> Made:
     """Loops run through the wrong way round: friction and lag with their sign reversed."""
-    yield "direction", LEADS, direction_of_loading(rig.history)[:, None]
+    yield "direction", UnnamedForm("leading"), direction_of_loading(rig.history)[:, None]
     thresholds = np.array(LEADING_THRESHOLDS) * rig.torque_Nm
     torque = steadied(rig.history, deadband_Nm(rig.history))
     states = stops(rig.history, torque, thresholds, np.zeros(len(thresholds))).T
     for r, state in zip(thresholds, states, strict=True):
-        yield "direction", LEADS, (state / r)[:, None]
-        yield "direction", LEADS, (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None]
+        yield "direction", UnnamedForm("leading"), (state / r)[:, None]
+        yield (
+            "direction",
+            UnnamedForm("leading"),
+            (state / r - rig.history.torque_Nm / rig.torque_Nm)[:, None],
+        )
     ramp = ramp_s(rig.history)
     for share in LEADING_LAGS if ramp > 0 else ():
         lagging = lags(
             torque, rig.history, np.array([max(share * ramp, shortest_lag_s(rig.history))])
         )[:, 0]
-        yield "direction", LEADS, (torque - lagging)[:, None]
+        yield "direction", UnnamedForm("leading"), (torque - lagging)[:, None]

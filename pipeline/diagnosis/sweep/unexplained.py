@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import Unexplained
+from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT, ChannelTest
 
 NUISANCE_P = 1e-6
 """Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
-
-JUMPING = "jumps with the torque's motion; something sticks and breaks away"
-COMES_BACK = "a misfit at the same torques in every cycle"
+JUMPS = (UnnamedForm("jumps"),)
+COMES_BACK = (UnnamedForm("comes_back"),)
+REMAINDER = (UnnamedForm("remainder"),)
 
 
 def unexplained_of(
@@ -33,19 +33,16 @@ def unexplained_of(
     for owner in sorted(identified.unnamed(told), key=lambda o: -identified.rms[o]):
         rms = identified.rms[owner]
         if owner.startswith("?"):
-            what = "; ".join(sorted({r.what for r in regressors if r.owner == owner}))
-            found.append(Unexplained(owner[1:], rms, NUISANCE_P, what))
+            forms = dict.fromkeys(r.form for r in regressors if r.owner == owner and r.form)
+            found.append(Unexplained(owner[1:], rms, NUISANCE_P, tuple(forms)))
         else:
-            trace = f"a trace like {known_causes()[owner].title}"
-            found.append(Unexplained("torque_Nm", rms, NUISANCE_P, trace))
+            found.append(Unexplained("torque_Nm", rms, NUISANCE_P, Trace(owner)))
     if jumps is not None:
-        found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPING))
+        found.append(Unexplained("direction", jumps.rms_arcsec, jumps.p_value, JUMPS))
     if again is not None:
         found.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
     said = {u.channel for u in found}
     for t in sorted(tests, key=lambda t: t.p_value):
         if t.p_value < SIGNIFICANT and t.channel not in said:
-            found.append(
-                Unexplained(t.channel, t.rms_arcsec, t.p_value, "what the best model leaves")
-            )
+            found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
     return tuple(found)

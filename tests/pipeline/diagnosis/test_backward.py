@@ -12,8 +12,11 @@ from read_sweep import as_read
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.structure import BackwardLoop
 from flexspline.pipeline.diagnosis.sweep.backward import backward_loop
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.structure_words import structure_words
 
 FINE = 2000
 """Rows of a cycle of the true course: a delay is followed to a tenth of a row that is read."""
@@ -74,14 +77,16 @@ def test_a_late_torque_reading_is_said_with_its_delay(filtered: bool) -> None:
     outcome = said_of(*read_late((100.0, 50.0, 200.0, 100.0), DELAY_S, filtered))
     assert (outcome.verdict, outcome.causes) == ("unknown", ())
     (left,) = outcome.unexplained
-    assert "backwards" in left.what
-    assert "torque reading lags the angle reading" in left.what
+    assert isinstance(left.structure, BackwardLoop)
+    assert left.limit
+    assert "torque reading lags the angle reading" in structure_words(left)
     # torque noise of 0.02 arcsec and 0.2 arcsec of 800 rows; the turns take a filter's delay off the ramps'
-    delay = float(left.what.split("by ")[1].split(" ±")[0])
+    assert left.structure.delay_s is not None
+    delay, _ = left.structure.delay_s
     assert delay == pytest.approx(DELAY_S, rel=0.1)
     assert outcome.next_measurement is not None
     assert outcome.next_measurement.vary == "torque_rate"
-    assert "one instant" in outcome.next_measurement.doing
+    assert "one instant" in why(outcome.next_measurement, "sweep")
 
 
 @pytest.mark.parametrize("periods_s", [(240.0, 60.0) * 3, (60.0,) * 4])
@@ -91,7 +96,7 @@ def test_a_gap_crossed_outside_its_band_is_no_noise(periods_s: tuple[float, ...]
     outcome = said_of(*read_late(periods_s, 1.0, False, every=2 * EVERY))
     assert (outcome.verdict, outcome.causes) == ("unknown", ())
     (left,) = outcome.unexplained
-    assert "backwards" in left.what
+    assert isinstance(left.structure, BackwardLoop)
 
 
 def test_at_one_rate_or_without_time_no_delay_is_said() -> None:
@@ -100,10 +105,10 @@ def test_at_one_rate_or_without_time_no_delay_is_said() -> None:
         outcome = said_of(course, angle)
         assert (outcome.verdict, outcome.causes) == ("unknown", ())
         (left,) = outcome.unexplained
-        assert "backwards" in left.what
+        assert isinstance(left.structure, BackwardLoop)
         # half of the two ways' distance off their middle, less what the turns take, 3 % of a way
         assert left.rms == pytest.approx(0.64, rel=0.1)
-        assert "at all rates" not in left.what
+        assert left.structure.delay_s is None
 
 
 @pytest.mark.parametrize(
@@ -119,17 +124,17 @@ def test_a_torque_cell_s_own_hysteresis_is_no_delay(
     read = replace(history, torque_Nm=history.torque_Nm - np.where(rising, 0.06, 0.0))
     outcome = said_of(read, angle)
     (left,) = outcome.unexplained
-    assert "backwards" in left.what
-    assert "torque cell has a hysteresis" in left.what
-    assert ("lags" in left.what) == likely
+    assert isinstance(left.structure, BackwardLoop)
+    assert "torque cell has a hysteresis" in structure_words(left)
+    assert ("lags" in structure_words(left)) == likely
     assert outcome.next_measurement is not None
-    assert ("weights" in outcome.next_measurement.doing) != likely
+    assert ("weights" in why(outcome.next_measurement, "sweep")) != likely
 
 
 def test_friction_wider_than_what_a_late_reading_takes_runs_forwards() -> None:
     """10 arcsec of friction, of which the delay takes 1.28: the loops take energy."""
     outcome = said_of(*read_late((50.0,) * 4, DELAY_S, False, friction_arcsec=10.0))
-    assert all("backwards" not in u.what for u in outcome.unexplained)
+    assert not any(isinstance(u.structure, BackwardLoop) for u in outcome.unexplained)
 
 
 def test_only_the_quickest_loops_may_run_backwards() -> None:
@@ -137,11 +142,13 @@ def test_only_the_quickest_loops_may_run_backwards() -> None:
     outcome = said_of(*read_late((20.0,) * 3 + (100.0,) * 3, DELAY_S, False, friction_arcsec=2.0))
     assert (outcome.verdict, outcome.causes) == ("unknown", ())
     (left,) = outcome.unexplained
-    assert "the quickest loops, at 0.4" in left.what
-    delay, std = left.what.split("by ")[1].split(" s at")[0].split(" ± ")
-    assert abs(float(delay) - DELAY_S) < float(std)
+    assert isinstance(left.structure, BackwardLoop)
+    assert left.structure.rate_Nm_per_s == pytest.approx(0.4, rel=0.05)  # of steps between rows
+    assert left.structure.delay_s is not None
+    delay, std = left.structure.delay_s
+    assert abs(delay - DELAY_S) < std
     # neither temperature nor the wave generator's angle was recorded
-    assert "gap that shrinks as the gear warms" in left.what
+    assert "gap that shrinks as the gear warms" in structure_words(left)
 
 
 def test_a_cycle_without_a_loop_is_not_against_the_others() -> None:
@@ -185,7 +192,7 @@ def test_loops_of_one_twist_take_or_give_by_the_sense_they_are_run() -> None:
         angle = PREDICTION.angle_arcsec(history) + sense * 2.0 * np.cos(turn)
         angle = angle + np.random.default_rng(2).normal(0, NOISE, 800)
         left = said_of(history, angle).unexplained
-        assert any("backwards" in u.what for u in left) == backward
+        assert any(isinstance(u.structure, BackwardLoop) for u in left) == backward
 
 
 def test_a_record_without_noise_has_no_loop_of_rounding() -> None:

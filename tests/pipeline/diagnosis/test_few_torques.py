@@ -68,4 +68,4 @@ def test_the_same_bump_in_one_cycle_does_not_come_back() -> None:
     once = 25.0 * ((np.abs(history.torque_Nm - 10.0) < 0.5) & (history.cycle == 2))
     outcome, _ = diagnose_sweep(read(history, simulated(history) + once, 5), PREDICTION)
     assert outcome.verdict == "consistent"
-    assert COMES_BACK not in {u.what for u in outcome.unexplained}
+    assert COMES_BACK not in {u.structure for u in outcome.unexplained}

@@ -12,6 +12,7 @@ from histories import PREDICTION, joined, sweep
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
@@ -165,5 +166,5 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6), level(1.0, 2.05)])
     assert found is not None
     assert found.channel == "torque_rate"
-    assert "does not hold at rate 0.1 N·m/s" in found.what
-    assert "by 2.1 arcsec rms, the simulation without it by 1" in found.what
+    assert found.structure == MissedLevel("rate 0.1 N·m/s", 2.1, 1.0)
+    assert found.limit

@@ -11,10 +11,13 @@ from histories import LARGEST, PREDICTION, triangle
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.structure import LateAngle
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import filtered_side
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.structure_words import structure_words
 
 FINE, EVERY = 2000, 20
 """Rows of a cycle of the true course, and of which one each is read: 100 rows a cycle."""
@@ -77,9 +80,11 @@ def test_a_filter_of_the_angle_is_said_with_its_time(
     outcome = diagnose_sweep(prepared.sweep, PREDICTION)[0]
     assert (outcome.verdict, outcome.causes) == ("unknown", ())
     (left,) = outcome.unexplained
-    assert "angle reading follows the torque through a filter" in left.what
+    assert isinstance(left.structure, LateAngle)
+    assert left.limit
+    assert "angle reading follows the torque through a filter" in structure_words(left)
     assert outcome.next_measurement is not None
-    assert "filters of the torque and the angle channel" in str(outcome.next_measurement.doing)
+    assert "filters of the torque and the angle channel" in why(outcome.next_measurement, "sweep")
 
 
 def test_a_delay_of_the_angle_is_told_where_rates_differ() -> None:

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.outcome import Doing
 from flexspline.pipeline.diagnosis.plans import MeasurementPlan, most_telling, separations
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, plans
@@ -59,12 +60,12 @@ def sliding_record(periods_s: tuple[float, ...]) -> Sweep:
 @pytest.mark.parametrize(
     ("periods", "vary", "doing"),
     [
-        ((60.0, 60.0, 60.0, 60.0), "torque_rate", ""),
+        ((60.0, 60.0, 60.0, 60.0), "torque_rate", None),
         ((20.0, 60.0, 720.0, 20.0), "torque_amplitude", LARGER),
     ],
 )
 def test_what_the_record_has_is_not_asked_for(
-    periods: tuple[float, ...], vary: str, doing: str
+    periods: tuple[float, ...], vary: str, doing: Doing | None
 ) -> None:
     """Cycles that differ by 36 times have shown already that friction does not follow the rate."""
     outcome, _ = diagnose_sweep(sliding_record(periods), PREDICTION)

@@ -17,11 +17,12 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, jumps_of
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import run_race
-from flexspline.pipeline.diagnosis.sweep.rig_nuisance import RINGS, YIELDS, giving_way, ringing
+from flexspline.pipeline.diagnosis.sweep.rig_nuisance import YIELDS, giving_way, ringing
 
 HELD = replace(sweep(cycles=3, rows=400, hold=100), temperature_C=None, input_angle_deg=None)
 """0.02 N·m and 5 s a row: ramps of 100 rows, holds of 100."""
@@ -89,7 +90,7 @@ def test_ringing_of_a_staircase_is_no_rate_dependence() -> None:
     angle = line(stairs.torque_Nm) + 10.0 * swing + rng.normal(0, 0.5, len(swing))
     outcome, behind = diagnose_sweep(record(stairs, angle), PREDICTION)
     assert outcome.verdict == "unknown"
-    assert outcome.unexplained[0].what == RINGS
+    assert outcome.unexplained[0].structure == (UnnamedForm("rings"),)
     # the swing itself, to a quarter: a hold's swings of a ramp's two ends overlap
     kept = behind.explained.prepared.kept
     assert outcome.unexplained[0].rms == pytest.approx(10.0 * swing[kept].std(), rel=0.25)
@@ -142,7 +143,7 @@ def test_a_lock_that_creeps_on_is_no_friction_and_no_creep() -> None:
     )
     assert outcome.verdict == "unknown"
     assert outcome.unexplained[0].channel == "torque_amplitude"
-    assert "gives way" in outcome.unexplained[0].what
+    assert outcome.unexplained[0].structure == (UnnamedForm("gives_way"),)
 
 
 @pytest.mark.parametrize(

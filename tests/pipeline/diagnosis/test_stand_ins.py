@@ -12,6 +12,7 @@ from histories import PREDICTION, sweep
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 TURNING = sweep(cycles=8, rows=120, hold=0)
@@ -36,7 +37,7 @@ def test_an_even_curve_is_no_two_stiffnesses(height: float) -> None:
     history = replace(TURNING, temperature_C=None, input_angle_deg=None)
     outcome = diagnosed(history, height * (history.torque_Nm / 2.0) ** 2)
     assert outcome.verdict == "unknown"
-    assert "equal for both signs" in outcome.unexplained[0].what
+    assert UnnamedForm("even_curve") in outcome.unexplained[0].structure
 
 
 def test_two_stiffnesses_are_named() -> None:

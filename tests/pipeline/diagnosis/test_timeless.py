@@ -14,6 +14,7 @@ from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import magnitude_words
 from flexspline.results.figures.diagnosis.contribution_parts import parts
@@ -82,13 +83,13 @@ def test_structure_lies_in_time_only_where_time_was_recorded(
     after = found.outcome.next_measurement
     assert after is not None
     told = [u.channel for u in found.outcome.unexplained]
-    assert any(what in u.what for u in found.outcome.unexplained)
+    assert any(what in structure_words(u) for u in found.outcome.unexplained)
     assert ("time_s" in told) == timed
     assert ("row" in told) != timed
     shown = seen(found)
     assert shown is not None
     said = (
-        summary(found), *(u.what for u in found.outcome.unexplained), why(after, "sweep").split(": ")[0],
+        summary(found), *map(structure_words, found.outcome.unexplained), why(after, "sweep").split(": ")[0],
         *(word for part in parts(shown) for word in (part.title, *part.lines)),
     )  # fmt: skip
     assert any("time" in line.replace("times", "") for line in said) == timed

@@ -7,6 +7,7 @@ import pytest
 from histories import PREDICTION
 from read_sweep import history_of, read, simulated, steps
 
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 LARGEST = 20.0  # N·m
@@ -29,7 +30,7 @@ def test_a_jump_of_the_zero_is_no_drift() -> None:
     outcome, _ = diagnose_sweep(read(history, simulated(history) + jump, 6), PREDICTION)
     assert outcome.verdict == "unknown"
     assert not outcome.causes
-    assert "a step in time" in outcome.unexplained[0].what
+    assert UnnamedForm("step") in outcome.unexplained[0].structure
 
 
 def test_a_lag_up_to_a_ramp_is_rate_dependence_where_nothing_is_held() -> None:

@@ -26,6 +26,7 @@ from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.diagnose import diagnose_specimens
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.diagnosis.summary import summary
@@ -207,7 +208,7 @@ def test_one_odd_specimen_is_unknown(bench, fe) -> None:
     outcome, _ = diagnosed(bench, K)
     assert outcome.verdict == "unknown"
     assert outcome.unexplained[0].channel == "specimen"
-    assert "specimen 4" in outcome.unexplained[0].what
+    assert outcome.unexplained[0].structure == (UnnamedForm("one_specimen", 4),)
 
 
 def test_a_drift_over_the_order_is_unknown(bench, fe) -> None:

@@ -1,0 +1,106 @@
+"""How likely a record is with the gap's crossing in one form, by a robust fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.sweep.crossing_forms import Tried
+from flexspline.pipeline.diagnosis.sweep.offset_race import SPIKE_NATS
+from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
+from flexspline.pipeline.diagnosis.sweep.step_place import (
+    LEAST_STEP,
+    MOST_FIRST_ROWS,
+    ROBUST,
+    SINGULAR,
+    looped_functions,
+)
+from flexspline.pipeline.diagnosis.sweep.torque_offset import LEAST_WIDTH
+
+QUADRATURE = ((-3.0, 0.06), (-1.5, 0.24), (0.0, 0.4), (1.5, 0.24), (3.0, 0.06))
+"""Standard deviations of the torque's noise, and weights: about a normal of 1.5 deviations, as a width of the
+crossing is better taken too large than too small."""
+WEIGHINGS = 3
+"""Fits, each with the weights (Huber's) of the last one's residual."""
+
+
+@dataclass(frozen=True)
+class CrossingFit:
+    """How likely a record is with one form, and the scatter that it leaves [arcsec]."""
+
+    tried: Tried
+    log_likelihood: float
+    left_arcsec: float
+
+
+def likeliest(fit: CrossingFit) -> float:
+    """What the likeliest of some fits has most of."""
+    return fit.log_likelihood
+
+
+@dataclass(frozen=True)
+class CrossedRecord:
+    """A record, whose angle is smooth functions of torque with any loop, and the gap's step in one form.
+
+    `found` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen.
+    """
+
+    history: History
+    angle_arcsec: np.ndarray
+    gap_arcsec: float
+    noise_arcsec: float
+    found: tuple[np.ndarray, ...] = ()
+    most_rows: int = MOST_FIRST_ROWS
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """Rows that count: friction's memory from before the record, and turns, say nothing of the gap."""
+        good = np.flatnonzero(~settling(self.history) & ~turning(self.history))
+        return good[:: max(1, len(good) // self.most_rows)]
+
+    @cached_property
+    def smooth(self) -> np.ndarray:
+        return np.column_stack([looped_functions(self.history), *self.found])[self.rows]
+
+    @cached_property
+    def width_Nm(self) -> float:
+        """Noise of the torque, by which a row may lie on the other side."""
+        least = LEAST_WIDTH * float(np.abs(self.history.torque_Nm).max())
+        return max(torque_noise_Nm(self.history), least)
+
+    def best(self, tried: Iterable[Tried]) -> CrossingFit:
+        """The likeliest of some forms."""
+        return max((self.of(one) for one in tried), key=likeliest)
+
+    def of(self, tried: Tried) -> CrossingFit:
+        """The fit with one form; its step's height is free, but much less than the gap is none."""
+        sides = [tried.form(noise * self.width_Nm)[self.rows] for noise, _ in QUADRATURE]
+        share = np.array([weight for _, weight in QUADRATURE])
+        side = share @ np.array(sides)
+        unsure = share @ (np.array(sides) - side) ** 2
+        deviation = np.sqrt(self.noise_arcsec**2 + (self.gap_arcsec / 2) ** 2 * unsure)
+        columns = [side, self.smooth]
+        if tried.followed_Nm is not None:
+            columns.append((tried.followed_Nm - self.history.torque_Nm)[self.rows])
+        basis, angle = np.column_stack(columns), self.angle_arcsec[self.rows]
+        weight = 1 / deviation
+        for _ in range(WEIGHINGS):
+            weighted = basis * weight[:, None]
+            found = np.linalg.lstsq(
+                weighted.T @ weighted, weighted.T @ (angle * weight), rcond=SINGULAR
+            )[0]
+            off = np.abs(angle - basis @ found) / deviation
+            weight = 1 / deviation / np.sqrt(np.maximum(1, off / ROBUST))
+        if found[0] < LEAST_STEP * self.gap_arcsec:
+            return CrossingFit(tried, -np.inf, np.inf)
+        # a row that lies anywhere costs what a spike does
+        huber = np.where(off < ROBUST, off**2, 2 * ROBUST * off - ROBUST**2)
+        cost = np.minimum(huber, 2 * SPIKE_NATS) / 2 + np.log(deviation)
+        left = SIGMA_PER_MAD * float(np.median(off)) * self.noise_arcsec
+        return CrossingFit(tried, -float(cost.sum()), left)

@@ -1,0 +1,157 @@
+"""Structure without a name in words: what it is like, and which limit it breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import assert_never
+
+from flexspline.pipeline.diagnosis.absurd_size import slope_words
+from flexspline.pipeline.diagnosis.outcome import Unexplained
+from flexspline.pipeline.diagnosis.structure import (
+    BackwardLoop,
+    FarSlope,
+    FormKind,
+    LateAngle,
+    MissedLevel,
+    NegativeGap,
+    Slip,
+    Structure,
+    Trace,
+    UnnamedForm,
+)
+from flexspline.pipeline.diagnosis.sweep.crossing_forms import BOTH, DELAY, FILTER
+from flexspline.pipeline.diagnosis.sweep.slip import OUTER
+from flexspline.results.diagnosis.words import title_of
+
+FORMS: Mapping[tuple[FormKind, str], str] = {
+    ("smooth", "torque_Nm"): "a smooth function of torque",
+    ("smooth", "time_s"): "a smooth function of time",
+    ("smooth", "row"): "a smooth function along the record",
+    ("even_curve", "torque_Nm"): "a curve of torque, equal for both signs",
+    ("ripple", "torque_Nm"): "a ripple over torque",
+    ("ripple", "angle_arcsec"): "a ripple over the output angle",
+    ("softening", "torque_Nm"): "stiffness that falls with load",
+    ("uneven_loop", "direction"): "a loop that differs between the two sides",
+    ("leading", "direction"): "output leads torque",
+    ("gives_way", "torque_amplitude"): "a lock or clamp that gives way under torque",
+    ("rings", "torque_rate"): "ringing after sudden changes of torque",
+    ("wave", "time_s"): "a wave in time",
+    ("wave", "row"): "a wave along the record",
+    ("step", "time_s"): "a step in time",
+    ("step", "row"): "a step along the record",
+    ("own_zero", "cycle"): "a zero of its own in each cycle",
+    ("own_zero", "input_angle_deg"): "a zero of its own at each position",
+    ("own_stiffness", "cycle"): "a stiffness of its own in each cycle",
+    ("own_stiffness", "input_angle_deg"): "a stiffness of its own at each position",
+    ("own_stiffness", "unit"): "a gain",
+    ("own_gap", "cycle"): "a gap of its own in each cycle",
+    ("own_gap", "input_angle_deg"): "a gap of its own at each position",
+    ("own_gap", "unit"): "a gap",
+    ("changing_zero", "temperature_C"): "a zero that changes with temperature",
+    ("changing_stiffness", "time_s"): "a stiffness that changes with time",
+    ("changing_stiffness", "row"): "a stiffness that changes along the record",
+    ("changing_stiffness", "cycle"): "a stiffness that changes from cycle to cycle",
+    ("changing_stiffness", "temperature_C"): "a stiffness that changes with temperature",
+    ("bent_gap", "temperature_C"): "a gap not linear in temperature",
+    ("curve_of_totals", "torque_Nm"): "a curve of the totals over torque",
+    ("trend", "specimen_order"): "a trend over the order of specimens",
+    ("bend", "specimen_order"): "a bend over the order of specimens",
+    ("alternating", "specimen_order"): "specimens that alternate",
+    ("half_step", "specimen_order"): "a step half way through the specimens",
+}
+"""By kind and channel."""
+ANYWHERE: Mapping[FormKind, str] = {
+    "jumps": "jumps with the torque's motion; something sticks and breaks away",
+    "comes_back": "a misfit at the same torques in every cycle",
+    "remainder": "what the best model leaves",
+}
+"""What is said alike of every channel."""
+LATE = (
+    "and so does the step of the gap, which no lag of the twist delays. A drag ahead of the teeth that grows "
+    "with the speed, as of stiff grease, would look like it"
+)
+LATE_ANGLE = {
+    FILTER: "the angle reading follows the torque through a filter of {0:.2g} ± {1:.1g} s, " + LATE,
+    DELAY: "the angle reading follows the torque {0:.2g} ± {1:.1g} s late, " + LATE,
+    BOTH: "both readings come through a filter of {0:.2g} ± {1:.1g} s: the step of the gap begins before the "
+    "torque reading is zero, and is spread over that time",
+}
+UNRECORDED = {
+    "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
+    "input_angle_deg": "a wave generator that turns with the load (its angle)",
+}
+"""What an honest gear or rig may do that gives backward loops, by the channel that would show it."""
+
+
+def structure_words(unexplained: Unexplained) -> str:
+    """What structure without a name is like; of a broken limit a clause."""
+    return words_of(unexplained.structure, unexplained.channel)
+
+
+def words_of(structure: Structure, channel: str) -> str:
+    """The same of the structure of a channel."""
+    match structure:
+        case tuple():
+            return "; ".join(sorted({_form(form, channel) for form in structure}))
+        case Trace():
+            return f"a trace like {title_of(structure.cause)}"
+        case Slip():
+            return (
+                f"the output slips: each time torque passes {OUTER:.0%} of its largest value and comes back, "
+                f"the angle has gone on by {structure.way_arcsec:.0f} arcsec, {structure.times:.0f} times "
+                "what springs there; a lock, a clamp or a friction joint gives way"
+            )
+        case FarSlope():
+            return slope_words(structure)
+        case NegativeGap():
+            gap = f"{structure.gap_arcsec:.3g} ± {structure.std_arcsec:.2g} arcsec"
+            return f"the best explanation needs a gap of {gap}, which no gear has"
+        case MissedLevel():
+            return (
+                f"what was found does not hold at {structure.held_out}: learnt on the other rows it misses "
+                f"these by {structure.with_causes_arcsec:.3g} arcsec rms, the simulation without it by "
+                f"{structure.without_arcsec:.3g}"
+            )
+        case BackwardLoop():
+            return _backward(structure)
+        case LateAngle():
+            return LATE_ANGLE[structure.kind].format(structure.time_s, structure.std_s)
+        case _:
+            assert_never(structure)
+
+
+def _form(form: UnnamedForm, channel: str) -> str:
+    if form.kind == "one_specimen":
+        return f"specimen {form.number} by itself"
+    if form.kind in ("trend", "bend") and (form.kind, channel) not in FORMS:
+        return f"a {form.kind} over {channel}"  # a dimension
+    said = ANYWHERE.get(form.kind) or FORMS[form.kind, channel]
+    if not form.number:
+        return said
+    return f"{said} of unit {form.number}" + "'s own" * (channel == "unit")
+
+
+def _backward(loop: BackwardLoop) -> str:
+    which = "the loops run" if loop.rate_Nm_per_s is None else (
+        f"the quickest loops, at {loop.rate_Nm_per_s:.3g} N·m/s, run"
+    )  # fmt: skip
+    said = (
+        f"{which} backwards: in the mean of {loop.loops} the angle is {loop.width_arcsec:.3g} arcsec lower "
+        "while torque falls than while it rises, so that the gear would give energy, which none does; most "
+        f"likely {_likely(loop)}"
+    )
+    others = " and ".join(UNRECORDED[channel] for channel in loop.unrecorded)
+    return f"{said}. Not recorded, and able to look like it: {others}" if others else said
+
+
+def _likely(loop: BackwardLoop) -> str:
+    if loop.grows is False:
+        return "the torque cell has a hysteresis of its own, as the loops do not grow with the rate"
+    late = "by a filter or a delay"
+    if loop.delay_s is not None:
+        delay, std = loop.delay_s
+        late = f"by {delay:.3g} ± {std:.2g} s at all rates, as with a filter or a delay"
+    late = (
+        f"the torque reading lags the angle reading, {late}, or the two are not read at one instant"
+    )
+    return late if loop.grows else f"{late}, or the torque cell has a hysteresis of its own"
