@@ -121,4 +121,4 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     loop, load = page["causes"]
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
     assert loop["magnitude"] == "12.00 ± 0.50 arcsec at T = 0"
-    assert load["sure"] == "beyond doubt, its size is not"
+    assert load["sure"] == "beyond doubt, size uncertain"
