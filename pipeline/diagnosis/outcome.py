@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 
@@ -52,7 +53,7 @@ class NamedCause:
     @property
     def is_surplus(self) -> bool:
         """Whether the simulation has too much of it, not too little: compliance that the gear lacks."""
-        return self.id == "series_compliance" and self.magnitude < 0
+        return self.id == SERIES and self.magnitude < 0
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, log
 
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.units import (
@@ -94,7 +95,7 @@ def slope_hint(
     size = sweep_size(sweep.history, sweep.angle_arcsec, prediction)
     if size is None:
         return None
-    named = [c for c in causes if c.id == "series_compliance"]
+    named = [c for c in causes if c.id == SERIES]
     if any(c.own_units for c in named):  # a unit of measurement is all units' under test
         return None
     slope = _named_slope(named[0]) if named else _line_slope(size)

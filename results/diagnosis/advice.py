@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
+from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.sweep.next_measurement import MORE_CYCLES, WARMER_K
 from flexspline.results.diagnosis.structure_words import words_of
 from flexspline.results.diagnosis.words import channel_words, title_of
 
 CONFIRMS = {
-    "youngs_modulus": "a tensile or resonance test of the same bar gives E directly",
-    "series_compliance": "clamp a solid dummy in the same fixture: what twists is the fixture",
-    "load_zone": "specimens with another ring width, which the lobes feel most",
+    YOUNGS_MODULUS: "a tensile or resonance test of the same bar gives E directly",
+    SERIES: "clamp a solid dummy in the same fixture: what twists is the fixture",
+    LOAD_ZONE: "specimens with another ring width, which the lobes feel most",
 }
 """What confirms a cause that specimens show."""
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import one_line
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.model.design_digest import changed_tables
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.results.diagnosis.words import title_of
-
-RATE = "rate_dependence"
-"""The cause that a record without time may show, per row."""
 
 
 def model_warnings(file: ModelFile, design: Design) -> tuple[str, ...]:

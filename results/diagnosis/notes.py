@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
@@ -138,7 +139,7 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
         found.insert(
             0, f"the file has no column part: taken as {part}, by {analysis.part_guessed_by}"
         )
-    if "youngs_modulus" not in chosen.named:
+    if YOUNGS_MODULUS not in chosen.named:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))
         found.append(f"Young's modulus calibrated by {change} % within its uncertainty")
     for term, value in zip(chosen.terms, chosen.mean[1:], strict=True):

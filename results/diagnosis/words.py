@@ -6,6 +6,7 @@ from math import floor, log10
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
+from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.results.numbers import grouped
 
 CHANNELS = {
@@ -29,8 +30,8 @@ CHANNELS = {
 }
 """Channel or thing to vary, as a person says it."""
 SPECIMENS = {
-    "youngs_modulus": "material softer or stiffer than stated",
-    "load_zone": "load that enters at the lobes, not evenly",
+    YOUNGS_MODULUS: "material softer or stiffer than stated",
+    LOAD_ZONE: "load that enters at the lobes, not evenly",
 }
 """Causes that only specimens show."""
 VERDICTS = {
@@ -101,8 +102,8 @@ def title_of(cause_id: str, magnitude: float = 0.0) -> str:
     """A cause's title; of a dimension, which one. The sign of the magnitude may change what it is."""
     if cause_id in SPECIMENS:
         return SPECIMENS[cause_id]
-    if cause_id.startswith("geometry:"):
-        return f"{channel_words(cause_id.removeprefix('geometry:'))} other than drawn"
+    if cause_id.startswith(GEOMETRY):
+        return f"{channel_words(cause_id.removeprefix(GEOMETRY))} other than drawn"
     cause = known_causes().get(cause_id)
     return cause.title_at(magnitude) if cause else cause_id
 

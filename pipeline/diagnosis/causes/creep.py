@@ -8,6 +8,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
@@ -47,7 +49,7 @@ class Creep(Cause):
     tunable = ("shortest_s", "longest_s", "exponent")
     shape_doubt = 0.045
     """One and two deviations cover 69 and 96 % of 26 sizes."""
-    made_of = frozenset({"series_compliance", "rate_dependence"})
+    made_of = frozenset({SERIES, RATE})
     """A Kelvin element of a short retardation time τ: c·lag(T) = c·T − cτ·q, q = (T − lag(T))/τ the torque's
     rate through that lag, is a spring less what lags."""
     vary = "hold"

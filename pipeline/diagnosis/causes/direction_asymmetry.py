@@ -9,6 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+ASYMMETRY = "direction_asymmetry"
+"""This cause's id."""
 STARTS = ((1.0, 0.0), (0.88, 0.0), (1.12, 0.0), (1.0, 0.07), (1.0, 0.14))
 """Exponent, and rounding as a share of the largest torque; both are refined within `possible`."""
 LEAST_AT_HALF = 0.41
@@ -23,7 +25,7 @@ class DirectionAsymmetry(Cause):
     (`exponent`), or set in smoothly (`rounding_Nm`).
     """
 
-    id = "direction_asymmetry"
+    id = ASYMMETRY
     title = "stiffness that differs with the torque's direction"
     unit = "%"
     ratio = "difference between the two directions in % of their mean"

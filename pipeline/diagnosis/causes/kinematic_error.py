@@ -14,11 +14,14 @@ from flexspline.pipeline.diagnosis.causes.periodic import (
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+KINEMATIC = "kinematic_error"
+"""This cause's id."""
+
 
 class KinematicError(PeriodicShapes, Cause):
     """Angle Σ a·cos nφ + b·sin nφ [arcsec], whatever the torque."""
 
-    id = "kinematic_error"
+    id = KINEMATIC
     title = "kinematic error (position error periodic in the wave generator's angle)"
     unit = "arcsec"
     reveals = "the same sweep at many wave generator angles, visited in mixed order"

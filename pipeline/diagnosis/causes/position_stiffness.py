@@ -14,11 +14,14 @@ from flexspline.pipeline.diagnosis.causes.periodic import (
 )
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+POSITION = "position_stiffness"
+"""This cause's id."""
+
 
 class PositionStiffness(PeriodicShapes, Cause):
     """Twist T·Σ (a·cos nφ + b·sin nφ) with a, b [arcsec per N·m]."""
 
-    id = "position_stiffness"
+    id = POSITION
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
     ratio = "amplitude of the compliance in % of its mean"

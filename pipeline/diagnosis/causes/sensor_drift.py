@@ -9,6 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+DRIFT = "sensor_drift"
+"""This cause's id."""
 SATURATION = (0.2, 0.5)
 """Settling times as shares of the record, refined."""
 EXPONENTS = (1.0, 0.5, 1.6)
@@ -23,7 +25,7 @@ class SensorDrift(Cause):
     Steady, slowing (a power of time, or saturating with `settling_s`), or quickening.
     """
 
-    id = "sensor_drift"
+    id = DRIFT
     title = "drift of the angle reading"
     unit = "arcsec/h"
     tunable = ("exponent", "settling_s")

@@ -9,13 +9,15 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+SERIES = "series_compliance"
+"""This cause's id."""
 STIFFER = "gear stiffer than simulated"
 
 
 class SeriesCompliance(Cause):
     """A spring in series that the simulation does not have: twist c·T with c [arcsec per N·m]."""
 
-    id = "series_compliance"
+    id = SERIES
     title = "elastic part left out of the simulation"
     unit = "%"
     ratio = "in % of the simulated compliance"

@@ -9,6 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+HARDENING = "stiffness_hardening"
+"""This cause's id."""
 LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
 """Numbers of the laws in an extended model's file; a number once given stays."""
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
@@ -43,7 +45,7 @@ class StiffnessHardening(Cause):
     chord (1), or at zero (2): that slope is taken off.
     """
 
-    id = "stiffness_hardening"
+    id = HARDENING
     title = "stiffness that grows with load (soft wind-up)"
     unit = "1"
     ratio = "stiffness near the largest torque over that at 5 to 20 % of it"

@@ -11,6 +11,8 @@ from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
+THERMAL = "thermal_clearance"
+"""This cause's id."""
 LAGS = (0.02, 0.05, 0.12, 0.3)
 """As shares of the record's duration; besides none."""
 STAGES = "stages"
@@ -35,7 +37,7 @@ that of aluminium, 24e-6 /K, and α the flank's angle, at most 45°."""
 class ThermalClearance(Cause):
     """Gap k·(ϑ − 20 °C) with k [arcsec/K]; ϑ may lag the sensor, in one or two stages, and start off it."""
 
-    id = "thermal_clearance"
+    id = THERMAL
     title = "clearance that changes with temperature"
     unit = "arcsec/K"
     tunable = ("lag_s", WARMER, COLDER)

@@ -9,6 +9,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+OFFSET = "torque_offset"
+"""This cause's id."""
+
 
 class TorqueOffset(Cause):
     """The reading is `amplitude` [N·m] above the true torque: every other term sees the true one.
@@ -17,7 +20,7 @@ class TorqueOffset(Cause):
     changes sign. Its amplitude is searched by `pipeline.diagnosis.sweep.torque_offset`, not linearly.
     """
 
-    id = "torque_offset"
+    id = OFFSET
     title = "shifted torque reading"
     unit = "N·m"
     shape_doubt = 0.005

@@ -10,6 +10,8 @@ from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shap
 from flexspline.pipeline.diagnosis.causes.operators import within_cycle
 from flexspline.pipeline.diagnosis.measurement.history import History
 
+WEAR = "wear"
+"""This cause's id."""
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 """A factor of two apart, refined from there."""
 
@@ -21,7 +23,7 @@ class Wear(Cause):
     `run_in_cycles` > 0: saturating, 1 − exp(−cycle/run-in).
     """
 
-    id = "wear"
+    id = WEAR
     title = "wear (gap that grows from cycle to cycle)"
     unit = "arcsec/cycle"
     positive = True

@@ -7,6 +7,8 @@ from math import hypot
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import (
     RIVAL_EVIDENCE,
     Decision,
@@ -79,9 +81,9 @@ def _channels(h: Hypothesis) -> set[str]:
 def _magnitude(best: UnitEvidence, i: int, rig: Rig, prediction: Prediction) -> tuple[float, float]:
     """The magnitude (docs/contract.md) and its standard deviation, to first order in the amplitude."""
     term, mean, std = best.terms[i], float(best.mean[i]), float(best.std[i])
-    if term.cause == "clearance_offset":
+    if term.cause == CLEARANCE:
         return mean + best.common[0], std
-    if term.cause == "series_compliance":
+    if term.cause == SERIES:
         return 100 * mean / prediction.compliance, 100 * std / prediction.compliance
     cause = known_causes()[term.cause]
     low, here, high = (

@@ -11,7 +11,9 @@ import numpy as np
 from scipy.special import logsumexp
 
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
@@ -32,7 +34,7 @@ UNNAMED_NATS = -2.0
 UNNAMED_SPREAD = 0.3
 """Prior standard deviation of that curve, of the predicted angle: as wide as `stiffness_hardening`'s."""
 UNNAMED = "?torque_Nm"
-CONCAVE = {"clearance_offset", FRICTION, "stiffness_hardening"}
+CONCAVE = {CLEARANCE, FRICTION, HARDENING}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the
 first one's shape. A pair has at most one of them."""
 FREE = 100.0

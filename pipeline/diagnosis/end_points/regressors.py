@@ -8,13 +8,16 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
+from flexspline.pipeline.diagnosis.causes.direction_asymmetry import ASYMMETRY
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, SINGLE
-from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, LAWS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
-HARDENING = tuple(
+HARDENING_SHAPES = tuple(
     {"law": LAWS[law], "parameter": parameter}
     for law, parameter in (
         ("knee", 0.2), ("knee", 0.45), ("knee", 0.8), ("tanh", 0.35), ("cubic", 1.0),
@@ -69,10 +72,10 @@ def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]
     """All hypotheses for a file's rows."""
     torque, largest = points.torque_Nm, rig.torque_Nm
     ones = np.ones_like(torque)
-    clearance, series = known_causes()["clearance_offset"], known_causes()["series_compliance"]
+    clearance, series = known_causes()[CLEARANCE], known_causes()[SERIES]
     hardening, asymmetry = (
-        known_causes()["stiffness_hardening"],
-        known_causes()["direction_asymmetry"],
+        known_causes()[HARDENING],
+        known_causes()[ASYMMETRY],
     )
     friction = known_causes()[FRICTION]
     found = [
@@ -81,7 +84,7 @@ def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]
         EndPointRegressor(asymmetry.id, "mid", torque, asymmetry.spread({}, rig), False,
              Element({"exponent": 1.0, "rounding_Nm": 0.0, "largest_torque_Nm": largest}, (1.0,))),
     ]  # fmt: skip
-    for law in HARDENING:
+    for law in HARDENING_SHAPES:
         for held in HELD:
             shape = {**law, "held": held, "largest_torque_Nm": largest}
             found.append(EndPointRegressor(

@@ -9,6 +9,8 @@ import numpy as np
 
 from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
+from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHistory, history_of
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
@@ -18,7 +20,7 @@ from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
 
-CYCLES_COUNT, CLOCK_COUNTS = "wear", "sensor_drift"
+CYCLES_COUNT, CLOCK_COUNTS = WEAR, DRIFT
 """Causes that go on from the record's first cycle and from its first row's time."""
 
 

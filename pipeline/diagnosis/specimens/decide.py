@@ -19,6 +19,7 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import (
     Decision,
     chance,
@@ -29,14 +30,14 @@ from flexspline.pipeline.diagnosis.decision import (
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import SpecimenParameter, log_compliance
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
 
 NAMING_NATS = 2.0
 """Odds of seven to one."""
-LOAD_ZONE = "load_zone"
-UNITS: Mapping[str, str] = {"youngs_modulus": "%", "series_compliance": "%", LOAD_ZONE: "1"}
+UNITS: Mapping[str, str] = {YOUNGS_MODULUS: "%", SERIES: "%", LOAD_ZONE: "1"}
 
 
 @dataclass(frozen=True)

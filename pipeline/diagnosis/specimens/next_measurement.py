@@ -8,8 +8,10 @@ from dataclasses import replace
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.outcome import NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
+from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances, compliances
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
@@ -19,8 +21,8 @@ FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""
 ANOTHER_GEAR = ("inner_diameter_mm", "bore_diameter_mm")
 """Not to be changed on the same wave generator, teeth and rig."""
-CONFIRM = {"youngs_modulus": "material", "series_compliance": "fixture",
-           "load_zone": "flexspline.ring_width_mm"}  # fmt: skip
+CONFIRM = {YOUNGS_MODULUS: "material", SERIES: "fixture",
+           LOAD_ZONE: "flexspline.ring_width_mm"}  # fmt: skip
 """What to vary or look at to confirm a cause; of a dimension, itself."""
 
 
@@ -37,7 +39,7 @@ def next_specimen(
             return _separating(explanation, bench, design, part, noise)
         case "named" | "ambiguous":
             cause = decision.causes[-1].id
-            vary = CONFIRM.get(cause) or cause.removeprefix("geometry:")
+            vary = CONFIRM.get(cause) or cause.removeprefix(GEOMETRY)
             return NextMeasurement(vary, "confirm", (cause,))
         case _:
             return None

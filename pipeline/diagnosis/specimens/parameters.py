@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.compliances import Compliances
 from flexspline.pipeline.diagnosis.specimens.sensitivity import Sensitivity
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
@@ -79,15 +81,13 @@ def specimen_parameters(
     """All hypotheses for some specimens."""
     even = -float(np.log(KINDS))
     found = [
-        SpecimenParameter(
-            "series_compliance", "series", SERIES_SPREAD * float(np.median(fe.total)), even, True
-        )
+        SpecimenParameter(SERIES, "series", SERIES_SPREAD * float(np.median(fe.total)), even, True)
     ]
     parts = tuple(p for p, c in (("flexspline", fe.flexspline), ("shaft", fe.shaft)) if c.any())
     groups = [parts] if one_material or len(parts) == 1 else [parts, ("flexspline",), ("shaft",)]
     found += [
         SpecimenParameter(
-            "youngs_modulus", "modulus", MODULUS_SPREAD, even - float(np.log(len(groups))), parts=g
+            YOUNGS_MODULUS, "modulus", MODULUS_SPREAD, even - float(np.log(len(groups))), parts=g
         )
         for g in groups
     ]
@@ -95,7 +95,7 @@ def specimen_parameters(
         side = -1.0 if fe.base_zone else 1.0
         found += [
             SpecimenParameter(
-                "load_zone", "zone", spread, even + float(np.log(weight)), centre=side * centre
+                LOAD_ZONE, "zone", spread, even + float(np.log(weight)), centre=side * centre
             )
             for centre, spread, weight in ZONES
         ]
@@ -103,7 +103,7 @@ def specimen_parameters(
     for s in fe.sensitivities:
         for factor, within in ((WRONG_TOLERANCES, False), (WITHIN, True)):
             found.append(SpecimenParameter(
-                f"geometry:{s.key}", "geometry", factor * s.tolerance_mm, even + each,
+                GEOMETRY + s.key, "geometry", factor * s.tolerance_mm, even + each,
                 sensitivity=s, within=within,
             ))  # fmt: skip
     return found + _columns(len(fe.total), overrides)

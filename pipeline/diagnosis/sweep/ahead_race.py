@@ -10,7 +10,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
-from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, LAWS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.ahead_tuning import TunedAhead, ahead_element, tuned_ahead
@@ -37,8 +38,8 @@ from flexspline.pipeline.diagnosis.sweep.torque_offset import (
 )
 
 BESIDE: Mapping[str, Mapping[str, float]] = {
-    "rate_dependence": {"exponent": 1.0},
-    "stiffness_hardening": {"law": LAWS["tanh"], "held": 0},
+    RATE: {"exponent": 1.0},
+    HARDENING: {"law": LAWS["tanh"], "held": 0},
 }
 """Terms that stand beside the friction before any race, by cause, of the shapes that have these parameters:
 linear lags, and a soft wind-up at several scales."""

@@ -12,6 +12,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import gammaincinv
 
+from flexspline.pipeline.diagnosis.causes.kinematic_error import KINEMATIC
+from flexspline.pipeline.diagnosis.causes.position_stiffness import POSITION
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
+from flexspline.pipeline.diagnosis.causes.wear import WEAR
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC, Noise
 from flexspline.pipeline.diagnosis.structure import BackwardLoop
@@ -32,7 +37,7 @@ FEWEST_ALIKE, LUCK = 4, 0.05
 QUICK = 1.25
 """Times a load's own rate that the quickest must not exceed, where the quickest are looked at alone."""
 WITHIN_LOADS = (
-    "thermal_clearance", "wear", "sensor_drift", "?temperature_C", "kinematic_error", "position_stiffness",
+    THERMAL, WEAR, DRIFT, "?temperature_C", KINEMATIC, POSITION,
 )  # fmt: skip
 """Owners of terms that change with time or the input within a load; that of the temperature has no name."""
 WOULD_SHOW = ("temperature_C", "input_angle_deg")

@@ -12,6 +12,9 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION, FrictionHysteresis
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -22,9 +25,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import (
 )
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, Regressor
 
-SOFT = "stiffness_hardening"
-"""The elastic cause that is not in the measured compliance."""
-LINEAR = {"series_compliance": 0, CLEARANCE: 1}
+LINEAR = {SERIES: 0, CLEARANCE: 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
 
@@ -90,10 +91,12 @@ class SweepFit:
         rig, elements = self.measured_rig(mean), self.elements(mean)
         found = {c: known_causes()[c].magnitude(e, rig) for c, e in elements.items()}
         ahead = self.evidence.columns.ahead
-        if ahead is not None and SOFT in elements:  # at T = 0 the teeth feel ± its torque
+        if ahead is not None and HARDENING in elements:  # at T = 0 the teeth feel ± its torque
             ends = ahead.torque_Nm * np.array([-1.0, 1.0])
             none = np.zeros(2, int)
-            twist = known_causes()[SOFT].angle_arcsec(elements[SOFT], History(ends, none, none))
+            twist = known_causes()[HARDENING].angle_arcsec(
+                elements[HARDENING], History(ends, none, none)
+            )
             found[FRICTION] += float(twist[1] - twist[0])
         return found
 
@@ -178,7 +181,7 @@ def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float
     if fit.evidence.columns.ahead and FRICTION not in elements:
         elements[FRICTION] = (fit.evidence.columns.ahead.element,)
     if offset_Nm:
-        elements["torque_offset"] = (Element({}, (offset_Nm,)),)
+        elements[OFFSET] = (Element({}, (offset_Nm,)),)
     own = {}
     if k > 1:
         pairs = mean[k + 2 : k + 2 + 2 * k].reshape(k, 2)

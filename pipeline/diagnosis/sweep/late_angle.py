@@ -10,6 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.structure import LateAngle
@@ -39,7 +44,7 @@ FINE = 9
 """Times tried between two neighbours of the first search."""
 KINDS = (FILTER, DELAY, BOTH)
 IMITATED = (
-    "stiffness_hardening", "friction_hysteresis", "rate_dependence", "creep", "series_compliance",
+    HARDENING, FRICTION, RATE, CREEP, SERIES,
     "?direction", "?torque_rate", "?torque_Nm", "?angle_arcsec", "?time_s",
 )  # fmt: skip
 """Owners of terms that bend the curve near the gap or open a loop, as a late angle does."""

@@ -8,6 +8,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
@@ -23,7 +25,6 @@ SHAPE_NATS = 3.0
 the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
 """Sets that count by less than e^−6 = 0.25 % are left out."""
-SERIES = "series_compliance"
 OPEN, NARROWED = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
@@ -59,7 +60,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
             identified.fit.widest_loop_arcsec() if c == FRICTION else None,
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:
-        offset = known_causes()["torque_offset"]
+        offset = known_causes()[OFFSET]
         slope = identified.fit.measured_rig().compliance
         found.append(NamedCause(
             offset.id, _probability(explained.offset_nats), (),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
@@ -153,7 +154,7 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
         doing: Doing | None = None
         if aim == "confirm" and vary == "torque_rate" and _has_rates(explained):
             vary, doing = "torque_amplitude", LARGER
-        if rivals == ("series_compliance",):  # a loop shrinks with its amplitude, a spring does not
+        if rivals == (SERIES,):  # a loop shrinks with its amplitude, a spring does not
             vary, doing = "torque_amplitude", LARGER
         return NextMeasurement(vary, aim, (cause, *rivals), doing)
     noise = explained.prepared.noise.std_arcsec

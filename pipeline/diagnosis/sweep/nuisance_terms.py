@@ -14,6 +14,9 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import (
@@ -139,11 +142,11 @@ def _of_lags(rig: Rig) -> np.ndarray:
 
 KINDS = (
     _Kind(over_torque, less=_of_torque),
-    _Kind(softening, positive=True, against=frozenset({"stiffness_hardening"})),
+    _Kind(softening, positive=True, against=frozenset({HARDENING})),
     _Kind(over_angle, less=_of_torque),
     _Kind(over_direction, less=_of_lags),
-    _Kind(leading, positive=True, against=frozenset({FRICTION, "rate_dependence"})),
-    _Kind(over_time, less=_of_lags, against=frozenset({"sensor_drift"})),
+    _Kind(leading, positive=True, against=frozenset({FRICTION, RATE})),
+    _Kind(over_time, less=_of_lags, against=frozenset({DRIFT})),
     _Kind(changing_stiffness),
     _Kind(waves_and_steps, less=_of_lags),
     _Kind(over_cycle),

@@ -6,6 +6,9 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.creep import CREEP
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
@@ -13,9 +16,9 @@ from flexspline.pipeline.diagnosis.sweep.owner_rms import owner_rms
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
 DRIVEN = (
-    "friction_hysteresis",
-    "rate_dependence",
-    "creep",
+    FRICTION,
+    RATE,
+    CREEP,
     "?direction",
     "?torque_rate",
     "?torque_amplitude",

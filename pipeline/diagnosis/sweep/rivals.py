@@ -10,9 +10,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, is_rival
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
-from flexspline.pipeline.diagnosis.sweep.fit import SOFT, SweepFit, fit_regressors
+from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
 from flexspline.pipeline.diagnosis.sweep.plausible_sets import cancels_itself
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search, owned_by
 
@@ -52,7 +53,7 @@ def rivals_of(
         if not known_causes()[other].plausible(fit.elements()[other]):
             continue
         # a soft wind-up that ends below the least torque recorded: nobody can say that it is no gap
-        if (cause, other) == (CLEARANCE, SOFT) and _is_calibration(fit, other):
+        if (cause, other) == (CLEARANCE, HARDENING) and _is_calibration(fit, other):
             continue
         gap = best.log_evidence_with_shapes(search) - rival.log_evidence_with_shapes(search)
         if is_rival(gap, mine - penalised(evidence, rival.terms)):

@@ -11,13 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.sweep.prepare import true_history
 
-OF_THE_CURVE = ("clearance_offset", "series_compliance", "stiffness_hardening")
+OF_THE_CURVE = (CLEARANCE, SERIES, HARDENING)
 """Causes that bend or turn the curve itself."""
-OF_THE_LOOP = ("friction_hysteresis", "rate_dependence")
+OF_THE_LOOP = (FRICTION, RATE)
 """Causes that change sign with the direction: the mean over both directions is without them."""
 BINS = 12
 """Of torque, from the gap's crossing to the largest: as many places as bends of a gear's curve need."""

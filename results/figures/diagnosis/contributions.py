@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Effect
+from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
@@ -27,7 +28,6 @@ FAR_TORQUE_SHARE = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
 PANEL, TOP, BOTTOM, BETWEEN = 1.75, 1.15, 0.6, 1.0
 """Inches, as in `panels`; wider apart, for each panel has a title and an axis of its own."""
-OFFSET = "torque_offset"
 LETTERS_BESIDE = 25
 """Letters of the magnitude that fit beside a panel in full size."""
 
