@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import floor, log10
+from math import floor, log, log10
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
@@ -67,7 +67,7 @@ def sure_words(cause: NamedCause) -> str:
 
 def odds_words(nats: float) -> str:
     """Evidence as odds: what "e to the nats to 1" means to a person."""
-    exponent = nats / 2.302585092994046
+    exponent = nats / log(10)
     if exponent > 6:
         return "more than a million to 1"
     return f"about {grouped(float(f'{10**exponent:.1g}'), 0)} to 1"

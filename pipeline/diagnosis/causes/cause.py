@@ -103,6 +103,8 @@ class Cause(ABC):
     1050000: `python tests/hidden/run.py --seed 1050000 --kind single --records 170`, 60 pairs, 20 triples.
     This one is for a cause of which no such records have been made yet.
     """
+    spread_share: ClassVar[float]
+    """Of `spread`: its share of the predicted twist or angle, where it is one."""
     needs_time: ClassVar[bool] = False
     """Whether nothing can be said of it where time was not recorded."""
     vary: ClassVar[str] = "torque_Nm"

@@ -26,6 +26,11 @@ LONGER_THAN_LAG = 0.3
 """Of a ramp: a shorter single element is a lag, which is `rate_dependence`."""
 STEEPEST = 0.8
 """Exponent: 1 is a steady flow, which grows like drift under constant torque."""
+ALIKE = 1.001
+"""Ratio of the two retardation times below which they are one, but for rounding."""
+SHORTEST_ALONE, SHORTEST_SPREAD = 0.4, 3.0
+"""Of a hold, when refined: a single element that is quicker has done 92 % of its twist when the hold ends,
+and is a lag; spread ones of which the slowest is quicker do not grow by the logarithm of time."""
 SHORTEST_HOLD = 0.06
 """Of a ramp from zero: what stands still for less is a turn, not a hold."""
 PER_DECADE = 3
@@ -44,6 +49,8 @@ class Creep(Cause):
     id = CREEP
     title = "creep (twist that grows while torque is held)"
     unit = "%"
+    spread_share = 0.06
+    """Metal creeps little; a few per cent of the twist a decade are grease, adhesive and bolts."""
     ratio = "in % of the elastic twist for each decade of time within holds"
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
@@ -76,8 +83,8 @@ class Creep(Cause):
 
     def possible(self, shape: Shape) -> bool:
         low, high = shape["shortest_s"], shape["longest_s"]
-        alone = high < 1.001 * low  # one Kelvin element; much shorter than a hold it is a lag
-        long_enough = high > (0.4 if alone else 3.0) * shape["hold_s"]
+        alone = high < ALIKE * low  # one Kelvin element; much shorter than a hold it is a lag
+        long_enough = high > (SHORTEST_ALONE if alone else SHORTEST_SPREAD) * shape["hold_s"]
         return low <= high and long_enough and shape["exponent"] <= STEEPEST
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
@@ -85,7 +92,7 @@ class Creep(Cause):
         return (lags(history.torque_Nm, history, tau) @ weight)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.06 * rig.prediction.compliance
+        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """Growth over the last decade of a hold of the record's typical length, % of elastic twist."""

@@ -13,6 +13,8 @@ ASYMMETRY = "direction_asymmetry"
 """This cause's id."""
 STARTS = ((1.0, 0.0), (0.88, 0.0), (1.12, 0.0), (1.0, 0.07), (1.0, 0.14))
 """Exponent, and rounding as a share of the largest torque; both are refined within `possible`."""
+LEAST_EXPONENT, MOST_EXPONENT = 0.8, 1.2
+"""Of torque, when refined: two stiffnesses have 1, and at half the torque these differ from it by 15 %."""
 LEAST_AT_HALF = 0.41
 """Of the twist at the largest torque, at half of it: |T| has 0.5, with an exponent of 1.2 it is 0.435,
 rounded over a fifth of the torque 0.413; T², which is no two stiffnesses, has 0.25."""
@@ -28,6 +30,8 @@ class DirectionAsymmetry(Cause):
     id = ASYMMETRY
     title = "stiffness that differs with the torque's direction"
     unit = "%"
+    spread_share = 0.15
+    """Both directions load the same parts; keys, bolts and flanks differ by some tenths at most."""
     ratio = "difference between the two directions in % of their mean"
     tunable = ("exponent", "rounding_Nm")
     shape_doubt = 0.02
@@ -48,7 +52,7 @@ class DirectionAsymmetry(Cause):
         """Far from |T| the curve is some other even function, not two stiffnesses."""
         half = _share(np.array([0.5]), shape["rounding_Nm"] / shape["largest_torque_Nm"])
         at_half = float(half[0]) ** shape["exponent"]
-        return 0.8 <= shape["exponent"] <= 1.2 and at_half >= LEAST_AT_HALF
+        return LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT and at_half >= LEAST_AT_HALF
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         largest = shape["largest_torque_Nm"]
@@ -56,7 +60,7 @@ class DirectionAsymmetry(Cause):
         return (largest * x ** shape["exponent"])[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.15 * rig.prediction.compliance
+        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """(K₊ − K₋) over their mean: −2a/c for chord compliances c ± a, exactly."""

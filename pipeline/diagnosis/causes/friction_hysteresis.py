@@ -76,6 +76,8 @@ class FrictionHysteresis(Cause):
     id = FRICTION
     title = "friction hysteresis"
     unit = "arcsec"
+    spread_share = 0.2
+    """Half a loop: catalogues' hysteresis is up to some tenths of the twist."""
     positive = True
     tunable = ("threshold_Nm", "exponent", "reach", "growth", POWER)
     shape_doubt = 0.008
@@ -188,7 +190,7 @@ class FrictionHysteresis(Cause):
         return each, each / each.sum()
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.2 * rig.scale_arcsec
+        return self.spread_share * rig.scale_arcsec
 
     def at_teeth(self, elements: Sequence[Element], history: History) -> History:
         carried = np.zeros(len(history))

@@ -24,13 +24,15 @@ class KinematicError(PeriodicShapes, Cause):
     id = KINEMATIC
     title = "kinematic error (position error periodic in the wave generator's angle)"
     unit = "arcsec"
+    spread_share = 0.15
+    """Position errors are a part of the twist at rated torque."""
     reveals = "the same sweep at many wave generator angles, visited in mixed order"
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history)
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.15 * rig.scale_arcsec
+        return self.spread_share * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return largest_amplitude(elements)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
@@ -163,7 +164,7 @@ def lags(values: np.ndarray, history: History, constants_s: np.ndarray) -> np.nd
         step = np.diff(t)[:, None] / constants_s
         keep = np.exp(-step)
         # v linear over the step: x₁ = x₀k + v₀(g − k) + v₁(1 − g), g = (1 − k)/step
-        share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, 1e-300), 1 - step / 2)
+        share = np.where(step > 1e-8, -np.expm1(-step) / np.maximum(step, ABOVE_ZERO), 1 - step / 2)
         drive = v[:-1, None] * (share - keep) + v[1:, None] * (1 - share)
         for m in range(len(constants_s)):
             out[rows, m] = first_order(keep[:, m], np.r_[v[0], drive[:, m]])

@@ -24,6 +24,8 @@ class PositionStiffness(PeriodicShapes, Cause):
     id = POSITION
     title = "stiffness that varies with the wave generator's angle"
     unit = "%"
+    spread_share = 0.15
+    """Teeth in mesh change by one in seven or fewer as the wave generator turns."""
     ratio = "amplitude of the compliance in % of its mean"
     shape_doubt = 0.003
     """One and two deviations cover 71 and 100 % of 7 sizes."""
@@ -34,7 +36,7 @@ class PositionStiffness(PeriodicShapes, Cause):
         return harmonic(shape, history) * history.torque_Nm[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.15 * rig.prediction.compliance
+        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return 100 * largest_amplitude(elements) / rig.compliance

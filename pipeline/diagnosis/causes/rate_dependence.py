@@ -29,6 +29,9 @@ CLEARED = 0.25
 """Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 """Of the rate: twist that levels off with it or steepens; refined, so that steps of a third do."""
+LEAST_EXPONENT, MOST_EXPONENT = 0.4, 1.8
+"""Of the rate, when refined: at 0 it is friction, which knows no rate, and at 2 the drag of a turbulent
+fluid, which a gear has not."""
 
 
 class RateDependence(Cause):
@@ -41,6 +44,8 @@ class RateDependence(Cause):
     id = RATE
     title = "rate dependence (twist that lags torque)"
     unit = "arcsec per N·m/s"
+    spread_share = 0.15
+    """What lags at the record's typical rate is a part of the twist, or the loop is friction's."""
     positive = True
     tunable = ("lag_s", "exponent")
     shape_doubt = 0.022
@@ -73,7 +78,10 @@ class RateDependence(Cause):
 
     def possible(self, shape: Shape) -> bool:
         longest = shape.get("longest_s", LAG_SHARES[-1] * shape["ramp_s"])
-        return 0.4 <= shape["exponent"] <= 1.8 and shape["shortest_s"] <= shape["lag_s"] <= longest
+        return (
+            LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT
+            and shape["shortest_s"] <= shape["lag_s"] <= longest
+        )
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, n = shape["lag_s"], shape["exponent"]
@@ -85,7 +93,7 @@ class RateDependence(Cause):
         return -rate[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.15 * rig.scale_arcsec / shape["rate_Nm_per_s"]
+        return self.spread_share * rig.scale_arcsec / shape["rate_Nm_per_s"]
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)

@@ -15,6 +15,9 @@ SATURATION = (0.2, 0.5)
 """Settling times as shares of the record, refined."""
 EXPONENTS = (1.0, 0.5, 1.6)
 """Of time: steady, slowing as √t, quickening; refined."""
+LEAST_EXPONENT, MOST_EXPONENT = 0.35, 2.0
+"""Of time, when refined: below, half of the drift is over in the first seventh of the record, as after a jump
+at its start; above, half of it comes in the last third, as before a jump at its end."""
 SECONDS_PER_HOUR = 3600.0
 """The magnitude is per hour, time is in s."""
 
@@ -28,6 +31,8 @@ class SensorDrift(Cause):
     id = DRIFT
     title = "drift of the angle reading"
     unit = "arcsec/h"
+    spread_share = 0.4
+    """A reading may drift by as much as the gear twists: nothing holds it."""
     tunable = ("exponent", "settling_s")
     shape_doubt = 0.017
     """One and two deviations cover 68 and 84 % of 19 sizes."""
@@ -47,7 +52,7 @@ class SensorDrift(Cause):
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return 0.35 <= shape["exponent"] <= 2.0 and shape["settling_s"] >= 0.0
+        return LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT and shape["settling_s"] >= 0.0
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         if history.time_s is None:
@@ -63,7 +68,7 @@ class SensorDrift(Cause):
         return grown[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.4 * rig.scale_arcsec
+        return self.spread_share * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements) / (rig.duration_s / SECONDS_PER_HOUR)

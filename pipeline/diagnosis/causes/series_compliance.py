@@ -20,6 +20,8 @@ class SeriesCompliance(Cause):
     id = SERIES
     title = "elastic part left out of the simulation"
     unit = "%"
+    spread_share = 0.4
+    """A joint or a bearing left out yields nearly as much as what is simulated."""
     ratio = "in % of the simulated compliance"
     exact = True
     shape_doubt = 0.0007
@@ -37,7 +39,7 @@ class SeriesCompliance(Cause):
         return history.torque_Nm[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.4 * rig.prediction.compliance
+        return self.spread_share * rig.prediction.compliance
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return 100 * (rig.compliance / rig.prediction.compliance - 1)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import wrightomega
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
@@ -30,8 +31,6 @@ def _held_still(history: History) -> History:
 WAY, STRAIGHT = 5, 0.02
 """Rows of a way on one side of a turn; of the torque along it, its rms off a line beyond the noise. From the
 top of a sine on it is three times that."""
-LEAST = 1e-300
-"""Under a logarithm: a bearing that holds all it can has 0 left."""
 CLEAR = 4.0
 """Of the deadband, which is two deviations of the torque's noise: what a way must be longer than."""
 
@@ -54,7 +53,7 @@ def carried_share(
 
     def to_come(left: float, travel_Nm: np.ndarray) -> np.ndarray:
         """y after a travel, from y₀ = `left`."""
-        start = kappa * left + np.log(max(kappa * left, LEAST))
+        start = kappa * left + np.log(max(kappa * left, ABOVE_ZERO))
         return np.asarray(wrightomega(start - kappa * travel_Nm / friction)) / kappa
 
     for rows in history.unit_slices:
@@ -70,7 +69,7 @@ def carried_share(
                 where = _turned_at(history.torque_Nm[rows], time, int(a), deadband_Nm)
                 before, (turn, earlier) = turn, where or (float(moved[a]), False)
                 y = float(to_come(left, np.abs(np.array(turn - before)))) if way[a - 1] else 1.0
-                left = max(1 - way[a] * way[a - 1] * (1 - y), LEAST)
+                left = max(1 - way[a] * way[a - 1] * (1 - y), ABOVE_ZERO)
                 a -= earlier
             if way[b - 1] != 0:
                 share[a:b] = way[b - 1] * (1 - to_come(left, np.abs(moved[a + 1 : b + 1] - turn)))

@@ -33,6 +33,9 @@ LIMITS = {
     5: (0.08, 0.5),
 }
 """Of the parameter, by law."""
+MOST_ALONE, MOST_SECOND = 0.6, 0.9
+"""When refined: below the first stays the parameter of a law without a second knee; up to the second, of the
+largest torque, goes a second knee: beyond it too few rows show the stiffness that it ends in."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
 """Between which shares of the largest torque docs/contract.md takes chord stiffness."""
 
@@ -48,6 +51,8 @@ class StiffnessHardening(Cause):
     id = HARDENING
     title = "stiffness that grows with load (soft wind-up)"
     unit = "1"
+    spread_share = 0.3
+    """Soft wind-up is up to a third of the twist in catalogues."""
     ratio = "stiffness near the largest torque over that at 5 to 20 % of it"
     none = 1.0
     shape_doubt = 0.008
@@ -82,8 +87,8 @@ class StiffnessHardening(Cause):
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
         low, high = LIMITS[int(shape["law"])]
-        second, share = shape.get("second", 0.6), shape.get("share", 0.5)
-        apart = shape["parameter"] < second <= 0.9 and 0 < share < 1
+        second, share = shape.get("second", MOST_ALONE), shape.get("share", 0.5)
+        apart = shape["parameter"] < second <= MOST_SECOND and 0 < share < 1
         return low <= shape["parameter"] <= high and apart
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
@@ -92,7 +97,7 @@ class StiffnessHardening(Cause):
         return ((self._law(shape, x) - slope * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.3 * rig.prediction.compliance * rig.torque_Nm
+        return self.spread_share * rig.prediction.compliance * rig.torque_Nm
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """Chord stiffness over 80–100 % of the largest torque / over 5–20 %."""

@@ -40,6 +40,8 @@ class ThermalClearance(Cause):
     id = THERMAL
     title = "clearance that changes with temperature"
     unit = "arcsec/K"
+    spread_share = 0.08
+    """Of the angle in each kelvin: ten kelvins may open or close most of a gap."""
     tunable = ("lag_s", WARMER, COLDER)
     shape_doubt = 0.01
     """One and two deviations cover 71 and 100 % of 21 sizes."""
@@ -91,7 +93,7 @@ class ThermalClearance(Cause):
         return ((temperature - REFERENCE_C) * history.sign / 2)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.08 * rig.scale_arcsec
+        return self.spread_share * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)

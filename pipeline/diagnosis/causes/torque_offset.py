@@ -23,6 +23,8 @@ class TorqueOffset(Cause):
     id = OFFSET
     title = "shifted torque reading"
     unit = "N·m"
+    spread_share = 0.1
+    """Of the largest torque: a cell not set to zero."""
     shape_doubt = 0.005
     """One and two deviations cover 76 and 97 % of 33 sizes; 0.015 covers 88 and 97 %."""
     reveals = "the reading of the unloaded torque cell, and fine steps through zero torque"
@@ -34,7 +36,7 @@ class TorqueOffset(Cause):
         return np.zeros((len(history), 1))
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.1 * rig.torque_Nm
+        return self.spread_share * rig.torque_Nm
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements)

@@ -14,6 +14,11 @@ WEAR = "wear"
 """This cause's id."""
 RUN_IN_CYCLES = (0.7, 1.5, 3.0, 6.0)
 """A factor of two apart, refined from there."""
+LEAST_EXPONENT, MOST_EXPONENT = 0.3, 1.3
+"""Of the cycle, when refined: below, half of the growth is over in the first tenth of the cycles; above, wear
+would quicken."""
+LEAST_RUN_IN_CYCLES = 0.5
+"""Below it 86 % of the growth is over after one cycle: a gap of another size from the second cycle on."""
 
 
 class Wear(Cause):
@@ -26,6 +31,8 @@ class Wear(Cause):
     id = WEAR
     title = "wear (gap that grows from cycle to cycle)"
     unit = "arcsec/cycle"
+    spread_share = 0.5
+    """A gap that wears grows by a good part of itself before somebody looks."""
     positive = True
     tunable = ("exponent", "run_in_cycles")
     shape_doubt = 0.007
@@ -51,7 +58,9 @@ class Wear(Cause):
     def possible(self, shape: Shape) -> bool:
         """A gap that has grown before the first cycle is half over is another cause."""
         run_in = shape["run_in_cycles"]
-        return 0.3 <= shape["exponent"] <= 1.3 and (run_in == 0.0 or run_in >= 0.5)
+        return LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT and (
+            run_in == 0.0 or run_in >= LEAST_RUN_IN_CYCLES
+        )
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         cycle = history.cycle.astype(float)
@@ -60,7 +69,7 @@ class Wear(Cause):
         return (self._growth(shape, cycle) * history.sign / 2)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
-        return 0.5 * rig.scale_arcsec
+        return self.spread_share * rig.scale_arcsec
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """Growth over the record, on the law's own clock, per cycle elapsed."""

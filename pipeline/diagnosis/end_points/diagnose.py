@@ -58,7 +58,7 @@ def diagnose_end_points(
         for t in np.unique(points.torque_Nm)
     )
     null = unit_evidence(deviations, ())
-    units = unit_findings(points, deviations, names, envelopes, null)
+    units = unit_findings(points, deviations, names, envelopes)
     furthest = sorted(range(len(units)), key=lambda u: units[u].p_value)
     some = _some(points, deviations, names, furthest)
     racing, raced = (deviations, names) if some is points else unit_deviations(some, prediction)

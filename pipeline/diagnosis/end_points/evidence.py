@@ -15,6 +15,7 @@ from math import log, pi
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.end_points.regressors import EndPointRegressor
 
 SHARES = (0.1, 0.5, 0.9)
@@ -147,7 +148,7 @@ def _cell(
             means[i], variances[i] = mean_mid[im], cov_mid[im, im]
             im += 1
         if t.positive:  # half a normal prior: what of the posterior lies there, twice
-            sign += log(2) + float(log_ndtr(means[i] / max(variances[i], 1e-300) ** 0.5))
+            sign += log(2) + float(log_ndtr(means[i] / max(variances[i], ABOVE_ZERO) ** 0.5))
     means[-2:], variances[-2:] = mean[it:], np.diag(cov)[it:]
     count = np.bincount(deviations.unit, minlength=deviations.units)
     shrink = own_variance / (sigma**2 + own_variance * count)

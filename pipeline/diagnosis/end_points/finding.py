@@ -19,7 +19,6 @@ class UnitFinding:
 
     `z` is its distance in standard deviations, `p_value` two-sided and exact (the play's end
     included), `p_corrected` for all units and torques looked at (Šidák).
-    `own_arcsec` is its own part of the gap's deviation, by the posterior of all units.
     """
 
     unit: str
@@ -31,7 +30,6 @@ class UnitFinding:
     z: float
     p_value: float
     p_corrected: float
-    own_arcsec: float
     explanation: Explanation
 
     @property

@@ -13,7 +13,7 @@ from scipy.special import logsumexp
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
-from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING, StiffnessHardening
 from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
     UnitEvidence,
@@ -31,8 +31,8 @@ PAIR_NATS = -2.0
 """Log prior odds of two causes against one, 1 to 7."""
 UNNAMED_NATS = -2.0
 """Log prior odds of a curve without a name against a cause, 1 to 7: at equal evidence a cause is named."""
-UNNAMED_SPREAD = 0.3
-"""Prior standard deviation of that curve, of the predicted angle: as wide as `stiffness_hardening`'s."""
+UNNAMED_SPREAD = StiffnessHardening.spread_share
+"""Prior standard deviation of that curve, of the predicted angle: as wide as soft wind-up's."""
 UNNAMED = "?torque_Nm"
 CONCAVE = {CLEARANCE, FRICTION, HARDENING}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the

@@ -9,7 +9,6 @@ import numpy as np
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.evidence import (
     UnitDeviations,
-    UnitEvidence,
     readings,
 )
 from flexspline.pipeline.diagnosis.end_points.finding import MidPositions, UnitFinding
@@ -53,14 +52,13 @@ def unit_findings(
     deviations: UnitDeviations,
     names: Sequence[str],
     envelopes: Sequence[Envelope],
-    null: UnitEvidence,
 ) -> tuple[UnitFinding, ...]:
-    """Every unit at the torque where it is furthest out; `null` is the simulation's own fit."""
+    """Every unit at the torque where it is furthest out."""
     at = {e.torque_Nm: e for e in envelopes}
     looked = len(names) * min(2, len(envelopes))  # further torques of a unit share its clearance
     total = points.angle_plus_arcsec - points.angle_minus_arcsec
     found = []
-    for u, (name, rows) in enumerate(zip(names, deviations.unit_rows, strict=True)):
+    for name, rows in zip(names, deviations.unit_rows, strict=True):
         p_values = [at[float(points.torque_Nm[i])].p_value(float(total[i])) for i in rows]
         i, p = rows[int(np.argmin(p_values))], min(p_values)
         of = at[float(points.torque_Nm[i])]
@@ -74,7 +72,7 @@ def unit_findings(
         )
         found.append(UnitFinding(
             name, of.torque_Nm, float(total[i]), of.total_arcsec, of.std_arcsec, float(deviations.mid[i]),
-            z, p, float(-np.expm1(looked * np.log1p(-min(p, 1 - 1e-15)))), float(null.own[u]),
+            z, p, float(-np.expm1(looked * np.log1p(-min(p, 1 - 1e-15)))),
             of.explanation(float(total[i])),
         ))  # fmt: skip
     return tuple(found)

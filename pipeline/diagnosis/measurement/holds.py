@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import (
     CLEAR_SIGMAS,
@@ -113,7 +114,7 @@ def _stands(
     A few rows of a slow cycle, of a record with quick ones, may stand still by noise alone.
     """
     torque, away = torque_Nm[i:j], time_s[i:j] - time_s[i:j].mean()
-    square = max(float((away**2).sum()), 1e-300)
+    square = max(float((away**2).sum()), ABOVE_ZERO)
     rate, doubt = abs(float(away @ torque)) / square, noise_Nm / square**0.5
     beside = min(fast, _rate_beside(torque_Nm, time_s, i, j))
     return rate - doubt < HOLD_RATE_SHARE * fast and rate + SURE_SIGMAS * doubt < MOVING * beside
@@ -130,7 +131,7 @@ def _rate_beside(torque_Nm: np.ndarray, time_s: np.ndarray, i: int, j: int) -> f
     away = [
         float(np.mean((x - level) ** 2)) for x in (torque_Nm[first:i], torque_Nm[j:end]) if len(x)
     ]
-    return (3 * min(away)) ** 0.5 / max(lasts, 1e-300) if away else np.inf
+    return (3 * min(away)) ** 0.5 / max(lasts, ABOVE_ZERO) if away else np.inf
 
 
 def _range_sigmas(count: int) -> float:

@@ -8,19 +8,24 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
+PARTS = 12
+"""Of a cycle: in so small a part a branch is a parabola but for a thousandth of its twist."""
+FEWEST_ROWS, MOST_ROWS = 7, 400
+"""Of a window: a parabola then takes up less than half of the noise, and more rows say no more of it."""
+
 
 def rough_residual(
     angle: np.ndarray, history: History, kept: np.ndarray, rows_per_cycle: float
 ) -> np.ndarray:
     """(kept,) what a local parabola leaves over windows of a twelfth of a cycle: noise and little else."""
     out = np.empty(int(kept.sum()))
-    width = int(np.clip(rows_per_cycle / 12, 7, 400))
+    width = int(np.clip(rows_per_cycle / PARTS, FEWEST_ROWS, MOST_ROWS))
     y = angle[kept]
     for s in stretches_of(history, kept):
         piece = y[s]
         for a in range(0, len(piece), width):
             b = min(len(piece), a + width)
-            if b - a < 7 and b == len(piece) and a > 0:
+            if b - a < FEWEST_ROWS and b == len(piece) and a > 0:
                 a = max(0, b - width)
             x = np.linspace(-1, 1, b - a)
             degree = min(2, max(0, b - a - 4))

@@ -65,7 +65,7 @@ def diagnose_specimens(
     )
     found, explanation = explain(bench, data, specimens, design)
     fe, chosen, decision = found.data.fe, explanation.chosen, explanation.decision
-    before, calibrated, after = _held_out(found.data, found.null_fit, chosen)
+    before, calibrated, after = _held_out(found.data, chosen)
     analysis = SpecimenAnalysis(
         specimens.specimen, parts, specimens.stiffness_Nm_per_rad, 1 / fe.total,
         np.exp(-log_compliance(fe, (), found.null_fit.mean)),
@@ -134,9 +134,7 @@ def _parts(
     return (part,) * len(designs), why
 
 
-def _held_out(
-    data: SpecimenData, null: LaplaceFit, chosen: LaplaceFit
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _held_out(data: SpecimenData, chosen: LaplaceFit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) errors of ln K where each specimen is predicted from the others: FE, calibrated, explained."""
     n = len(data.log_compliance)
     before = np.log(data.fe.total) - data.log_compliance

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
@@ -67,7 +68,7 @@ def _own(way: np.ndarray, load: np.ndarray) -> np.ndarray:
     )
     moved = np.abs(own).max(axis=0)
     own = own[:, moved > 1e-9 * moved.max()]
-    return own / np.maximum(np.abs(own).max(axis=0), 1e-300)
+    return own / np.maximum(np.abs(own).max(axis=0), ABOVE_ZERO)
 
 
 def _loads(history: History, limit_Nm: float) -> np.ndarray:
