@@ -133,7 +133,7 @@ def moved(by_arcsec: float) -> EndPoints:
 def test_next_is_several_amplitudes_on_unit_3(article) -> None:
     after = article.outcome.next_measurement
     assert after.vary == "torque_amplitude"
-    assert after.where == "3"
+    assert after.unit == "3"
     plans = {p.vary: p.separation for p in article.end_points.plans}
     # friction and clearance widen every pair of end points alike; only a loop shows the difference
     assert plans["torque_Nm"] < 1 < plans["sweep"] < plans["torque_amplitude"]
@@ -199,7 +199,7 @@ def test_a_size_that_is_not_known_is_a_suspicion(monkeypatch: pytest.MonkeyPatch
     assert "is only a suspicion" in said
     assert outcome.next_measurement.aim == "confirm"
     advice = why(outcome.next_measurement, "end_points")
-    assert advice.startswith(f"on unit {outcome.next_measurement.where}: ")
+    assert advice.startswith(f"on unit {outcome.next_measurement.unit}: ")
     assert advice.endswith("the suspicion of stiffness that differs with the torque's direction")
 
 
