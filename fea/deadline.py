@@ -11,7 +11,7 @@ from flexspline.geometry.errors import ComputationError
 STAGE_SECONDS = 60.0
 """Of a stage on the command line that solves on the meridian: 15 times what the slowest stage of 150 random
 designs took on one core (3.2 s), so that a slow or busy machine meets it too."""
-GROWTH = 1.5
+TIME_EXPONENT = 1.5
 """A mesh of twice the elements takes 2^1.5 times as long: factorising a plane mesh of n nodes takes n^1.5
 operations at best (George, SINUM 10 (1973) 345-363), and all else takes less."""
 
@@ -68,7 +68,7 @@ class Pace:
         worked = self._deadline.working()
         needed = 0.0
         if self._elements:
-            needed = (worked - self._began) * (elements / self._elements) ** GROWTH
+            needed = (worked - self._began) * (elements / self._elements) ** TIME_EXPONENT
         if self._deadline.elapsed() + needed >= self._deadline.limit_s:
             raise OutOfTimeError(self._deadline.limit_s)
         self._began, self._elements = worked, elements

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexspline.fea.types import MeshLevel
 
-FALLS = (0.6, 0.75)
+ERROR_RATIOS = (0.6, 0.75)
 """q of meshes of twice the elements each: 0.59 and 0.72 on a sharply stepped shaft with ten holes, meshed
 evenly to 65 000 elements. The bounds hold to twice what is left: for q up to 0.86."""
 

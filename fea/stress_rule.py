@@ -15,7 +15,7 @@ from flexspline.fea.types import StressPeak
 FARTHER, NEARER = 1.2, 0.5
 """Of the distance left out. Solid meshes have edges of about that distance at the edges, and show no rise
 before half of it."""
-FALLS = 0.015
+FALL_SHARE = 0.015
 """By more than this, of the figure. Of 66 peaks of cups, hats and shafts 30 fall by 1.8 to 5.9 % and rise as
 well; two refinements of a mesh may leave 0.5 %."""
 RISES = 0.03
@@ -39,7 +39,7 @@ def judged(
     """The peak found at `exclusion_mm`, with what another distance would make of it."""
     farther = largest(FARTHER * exclusion_mm)
     nearer = largest(NEARER * exclusion_mm, exclusion_mm)
-    falls = farther is None or farther < (1 - FALLS) * mises_MPa
+    falls = farther is None or farther < (1 - FALL_SHARE) * mises_MPa
     rises = nearer is not None and nearer > (1 + RISES) * mises_MPa
     return StressPeak(
         mises_MPa,

@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from flexspline.geometry.ranges import LENGTH_mm
 
-TINY = 1e-6
+GAP_mm = 1e-6
 """Gaps below this [mm] close in the CAD kernel (its tolerance is 1e-7 mm)."""
 DIGITS, MOST_DIGITS = 6, 17
 """As many as read well; as many as tell any two doubles apart."""
@@ -15,18 +15,18 @@ Interval = tuple[float, float]
 
 
 def upto(limit: float) -> float:
-    """The largest length to name where `limit` [mm] is allowed: the check lets `TINY` pass."""
-    return limit + TINY / 2
+    """The largest length to name where `limit` [mm] is allowed: the check lets `GAP_mm` pass."""
+    return limit + GAP_mm / 2
 
 
 def below(limit: float) -> float:
     """The largest length to name where `limit` [mm] is not allowed."""
-    return limit - 2 * TINY
+    return limit - 2 * GAP_mm
 
 
 def above(limit: float) -> float:
     """The smallest length to name where `limit` [mm] is not allowed."""
-    return limit + 2 * TINY
+    return limit + 2 * GAP_mm
 
 
 def is_step(height: float) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, ceil, pi, sin
 
-from flexspline.geometry.bounds import TINY, above, below, lengths
+from flexspline.geometry.bounds import GAP_mm, above, below, lengths
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.shapes import Flexspline, Shaft
@@ -21,7 +21,7 @@ def bolt_faults(
     land = f"{inner[0]} = {inner[1]:g} and {outer[0]} = {outer[1]:g}"
     alone = n == 1 and inner[1] == 0  # a single hole in a solid end may lie over the axis
     largest = outer[1] if alone else (outer[1] - inner[1]) / 2
-    most = largest - 4 * TINY - (SMALLEST_MM if alone else 0.0)
+    most = largest - 4 * GAP_mm - (SMALLEST_MM if alone else 0.0)
     holes = lengths(0, most)  # a little less than fits: a circle must be left to put them on
     if holes is None:
         yield DesignError(
@@ -40,7 +40,7 @@ def bolt_faults(
         )
         return
     low, high = 0.0 if alone else above(inner[1] + hole), below(outer[1] - hole)
-    if circle is None or not low - TINY < circle < high + TINY:
+    if circle is None or not low - GAP_mm < circle < high + GAP_mm:
         verb = "give a number" if circle is None else "must be"
         needs = f"bolt_count = {n} needs it; " if circle is None else ""
         yield DesignError(
@@ -49,7 +49,7 @@ def bolt_faults(
             f"{needs}{verb} {lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = "
             f"{hole:g} stay between {land}",
         )
-    elif n >= 2 and circle * sin(pi / n) <= hole + TINY:
+    elif n >= 2 and circle * sin(pi / n) <= hole + GAP_mm:
         smaller = lengths(0, below(circle * sin(pi / n)), 4)
         also = f"; {n} holes take a diameter {smaller} mm" if smaller else ""
         yield DesignError(
@@ -62,6 +62,6 @@ def bolt_faults(
 
 def _most_holes(circle: float, hole: float) -> int:
     """The largest number of equal holes on a circle that do not touch."""
-    if hole + TINY >= circle:
+    if hole + GAP_mm >= circle:
         return 1
-    return max(1, ceil(pi / asin((hole + TINY) / circle)) - 1)
+    return max(1, ceil(pi / asin((hole + GAP_mm) / circle)) - 1)

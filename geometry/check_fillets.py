@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot, inf, sqrt
 
-from flexspline.geometry.bounds import TINY, from_zero, lengths, upto
+from flexspline.geometry.bounds import GAP_mm, from_zero, lengths, upto
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.ranges import LENGTH_mm
 from flexspline.geometry.shapes import Flexspline
@@ -41,16 +41,16 @@ def fillet_faults(f: Flexspline) -> Iterator[DesignError]:
         inner_axial, outer_axial = f.shoulder_start - h, start
     end = f"{key} = {f.size(key):g}"
     over = sqrt(2 * t * h)
-    # less what leaves a wall of TINY: it shrinks by over / (over + t + h) of the fillet's growth
-    through = f.inner_fillet_mm + (t + h + over) * (1 - 2 * TINY / over)
+    # less what leaves a wall of GAP_mm: it shrinks by over / (over + t + h) of the fillet's growth
+    through = f.inner_fillet_mm + (t + h + over) * (1 - 2 * GAP_mm / over)
     for name, radial, axial, limit in (
         ("inner_fillet_mm", inner_radial, inner_axial, inf),
         ("outer_fillet_mm", outer_radial, outer_axial, through),
     ):
         most = max(min(radial, axial), 0.0)
         value = getattr(f, name)
-        cuts = limit < inf and corner_wall(f) <= TINY
-        if value <= most + TINY and not cuts:
+        cuts = limit < inf and corner_wall(f) <= GAP_mm
+        if value <= most + GAP_mm and not cuts:
             continue
         room = from_zero(min(upto(most), limit))
         if cuts and limit < most:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import inf
 
 from flexspline.geometry.bounds import (
-    TINY,
+    GAP_mm,
     Interval,
     above,
     below,
@@ -59,7 +59,7 @@ def _ring_faults(f: Flexspline, teeth: Interval) -> Iterator[DesignError]:
     seat_floor, shoulder_floor = (h, 0.0) if f.inward else (0.0, h)
     room_of = min(length - seat_floor, length - shoulder_floor - rise)
     tube = f"length_mm = {length:g} less diaphragm_thickness_mm = {h:g}"
-    if not is_step(rise) or room_of < SMALLEST_MM - TINY / 2:
+    if not is_step(rise) or room_of < SMALLEST_MM - GAP_mm / 2:
         room_for = _ring_span(wall, (teeth[0], min(teeth[1], thickest_ring(f))))
         if not room_for:
             reason = 'must be "none": wall and length leave no room for a ring with teeth'
@@ -78,7 +78,7 @@ def _ring_faults(f: Flexspline, teeth: Interval) -> Iterator[DesignError]:
             "ring_offset_mm",
             f"must be {most_offset} mm: below {room_of:g}, {tube}, less the shoulder",
         )
-    elif f.ring_offset_mm + f.ring_width_mm > room_of + TINY:
+    elif f.ring_offset_mm + f.ring_width_mm > room_of + GAP_mm:
         left = lengths(0, max(upto(room_of - f.ring_offset_mm), SMALLEST_MM))
         yield fault(
             f,
@@ -102,7 +102,7 @@ def _ring_span(wall: float, ends: Interval) -> str:
 
 def _inside_faults(f: Flexspline) -> Iterator[DesignError]:
     inner, outer = f.land.inner, f.land.outer
-    if f.size(outer) >= f.inner_diameter_mm - TINY:
+    if f.size(outer) >= f.inner_diameter_mm - GAP_mm:
         room = lengths(0, below(f.inner_diameter_mm))
         if room is None:
             least = lengths(2 * SMALLEST_MM, LENGTH_mm.high)
@@ -111,7 +111,7 @@ def _inside_faults(f: Flexspline) -> Iterator[DesignError]:
         else:
             reason = f"must be {room} mm: below inner_diameter_mm = {f.inner_diameter_mm:g}"
             yield fault(f, outer, reason)
-    if f.size(inner) >= f.size(outer) - TINY:
+    if f.size(inner) >= f.size(outer) - GAP_mm:
         room = from_zero(below(f.size(outer)))
         yield fault(f, inner, f"must be {room} mm: below {outer} = {f.size(outer):g}")
     yield from _thickness_faults(f, f.length_mm)
@@ -126,9 +126,9 @@ def _outside_faults(f: Flexspline, ring_fits: bool) -> Iterator[DesignError]:
         return
     least = above(2 * f.wall_radius)
     touches = _touches(f)
-    if ring_fits and touches - TINY < f.diaphragm_thickness_mm:
+    if ring_fits and touches - GAP_mm < f.diaphragm_thickness_mm:
         least = max(least, _clear_of_the_ring(f))
-    if inner <= 2 * f.wall_radius + TINY or inner < least - 2 * TINY or inner > most:
+    if inner <= 2 * f.wall_radius + GAP_mm or inner < least - 2 * GAP_mm or inner > most:
         yield fault(
             f,
             f.land.inner,
@@ -137,7 +137,7 @@ def _outside_faults(f: Flexspline, ring_fits: bool) -> Iterator[DesignError]:
             f"{f.land.outer}",
         )
         return
-    if outer <= inner + TINY:
+    if outer <= inner + GAP_mm:
         yield fault(
             f,
             f.land.outer,
@@ -149,15 +149,15 @@ def _outside_faults(f: Flexspline, ring_fits: bool) -> Iterator[DesignError]:
 def _touches(f: Flexspline) -> float:
     """The height that a flange taller than the shoulder must leave to the ring inside it [mm]."""
     inner = f.size(f.land.inner) / 2
-    if inner > f.ring_radius + TINY:
+    if inner > f.ring_radius + GAP_mm:
         return inf
     return f.ring_start - max(0.0, f.ring_radius - inner)
 
 
 def _clear_of_the_ring(f: Flexspline) -> float:
     """Smallest diameter at which a flange as thin as the diaphragm clears the ring [mm]."""
-    under = f.ring_start - f.diaphragm_thickness_mm - 2 * TINY
-    return 2 * (f.ring_radius - under) + 2 * TINY if under > 0 else 2 * f.ring_radius + 4 * TINY
+    under = f.ring_start - f.diaphragm_thickness_mm - 2 * GAP_mm
+    return 2 * (f.ring_radius - under) + 2 * GAP_mm if under > 0 else 2 * f.ring_radius + 4 * GAP_mm
 
 
 def _too_wide(f: Flexspline, most: float) -> Iterator[DesignError]:
@@ -185,7 +185,7 @@ def _too_wide(f: Flexspline, most: float) -> Iterator[DesignError]:
 def _thickness_faults(f: Flexspline, ceiling: float) -> Iterator[DesignError]:
     key, value = f.land.thickness, f.hole_depth
     h = f.diaphragm_thickness_mm
-    if not is_step(value - h) or value >= ceiling - TINY:
+    if not is_step(value - h) or value >= ceiling - GAP_mm:
         room = beside(h, "diaphragm_thickness_mm", SMALLEST_MM, h, max(below(ceiling), h))
         where = (
             f"below length_mm = {f.length_mm:g}"

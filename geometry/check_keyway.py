@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import sqrt
 
-from flexspline.geometry.bounds import TINY, below, lengths
+from flexspline.geometry.bounds import GAP_mm, below, lengths
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.shapes import Keyway, Shaft
 
@@ -14,7 +14,7 @@ def keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:
     """What keeps the slot from being cut; `floor` [mm]: the distance of its floor from the axis."""
     last = s.segment[-1]
     radius = last.outer_diameter_mm / 2
-    if key.length_mm >= s.length - TINY:
+    if key.length_mm >= s.length - GAP_mm:
         yield DesignError(
             "shaft.keyway.length_mm",
             key.length_mm,
@@ -25,11 +25,11 @@ def keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:
     bored = [
         (segment.inner_diameter_mm / 2, i)
         for i, segment in enumerate(s.segment)
-        if sum(t.length_mm for t in s.segment[: i + 1]) > s.length - key.length_mm + TINY
+        if sum(t.length_mm for t in s.segment[: i + 1]) > s.length - key.length_mm + GAP_mm
         and segment.outer_diameter_mm / 2 > floor
     ]
     bore, i = max(bored, default=(last.inner_diameter_mm / 2, len(s.segment) - 1))
-    if floor <= bore + TINY:
+    if floor <= bore + GAP_mm:
         room = lengths(0, below(radius - bore))
         lands = (
             f"from the last outer_diameter_mm = {2 * radius:g} to segment[{i}].inner_diameter_mm = "
@@ -43,7 +43,7 @@ def keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:
             yield DesignError("shaft.keyway.depth_mm", key.depth_mm, f"must be {room} mm: {lands}")
         return
     chord = 2 * sqrt(radius**2 - floor**2)
-    if key.width_mm >= chord - TINY:
+    if key.width_mm >= chord - GAP_mm:
         yield DesignError(
             "shaft.keyway.width_mm",
             key.width_mm,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import accumulate, pairwise
 
 from flexspline.geometry.bounds import (
-    TINY,
+    GAP_mm,
     Interval,
     above,
     below,
@@ -53,7 +53,7 @@ def _segment_faults(s: Shaft) -> Iterator[DesignError]:
         before = s.segment[i - 1] if i else None
         around = max(t.inner_diameter_mm for t in s.segment[max(i - 1, 0) : i + 2])
         bores = sum(
-            t.inner_diameter_mm >= segment.outer_diameter_mm - TINY
+            t.inner_diameter_mm >= segment.outer_diameter_mm - GAP_mm
             for t in s.segment[max(i - 1, 0) : i + 2]
         )
         if bores >= 2:  # the bores are right then, and the outside is not
@@ -74,7 +74,7 @@ def _outer_faults(
     if before is None:
         return
     name, value = f"segment[{i - 1}]", segment.outer_diameter_mm
-    meets = value > before.inner_diameter_mm + TINY
+    meets = value > before.inner_diameter_mm + GAP_mm
     if meets and is_step(abs(value - before.outer_diameter_mm) / 2):
         return
     room = _outer_room(before, above(before.inner_diameter_mm))
@@ -101,13 +101,13 @@ def _inner_faults(
     key, value = f"shaft.segment[{i}].inner_diameter_mm", segment.inner_diameter_mm
     most = segment.outer_diameter_mm
     if before is None:
-        if value >= most - TINY:
+        if value >= most - GAP_mm:
             reason = f"must be {from_zero(below(most))} mm: below outer_diameter_mm = {most:g}"
             yield DesignError(key, value, reason)
         return
     name = f"segment[{i - 1}]"
     least = min(most, before.outer_diameter_mm)
-    if value < least - TINY and is_step(abs(value - before.inner_diameter_mm) / 2):
+    if value < least - GAP_mm and is_step(abs(value - before.inner_diameter_mm) / 2):
         return
     room = beside(
         before.inner_diameter_mm, f"{name}.inner_diameter_mm", STEP_mm, 0.0, below(least), zero=True
@@ -143,7 +143,7 @@ def _fillet_faults(s: Shaft) -> Iterator[DesignError]:
             fits = f"to fit segment[{i}].length_mm = {segment.length_mm:g}"
             rooms.append((segment.length_mm / corners, fits))
     most, where = min(rooms, default=(LENGTH_mm.high, ""))
-    if f > most + TINY:
+    if f > most + GAP_mm:
         yield DesignError("shaft.fillet_mm", f, f"must be {from_zero(upto(most))} mm: {where}")
 
 
@@ -154,8 +154,8 @@ def _grip_faults(s: Shaft, fillets_fit: bool) -> Iterator[DesignError]:
         return
     holes = list(_fillets_along(s)) if fillets_fit else []
     # the grip ends at z = length - grip
-    taken = [(s.length - high + TINY / 2, s.length - low - TINY / 2) for low, high in holes]
-    if grip < s.length - TINY and not any(low < grip < high for low, high in taken):
+    taken = [(s.length - high + GAP_mm / 2, s.length - low - GAP_mm / 2) for low, high in holes]
+    if grip < s.length - GAP_mm and not any(low < grip < high for low, high in taken):
         return
     free = [t for a, b in outside(taken, SMALLEST_MM, most) if (t := lengths(a, b)) is not None]
     if not free:
@@ -175,7 +175,7 @@ def _fillets_along(s: Shaft) -> Iterator[Interval]:
     """(low, high) z of every fillet [mm]."""
     ends = accumulate(segment.length_mm for segment in s.segment)
     for step, z in zip(_steps(s), ends, strict=False):
-        if step and s.fillet_mm > 2 * TINY:
+        if step and s.fillet_mm > 2 * GAP_mm:
             yield (z - s.fillet_mm, z) if step > 0 else (z, z + s.fillet_mm)
 
 

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from flexspline.geometry.bounds import TINY, above, below, lengths
+from flexspline.geometry.bounds import GAP_mm, above, below, lengths
 from flexspline.geometry.check_fillets import fault
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
 from flexspline.geometry.shapes import Flexspline
 
-ENOUGH = 2
+CONTRADICTING = 2
 """Others that contradict a figure."""
 
 
@@ -28,7 +28,7 @@ def _length(f: Flexspline) -> Iterator[DesignError]:
     h, fillet = f.diaphragm_thickness_mm, max(f.inner_fillet_mm, f.outer_fillet_mm)
     ring = f.ring_offset_mm + f.ring_width_mm
     land = f.hole_depth
-    if sum(x > f.length_mm + TINY for x in (h, ring, land, fillet)) < ENOUGH:
+    if sum(x > f.length_mm + GAP_mm for x in (h, ring, land, fillet)) < CONTRADICTING:
         return
     rise = max(f.ring_thickness_mm - f.wall_thickness_mm, 0.0)
     least = lengths(max(h + rise + ring + fillet, above(land)) + SMALLEST_MM, LENGTH_mm.high)
@@ -51,7 +51,7 @@ def _inside(f: Flexspline) -> Iterator[DesignError]:
     boss, bore, bolts = f.size(f.land.outer), f.size(f.land.inner), _bolted(f)
     fillet = max(f.inner_fillet_mm, f.outer_fillet_mm)
     inside = (boss, bore, bolts, fillet)
-    if sum(x >= f.inner_diameter_mm - TINY for x in inside) >= ENOUGH:
+    if sum(x >= f.inner_diameter_mm - GAP_mm for x in inside) >= CONTRADICTING:
         most = max(boss, above(bore), above(bolts))
         least = lengths(most + 2 * fillet + SMALLEST_MM, LENGTH_mm.high)
         if least is not None:
@@ -59,7 +59,7 @@ def _inside(f: Flexspline) -> Iterator[DesignError]:
                 f"must be {least} mm: {f.land.noun}, bore, bolt holes and fillets lie inside it"
             )
             yield fault(f, "inner_diameter_mm", reason)
-    elif sum(x >= boss - TINY for x in (bore, bolts)) >= ENOUGH:
+    elif sum(x >= boss - GAP_mm for x in (bore, bolts)) >= CONTRADICTING:
         room = lengths(max(bore, bolts) + SMALLEST_MM, below(f.inner_diameter_mm))
         if room is not None:
             yield fault(f, f.land.outer, f"must be {room} mm: bore and bolt holes lie inside it")
@@ -68,7 +68,7 @@ def _inside(f: Flexspline) -> Iterator[DesignError]:
 def _outside(f: Flexspline) -> Iterator[DesignError]:
     tube, fillet = 2 * f.wall_radius, max(f.inner_fillet_mm, f.outer_fillet_mm)
     flange, outer = f.size(f.land.inner), f.size(f.land.outer)
-    if max(flange, outer) > tube + TINY:
+    if max(flange, outer) > tube + GAP_mm:
         return
     room = min(flange, outer)
     for key, most in (

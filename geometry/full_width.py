@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-FIRST, LAST = 0x21, 0x7E
+FIRST_SIGN, LAST_SIGN = 0x21, 0x7E
 """The first and last sign of ASCII that has a wide one, "!" and "~"."""
 FARTHER = 0xFEE0
 """From a sign of ASCII to its wide one, in Unicode's block "Halfwidth and Fullwidth Forms"."""
-_NARROW = {n + FARTHER: chr(n) for n in range(FIRST, LAST + 1)} | str.maketrans(
+_NARROW = {n + FARTHER: chr(n) for n in range(FIRST_SIGN, LAST_SIGN + 1)} | str.maketrans(
     "。“”\u3000", '."" '
 )
 

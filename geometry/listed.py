@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-MOST = 8
+MOST_ENTRIES = 8
 """Entries that are all written out; they fill half a line of a console."""
-FIRST = 3
+FIRST_ENTRIES = 3
 """Entries of a longer list that are written out before its last: they show its step."""
 
 
@@ -19,6 +19,6 @@ def listed(words: Iterable[object], what: str) -> str:
     '1, 2, 3, … 192 (192 cycles)'
     """
     every = [str(w) for w in words]
-    if len(every) <= MOST:
+    if len(every) <= MOST_ENTRIES:
         return ", ".join(every)
-    return f"{', '.join(every[:FIRST])}, … {every[-1]} ({len(every)} {what})"
+    return f"{', '.join(every[:FIRST_ENTRIES])}, … {every[-1]} ({len(every)} {what})"

@@ -34,7 +34,7 @@ WALL_SHARE = 0.0123
 ask for 0.0117 to 0.0127, at all ratios alike (docs/whole-gear.md)."""
 FAR_BENT = 90
 """Stress goes with the stroke: at ratio 100 it is 0.9 of what the first cup's steel endures (448 MPa)."""
-DIGITS = 4
+LENGTH_DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
 LOAD_SHARE = 0.04
 """Of rated torque: where makers measure lost motion."""
@@ -90,7 +90,7 @@ def sized_values(
     }
     why[("gear", "module_mm")] = f"pitch radius {pitch:g} mm over the ratio, two lobes"
     inner = 2 * (module * (ratio - DEDENDUM) - flexspline["ring_thickness_mm"])
-    flexspline["inner_diameter_mm"] = _rounded(inner, DIGITS + 1)
+    flexspline["inner_diameter_mm"] = _rounded(inner, LENGTH_DIGITS + 1)
     why[("flexspline", "inner_diameter_mm")] = f"root m(z1/2 - {DEDENDUM:g}) less the ring"
     _thin_walled(flexspline, first["flexspline"], pitch, why)
     part = module / first["gear"]["module_mm"]
@@ -151,5 +151,5 @@ def _scaled(table: Table, location: Location, factor: float, was: float, why: Wh
     return {key: _scaled(value, (*location, key), factor, was, why) for key, value in table.items()}
 
 
-def _rounded(value: float, digits: int = DIGITS) -> float:
+def _rounded(value: float, digits: int = LENGTH_DIGITS) -> float:
     return float(f"{value:.{digits}g}")

@@ -15,7 +15,7 @@ from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
 
-SLACK = 1e-4
+PARABOLA_SLACK = 1e-4
 """Of K: what parabolas for arcs may do to a solid model, ten times what was measured (`fea.solid.swept`)."""
 
 
@@ -103,7 +103,8 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     else:
         lower = max(solid.lower_Nm_per_rad, enclosure.lower_Nm_per_rad)
         upper = min(solid.upper_Nm_per_rad, enclosure.upper_Nm_per_rad)
-        lower, upper = min(lower, upper), max(lower, upper)  # apart by rounding, or by SLACK
+        # apart by rounding, or by PARABOLA_SLACK
+        lower, upper = min(lower, upper), max(lower, upper)
     if half <= enclosure.half_width:
         K, how = solid, f"the solid model's, within its bounds: {solid.method}"
     else:
@@ -151,7 +152,7 @@ def check_against(solid: Stiffness, enclosure: Stiffness) -> None:
 
 def overlap(solid: Stiffness, enclosure: Stiffness) -> bool:
     """Whether both may be true."""
-    slack = SLACK * enclosure.K_Nm_per_rad
+    slack = PARABOLA_SLACK * enclosure.K_Nm_per_rad
     return (
         solid.lower_Nm_per_rad <= enclosure.upper_Nm_per_rad + slack
         and solid.upper_Nm_per_rad >= enclosure.lower_Nm_per_rad - slack

@@ -26,7 +26,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
 from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, of_torques, warnings
-from flexspline.pipeline.gear_terms import FREE, gear_terms, play_effect, small_torque
+from flexspline.pipeline.gear_terms import FREE_ANGLE_TERMS, gear_terms, play_effect, small_torque
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -102,7 +102,7 @@ class GearCurve:
         """Between both flanks, which K1 leaves out; None where nobody asked for the terms."""
         if not self.terms_arcsec:
             return None
-        return sum(self.terms_arcsec[term] for term in FREE)
+        return sum(self.terms_arcsec[term] for term in FREE_ANGLE_TERMS)
 
 
 def gear_curve(context: AnalysisContext) -> GearCurve:

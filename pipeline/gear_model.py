@@ -47,7 +47,7 @@ GROOVE_SHARE = 0.3
 """Width on which a ball presses on its race, over its diameter: the contact spreads through the race. Half
 of it moves K by up to 0.5 %."""
 
-KEPT = 64
+KEPT_BODIES = 64
 """Condensed bodies remembered, 10 kB each: who changes the bearing need not condense the flexspline anew."""
 LEAST_LEVER = 0.2
 """Modules from the root to the pitch circle, at the least: of rings that reach farther, a stub."""
@@ -104,7 +104,7 @@ def gear_model(
     )
 
 
-@lru_cache(KEPT)
+@lru_cache(KEPT_BODIES)
 def _rim(
     part: Part, pitch_radius: float, ring: tuple[float, float], count: int, face_count: int
 ) -> Rim:
@@ -114,7 +114,7 @@ def _rim(
         return condensed_rim(part.meridian, material, pitch_radius, face, seat, LAST_HARMONIC)
 
 
-@lru_cache(KEPT)
+@lru_cache(KEPT_BODIES)
 def _spline(
     root: float,
     outer: float,
@@ -128,7 +128,7 @@ def _spline(
         return condensed_spline(outline, material, pitch_radius, face, LAST_HARMONIC)
 
 
-@lru_cache(KEPT)
+@lru_cache(KEPT_BODIES)
 def _race(
     outer_radius: float,
     thickness: float,

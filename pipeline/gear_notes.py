@@ -8,7 +8,7 @@ from math import degrees
 import numpy as np
 
 from flexspline.fea.gear.equilibrium import Equilibrium
-from flexspline.fea.gear.kinematics import STEPS, Mesh
+from flexspline.fea.gear.kinematics import GAP_STEPS, Mesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.circular_spline import SHALLOWEST
 from flexspline.geometry.design import Design
@@ -70,7 +70,7 @@ def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[st
 
 def _cuts_in(mesh: Mesh) -> str | None:
     """Where flanks that are not relieved overlap within the working depth."""
-    phi = np.linspace(0, mesh.reach, STEPS)
+    phi = np.linspace(0, mesh.reach, GAP_STEPS)
     front = mesh.free_gaps(phi, mesh.stroke)[0] + mesh.relief(phi)[0]
     if front.min() >= -LEAST_OVERLAP:
         return None

@@ -12,11 +12,11 @@ from flexspline.pipeline.gear_chain import Chain
 
 SMALL = 1e-3
 """Of load or rated torque, the smaller: it turns the gear through its gaps, and hardly winds it up."""
-DIGITS = 6
+ARCSEC_DIGITS = 6
 """Of an arcsec: an equilibrium is found to some 1e-9, whichever the state that it is begun from."""
 TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
-FREE = ("flank_clearance", "bearing_play", TIGHT)
+FREE_ANGLE_TERMS = ("flank_clearance", "bearing_play", TIGHT)
 """Terms that make up the free angle."""
 
 
@@ -53,7 +53,8 @@ def gear_terms(chain: Chain, load_Nm: float, start: Equilibrium) -> Mapping[str,
     }
     # a difference of equal angles is what both solutions leave open, and has no sign
     return {
-        key: round(v, DIGITS) + 0.0 for key, v in {**terms, "total": sum(terms.values())}.items()
+        key: round(v, ARCSEC_DIGITS) + 0.0
+        for key, v in {**terms, "total": sum(terms.values())}.items()
     }
 
 

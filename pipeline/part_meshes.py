@@ -31,7 +31,7 @@ Kind = Literal["swept", "layered", "tetwild"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """In the order in which they are tried."""
 
-COARSER, COARSENINGS = 1.5, 3
+COARSER_EDGES, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
 LAYERED_FIRST = 20_000
 """Elements of a first mesh in layers, where a coarser one has fewer; the next ones follow the error. A shaft
@@ -156,7 +156,7 @@ class PartMeshes:
                 with model.context.progress.stage(f"mesh of the {model.name}"):
                     swept = self.swept(spec, most_elements=most)
             except TooManyElementsError:
-                spec, before = spec.scaled(COARSER), spec
+                spec, before = spec.scaled(COARSER_EDGES), spec
                 continue
             if swept is None:
                 return before

@@ -13,14 +13,18 @@ from flexspline.geometry.design import Bearing, Gear
 from flexspline.geometry.fields import MM_PER_UM
 from flexspline.pipeline.bearing_play import involute_clearance
 
-REACH = 8.0
+PLAY_SIGMAS = 8.0
 """Standard deviations on each side that are integrated: beyond lies 1e-15 of the probability."""
-NODES = 48
+PLAY_NODES = 48
 """Gauss-Legendre points: 1e-8 of the result, also against the root at c_max."""
 
 
 def play_distribution(
-    gear: Gear, bearing: Bearing, play_std_um: float, reach: float = REACH, nodes: int = NODES
+    gear: Gear,
+    bearing: Bearing,
+    play_std_um: float,
+    reach: float = PLAY_SIGMAS,
+    nodes: int = PLAY_NODES,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The play's truncated normal as a quadrature: steps (k,) from c in standard deviations, weights (k,).
 

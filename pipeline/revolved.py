@@ -28,7 +28,7 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.storage import cache_folder
 
-KEPT = 512
+KEPT_PARTS = 512
 """Solved parts remembered: enough for a study's worker, and to go back and forth with a slider."""
 
 
@@ -110,16 +110,16 @@ def _elastic(part: Part) -> Elastic:
     return Elastic.of(part.material)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT_PARTS)
 def _torsion(part: Part, tolerance: float) -> Stiffness:
     return torsional_stiffness(part.meridian, _elastic(part), part.driven, tolerance)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT_PARTS)
 def _lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
     return lobe_stiffness(part.meridian, _elastic(part), supported, tolerance)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT_PARTS)
 def _contact(part: Part, tolerance: float) -> Stiffness:
     return contact_stiffness(part.meridian, _elastic(part), _lobes(part, True, tolerance))

@@ -15,7 +15,7 @@ from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_
 from flexspline.fea.types import Elastic, StressPeak
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
-from flexspline.pipeline.revolved import KEPT, of_1_GPa
+from flexspline.pipeline.revolved import KEPT_PARTS, of_1_GPa
 
 KEPT_FIELDS = 32
 """A field is larger than a few figures by a thousand times."""
@@ -67,7 +67,7 @@ def _body(part: Part) -> Part:
     return of_1_GPa(part.without_holes())
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT_PARTS)
 def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
     """For w0 = 1 mm."""
     return ellipse_stress(
@@ -75,7 +75,7 @@ def _ellipse_peak(part: Part, tolerance: float) -> StressPeak:
     ).peak
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=KEPT_PARTS)
 def _torque_peak(part: Part, tolerance: float) -> StressPeak:
     """For 1 N·m."""
     return _torque_field(part, tolerance).peak

@@ -19,9 +19,9 @@ from flexspline.pipeline.solid_torsion import RIM_ELEMENTS, SOLID_SECONDS, copie
 MOST_ELEMENTS = 100_000
 """Of the quarter or half: 450 000 unknowns. On a thick hat 89 928 took 18 s of the processor for each of the
 two cases, and gave ± 0.05 % where 0.1 % was asked."""
-COARSER = -1
+COARSER_MESH = -1
 """Number of the mesh of its own that is tried where the first one, 0, would have more elements."""
-WORTH = 0.5
+WORTH_SHARE = 0.5
 """Of the bounds that are there already: what a mesh that cannot meet the tolerance must promise. Two such
 meshes of 91 512 and 95 370 elements, 20 and 30 s of the processor, promised ± 0.23 % where ± 0.32 and 0.13 %
 were known, and gave ± 0.62 and 0.19 %."""
@@ -120,9 +120,9 @@ def _own(flexspline: PartModel, number: int, begun: bool, known: float) -> TetMe
     ------
     SolidError : as `lobe_meshes`.
     """
-    expected = promised(flexspline.tolerance, COARSER)
-    first, worth = number == 0 and not begun, expected <= WORTH * known
-    for tried in (number, COARSER) if first and worth else (number,):
+    expected = promised(flexspline.tolerance, COARSER_MESH)
+    first, worth = number == 0 and not begun, expected <= WORTH_SHARE * known
+    for tried in (number, COARSER_MESH) if first and worth else (number,):
         try:
             return _finer(flexspline, tried)
         except TooManyElementsError as fault:

@@ -10,7 +10,7 @@ from flexspline.results.numbers import grouped
 from flexspline.results.peaks import marked
 from flexspline.results.quantities import QUANTITIES
 
-SPREAD = "backlash_arcsec.std"
+STD_KEY = "backlash_arcsec.std"
 
 
 def table(record: dict[str, Any], folder: Path) -> str:
@@ -21,7 +21,7 @@ def table(record: dict[str, Any], folder: Path) -> str:
         value: Any = {**gear, **record}
         for key in entry.key.split("."):
             value = value.get(key) if isinstance(value, dict) else None
-        if value is None and entry.key == SPREAD and "backlash_arcsec" in record:
+        if value is None and entry.key == STD_KEY and "backlash_arcsec" in record:
             lines.append(f"  {entry.name:<64} {NOT_STATED}")
         if value is None or entry.key in ("design", "version"):
             continue

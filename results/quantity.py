@@ -9,7 +9,7 @@ from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
 
 Kind = Literal["number", "count", "bounds", "text"]
 STIFFNESS_UNIT = "N·m/rad"
-MOST_PLACES = 6
+MOST_DECIMALS = 6
 """Digits behind the point: ends that agree so far are printed alike."""
 
 
@@ -81,7 +81,7 @@ class Quantity:
         """Both ends with the same decimals, enough of them that unequal ends look unequal."""
         places = decimals_for(high, self.digits) if self.decimals is None else self.decimals
         while (
-            low != high and grouped(low, places) == grouped(high, places) and places < MOST_PLACES
+            low != high and grouped(low, places) == grouped(high, places) and places < MOST_DECIMALS
         ):
             places += 1
         return f"{grouped(low, places)} to {grouped(high, places)}"

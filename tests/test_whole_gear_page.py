@@ -16,7 +16,7 @@ import whole_gear_figures as figures  # noqa: E402
 import whole_gear_ratcheting as ratcheting  # noqa: E402
 import whole_gear_wall as wall  # noqa: E402
 
-from flexspline.fea.gear.engagement import WITHIN  # noqa: E402
+from flexspline.fea.gear.engagement import TORQUE_SHARE  # noqa: E402
 from flexspline.geometry.sized import WALL_SHARE  # noqa: E402
 
 TEXT = maker.PAGE.read_text(encoding="utf-8")
@@ -63,7 +63,7 @@ def test_a_row_of_ratcheting_is_what_the_page_says() -> None:
     design = figures.sized_design(25, 30)
     model = figures.gear_model(design, design.part("flexspline"))
     found = ratcheting.limit(model, figures.rated_torque(design)[0])
-    assert found == pytest.approx(float(printed[3]), rel=WITHIN)
+    assert found == pytest.approx(float(printed[3]), rel=TORQUE_SHARE)
 
 
 def test_every_row_of_the_catalogues_is_there() -> None:

@@ -27,12 +27,12 @@ from flexspline.geometry.outline import Meridian
 
 ANGLES = 32
 """Contact points per half turn. 64 change K by 0.01 %, 48 by 0.006 % (xb1-40)."""
-MOST_PLACES = 33
+MOST_SEAT_PLACES = 33
 """Along the seat, closer towards its ends. Twice as many change the ratio by 3e-5 at most (seats of up to 513
 nodes), all nodes by 1e-5 (up to 129)."""
 MOST_MESHES, MOST_TRIANGLES = 4, 2400
 """Each has four times the triangles of the last; 2400 take 1.7 s, 7000 take 7 to 8 s."""
-RATE = (0.25, 0.7)
+CHANGE_RATIOS = (0.25, 0.7)
 """Of the ratio's changes from mesh to mesh, the range believed: edges that halve leave a half at singular
 ends of the seat, 1/4 of a smooth field. 0.26 to 0.65 on five random flexsplines and up to five meshes."""
 
@@ -94,7 +94,7 @@ class _Ratios:
 
     def solve(self, mesh: MeridianMesh) -> None:
         with one_thread():
-            seat = seat_compliance(HarmonicModel(mesh, self._material), ANGLES, MOST_PLACES)
+            seat = seat_compliance(HarmonicModel(mesh, self._material), ANGLES, MOST_SEAT_PLACES)
             resting, held = (seat.stiffness(f(seat)) for f in (lift_off_forces, held_forces))
         self.ratios.append(resting / held)
         self.levels.append(MeshLevel(mesh.shortest_edge_mm, mesh.elements, seat.unknowns, resting))
@@ -125,7 +125,7 @@ def settling(ratios: Sequence[float]) -> tuple[float, float]:
     before = ratios[-2] - ratios[-3]
     if last * before <= 0 or abs(last) >= abs(before):  # no series
         return ratios[-1], max(abs(last), abs(before))
-    rate = float(np.clip(last / before, *RATE))
+    rate = float(np.clip(last / before, *CHANGE_RATIOS))
     to_go = last * rate / (1 - rate)
     return ratios[-1] + to_go, abs(to_go)
 

@@ -13,11 +13,11 @@ from scipy.linalg import cho_factor, cho_solve
 from flexspline.fea.axisymmetric.harmonics import HarmonicError
 from flexspline.fea.interior_point import CENTRING, room
 
-EPS = 1e-10
+SEAT_RESIDUAL = 1e-10
 """Forces times gaps, and what the gaps are off by, end below this share of the largest."""
 MOST_ROUNDS = 100
 """Rims of 150 random designs took up to 18 rounds, 2000 random problems up to 20."""
-BACK = 0.995
+SEAT_STEP_SHARE = 0.995
 """Share of the way to the nearest bound that a step may go."""
 
 
@@ -38,7 +38,10 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
     for _ in range(MOST_ROUNDS):
         off = gap - free - matrix @ force
         both = force * gap
-        if np.abs(off).max() < EPS * size and both.max() < EPS * size * force.max():
+        if (
+            np.abs(off).max() < SEAT_RESIDUAL * size
+            and both.max() < SEAT_RESIDUAL * size * force.max()
+        ):
             return force
         factor = cho_factor(matrix + np.diag(gap / force), check_finite=False)
 
@@ -51,9 +54,9 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
         reach = room(force, push, gap, lift)
         left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
         push, lift = towards(left**CENTRING * both.mean() - both - push * lift)
-        reach = BACK * room(force, push, gap, lift)
+        reach = SEAT_STEP_SHARE * room(force, push, gap, lift)
         force, gap = force + reach * push, gap + reach * lift
     raise HarmonicError(
         f"the contact on the seat did not settle in {MOST_ROUNDS} rounds: force times gap is "
-        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {EPS:.0e}"
+        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {SEAT_RESIDUAL:.0e}"
     )

@@ -35,9 +35,9 @@ TAIL_SHARE = 0.1
 """Harmonics are added until the rest is below this share of the tolerance."""
 MOST_HARMONICS = 200
 """Even ones. The end of a loop: the load falls as 1/n³, and cups and hats need about 20."""
-BULK = 0.6
+LOBE_BULK = 0.6
 """Share of the estimated error in the triangles that are refined (Dörfler, SINUM 33 (1996) 1106-1124)."""
-TWICE = 0.45
+LOBE_TWICE_SHARE = 0.45
 """Share of it whose triangles are refined twice a round: two meshes do where it took three, in 0.85 of the
 time (12 cups in bounds 1 % apart, their K within 0.23 % of before)."""
 EFFICIENCY = (2.7, 4.0)
@@ -156,7 +156,7 @@ class _RevolvedLobes:
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         error = self.found.error
-        return refined_twice(mesh, bulk(error, BULK), bulk(error, TWICE))
+        return refined_twice(mesh, bulk(error, LOBE_BULK), bulk(error, LOBE_TWICE_SHARE))
 
 
 def solve_lobes(

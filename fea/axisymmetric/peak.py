@@ -15,7 +15,7 @@ from flexspline.fea.axisymmetric.space import shape_functions
 from flexspline.fea.stress_rule import Largest
 from flexspline.geometry.errors import ComputationError
 
-STEPS = 8
+LATTICE_STEPS = 8
 """Stress is looked at on a lattice of so many steps along each side of a triangle."""
 
 
@@ -134,9 +134,9 @@ def _singular(mesh: MeridianMesh) -> np.ndarray:
 @cache
 def _lattice_values() -> np.ndarray:
     """Shape functions (6, q) on the lattice."""
-    i, j = np.meshgrid(np.arange(STEPS + 1), np.arange(STEPS + 1), indexing="ij")
-    inside = i + j <= STEPS
-    return shape_functions(np.stack([i[inside], j[inside]]) / STEPS)
+    i, j = np.meshgrid(np.arange(LATTICE_STEPS + 1), np.arange(LATTICE_STEPS + 1), indexing="ij")
+    inside = i + j <= LATTICE_STEPS
+    return shape_functions(np.stack([i[inside], j[inside]]) / LATTICE_STEPS)
 
 
 def _counting(
@@ -169,12 +169,12 @@ def _at_distance(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Places and stresses where the outline leaves the excluded neighbourhoods."""
     s = model.space
-    t = np.linspace(0, 1, STEPS + 1)
+    t = np.linspace(0, 1, LATTICE_STEPS + 1)
     shape = _edge_shape(t)
     beyond = _distance(np.einsum("qi,kid->kqd", shape, s.places[s.rim]), singular) - exclusion_mm
     edge, step = np.nonzero(beyond[:, 1:] * beyond[:, :-1] < 0)
     before, after = beyond[edge, step], beyond[edge, step + 1]
-    crossing = _edge_shape((step + before / (before - after)) / STEPS)
+    crossing = _edge_shape((step + before / (before - after)) / LATTICE_STEPS)
     places = np.einsum("ki,kid->kd", crossing, s.places[s.rim[edge]])
     stresses = np.einsum("ki,kic->kc", crossing, nodal[s.rim[edge]])
     return list(zip(places, stresses, strict=True))

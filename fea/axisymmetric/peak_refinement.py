@@ -23,7 +23,7 @@ from flexspline.fea.stress_rule import judged
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import Meridian
 
-BULK = 0.5
+PEAK_BULK = 0.5
 """Share of the estimated energy error in the triangles that are refined, beside those that LOCAL adds."""
 LOCAL = 0.5
 """Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
@@ -121,7 +121,7 @@ class _MeshedField:
         wrong = peak.counted & (found.misfit > allowed)
         # no smaller than needed where the peak is not: those far below it may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
-        return refined(mesh, bulk(found.error, BULK) | (wrong & near))
+        return refined(mesh, bulk(found.error, PEAK_BULK) | (wrong & near))
 
     def field(self, shortfall: str) -> RevolvedField:
         """The field, its peak judged: does it go on rising into the excluded zone?"""

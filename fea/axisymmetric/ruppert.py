@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from flexspline.fea.axisymmetric.meridian_mesh import edge_lengths, signed_areas
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
-FLAT = 1e-9
+FLAT_SHARE = 1e-9
 """A triangle of less area than this share of its longest side squared is a line: rounding leaves such on
 the hull, between points of one straight segment, turned either way."""
 TOUCH = 1e-7
@@ -27,7 +27,7 @@ def lengths(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
 def is_flat(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Mask (m,) of triangles that are lines but for rounding, turned either way."""
     longest = edge_lengths(points, triangles).max(axis=1)
-    return np.asarray(np.abs(signed_areas(points, triangles)) <= FLAT * longest**2)
+    return np.asarray(np.abs(signed_areas(points, triangles)) <= FLAT_SHARE * longest**2)
 
 
 def encroached(points: np.ndarray, edges: np.ndarray) -> np.ndarray:

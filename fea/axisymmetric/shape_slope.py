@@ -29,7 +29,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME, Meridian
 
-BULK = 0.6
+SLOPE_BULK = 0.6
 """As for the lobes."""
 LAYER_POINTS = 16
 """On each edge: a layer may end within it."""
@@ -88,7 +88,7 @@ class _Twisted:
         return self.error < self._tolerance
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, BULK))
+        return refined(mesh, bulk(self._found.error, SLOPE_BULK))
 
 
 def moved_stiffness(found: Twist, outline: Meridian) -> float:

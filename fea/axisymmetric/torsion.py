@@ -14,9 +14,9 @@ from flexspline.fea.refinement import refine
 from flexspline.fea.types import NMM_PER_NM, Elastic, MeshLevel, Stiffness
 from flexspline.geometry.outline import Meridian
 
-BULK = 0.75
+TORSION_BULK = 0.75
 """Share of the gap whose triangles are refined each round (Dörfler, SINUM 33, 1996)."""
-TWICE = 0.5
+TORSION_TWICE_SHARE = 0.5
 """Share of the gap whose triangles are refined twice a round: they lie where the stress is singular, and K to
 0.2 % takes two thirds of the time."""
 MOST_TRIANGLES = 400_000
@@ -89,7 +89,9 @@ class _Bounds:
         return 2 * (self.upper - self.lower) / (self.upper + self.lower) < self._tolerance
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined_twice(mesh, bulk(self._share, BULK), bulk(self._share, TWICE))
+        return refined_twice(
+            mesh, bulk(self._share, TORSION_BULK), bulk(self._share, TORSION_TWICE_SHARE)
+        )
 
 
 def bulk(share: np.ndarray, fraction: float) -> np.ndarray:

@@ -38,9 +38,9 @@ CHORD_ANGLE = pi / 12
 """Largest opening angle of a first chord: its sagitta, 1/30 of it, cannot fold a triangle."""
 SMALLEST_ANGLE = pi / 180 * 24
 """Ruppert's proof covers 20.7°; in practice up to 30° ends, and P2 gains little beyond 24°."""
-ROUNDS = 300
-"""158 outlines of random designs took 11 to 25; what has no end is stopped by MOST_POINTS as a rule."""
-MOST_POINTS = 20_000
+OUTLINE_ROUNDS = 300
+"""158 outlines of random designs took 11 to 25; what has no end is stopped by OUTLINE_POINTS as a rule."""
+OUTLINE_POINTS = 20_000
 """An outline without crossings needs a few hundred; one that crosses itself has no end."""
 
 
@@ -58,8 +58,8 @@ def triangulate(outline: Meridian, inner: tuple[Segment, ...] = ()) -> MeridianM
     """
     lines = Meridian((*outline.segments, *inner))
     points, edges, segment = _first_edges(outline, inner)
-    for _ in range(ROUNDS):
-        if len(points) > MOST_POINTS:
+    for _ in range(OUTLINE_ROUNDS):
+        if len(points) > OUTLINE_POINTS:
             break
         crowded = encroached(points, edges)
         if not crowded.any():

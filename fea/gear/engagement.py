@@ -5,7 +5,7 @@ is out, the others take its load, and they are pressed out in turn. At the torqu
 flexspline jumps to its next spaces. So it does where a tooth is bent by half its thickness, or pressed
 beyond the root circle of its space: a soft circular spline ends so, and small displacements would let
 teeth pass through each other. Teeth are loaded evenly along their faces: place by place the torque
-moves by less than WITHIN. Elastic, without friction, and nothing but rim, race, balls, teeth and
+moves by less than TORQUE_SHARE. Elastic, without friction, and nothing but rim, race, balls, teeth and
 circular spline yields: a real gear ratchets earlier.
 """
 
@@ -23,11 +23,11 @@ from flexspline.fea.gear.model import GearModel
 from flexspline.fea.types import NMM_PER_NM
 from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 
-WITHIN = 0.05
+TORQUE_SHARE = 0.05
 """Of the torque at which no tooth is left."""
 MOST_DOUBLINGS = 14
 """Each way from the torque where the search begins: what is 16 000 times off is no gear."""
-BENT = pi / 4
+BENT_MODULES = pi / 4
 """Modules: half a tooth's thickness at the pitch circle."""
 THROUGH = ADDENDUM + DEDENDUM
 """Modules beyond full depth: a tooth's height."""
@@ -90,7 +90,7 @@ class Engagement:
         module = 2 * model.mesh.pitch_radius / model.teeth
         pressed = at.forces[: 2 * len(model.tooth_angles)].max() / model.teeth_per_station
         deepest = float(self.withdrawal(at).min())
-        return bool(model.pair * pressed > BENT * module or deepest < -THROUGH * module)
+        return bool(model.pair * pressed > BENT_MODULES * module or deepest < -THROUGH * module)
 
     def held(self, torque_Nm: float, before: Held | None = None) -> Held | None:
         """With all teeth that the load leaves within the working depth; None: no tooth is left.
@@ -136,7 +136,7 @@ class Engagement:
             low, holds = high, found
         else:
             return None
-        while high > (1 + WITHIN) * low:
+        while high > (1 + TORQUE_SHARE) * low:
             middle = sqrt(low * high)
             found = self.held(middle, holds)
             if found:

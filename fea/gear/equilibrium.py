@@ -19,12 +19,12 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from flexspline.fea.interior_point import CENTRING, room
 from flexspline.geometry.errors import ComputationError
 
-EPS = 1e-11
+GEAR_RESIDUAL = 1e-11
 """Forces times gaps, and what gaps and torque are off by, end below this share of the largest. With 1e-9
 places that barely touch turned one of 35 random gears by 0.2 % of its angle."""
 MOST_ROUNDS = 120
 """35 random designs took up to 32 at 1330 torques, 19 in the median."""
-BACK = 0.99
+GEAR_STEP_SHARE = 0.99
 """Share of the way to the nearest bound that a step may go."""
 LOADED = 1e-5
 """Of the largest force: what is below is not in contact. Where gaps are open some 1e-8 is left."""
@@ -116,11 +116,14 @@ def _among_contacts(
         force, rotation = force + by - turn * aside, rotation + turn
         pulls = force <= 0
         gaps = at.free + rotation * at.turning + at.compliance[:, i] @ force
-        enter = ~on & (gaps < -EPS * size)
+        enter = ~on & (gaps < -GEAR_RESIDUAL * size)
         if not pulls.any() and not enter.any():
             left = gaps[i] + hertz * force ** (2 / 3)
             lack = abs(torque + float(turning @ force))
-            if np.abs(left).max() < EPS * size and lack < EPS * arm * force.max():
+            if (
+                np.abs(left).max() < GEAR_RESIDUAL * size
+                and lack < GEAR_RESIDUAL * arm * force.max()
+            ):
                 found = np.zeros(len(at.free))
                 found[i] = force
                 return found, rotation
@@ -146,9 +149,9 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
         off, lack = gap - fits, torque + float(turning @ force)
         both = force * gap
         if (
-            np.abs(off).max() < EPS * size
-            and abs(lack) < EPS * arm * force.max()
-            and both.max() < EPS * size * force.max()
+            np.abs(off).max() < GEAR_RESIDUAL * size
+            and abs(lack) < GEAR_RESIDUAL * arm * force.max()
+            and both.max() < GEAR_RESIDUAL * size * force.max()
         ):
             return force, rotation
         if not np.isfinite(both).all():
@@ -179,11 +182,11 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
         left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
         product = left**CENTRING * both.mean() - both - push * lift
         push, lift, turn = towards(dpotrs(factor, product / force + off, lower=1)[0], product)
-        reach = BACK * room(force, push, gap, lift)
+        reach = GEAR_STEP_SHARE * room(force, push, gap, lift)
         force, gap, rotation = force + reach * push, gap + reach * lift, rotation + reach * turn
     raise EquilibriumError(
         f"the contact forces did not settle in {MOST_ROUNDS} rounds: force times gap is "
-        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {EPS:.0e}"
+        f"{both.max() / (size * force.max()):.1e} of the largest, allowed {GEAR_RESIDUAL:.0e}"
     )
 
 

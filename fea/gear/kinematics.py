@@ -18,7 +18,7 @@ from flexspline.geometry.circular_spline import DEEPEST
 
 Flanks = Literal["plain", "relieved", "conjugate", "drawn"]
 Face = Literal["relieved", "straight"]
-STEPS = 1000
+GAP_STEPS = 1000
 """Of the search for a gap's largest value: a parabola's is met to 1e-6 of it."""
 
 
@@ -98,7 +98,7 @@ class Mesh:
         """
         if self.flanks == "plain":
             return np.zeros_like(phi), np.zeros_like(phi)
-        grid = np.linspace(0, self.reach, STEPS)
+        grid = np.linspace(0, self.reach, GAP_STEPS)
         front, back = self.free_gaps(grid, self.stroke)
         if self.flanks == "drawn":
             off = [self.drawn_gap(grid) - front, self.drawn_gap(-grid) - back]
@@ -125,12 +125,12 @@ class Mesh:
     @property
     def largest_relief(self) -> float:
         """Within reach [mm]."""
-        return float(max(part.max() for part in self.relief(np.linspace(0, self.reach, STEPS))))
+        return float(max(part.max() for part in self.relief(np.linspace(0, self.reach, GAP_STEPS))))
 
     @property
     def relieved_from(self) -> float:
         """φ [rad] of the largest gap of the plain front flank, beyond which it is relieved."""
-        grid = np.linspace(0, self.reach, STEPS)
+        grid = np.linspace(0, self.reach, GAP_STEPS)
         return float(grid[self.free_gaps(grid, self.stroke)[0].argmax()])
 
     def stations(self, teeth: int, most: int) -> tuple[np.ndarray, float]:

@@ -27,7 +27,7 @@ from flexspline.fea.types import Elastic
 
 ACROSS, UP = 8, 24
 """Elements through the tooth and along it; twice as many move its compliance by 0.2 %."""
-SPREAD = 0.15
+LOAD_SPREAD_SHARE = 0.15
 """Of lever, tip or thickness, the least: so far the load is spread about the pitch point. Half of it moves
 the compliance by 0.3 %."""
 PUSH = LinearForm(
@@ -79,7 +79,7 @@ def clamped(
     basis = Basis(mesh, element)
     elastic = lame_parameters(material.youngs_modulus_MPa, material.poissons_ratio)
     c, s = cos(pressure_angle), sin(pressure_angle)
-    spread = SPREAD * min(lever, tip, thickness)
+    spread = LOAD_SPREAD_SHARE * min(lever, tip, thickness)
 
     flank = FacetBasis(mesh, element, facets="flank")
     load = PUSH.assemble(flank, lever=lever, spread=spread, c=c, s=s)

@@ -18,7 +18,7 @@ from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import SAME
 
-CHUNK = 20_000
+CHUNK_ELEMENTS = 20_000
 """Elements handled at once: bounds the memory of the gradients at quadrature points."""
 XX = BilinearForm(lambda u, v, w: u.grad[0] * v.grad[0])
 YY = BilinearForm(lambda u, v, w: u.grad[1] * v.grad[1])
@@ -87,8 +87,8 @@ def _derivatives(space: SolidSpace) -> tuple[np.ndarray, dict[tuple[int, int], n
     pairs, place = np.unique(numbers, return_inverse=True)
     place = place.reshape(numbers.shape)
     d = {ij: np.zeros(len(pairs)) for ij in FORMS}
-    for start in range(0, m, CHUNK):
-        part = np.arange(start, min(start + CHUNK, m))
+    for start in range(0, m, CHUNK_ELEMENTS):
+        part = np.arange(start, min(start + CHUNK_ELEMENTS, m))
         basis, where = basis_of(space.curved, elements=part), place[..., part].ravel()
         for ij, form in FORMS.items():
             d[ij] += np.bincount(where, form.elemental(basis).data, len(pairs))

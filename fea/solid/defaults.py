@@ -28,7 +28,7 @@ NEAR_OF_RADIUS = 50
 thicker wall is meshed as finely at its edges."""
 LEAST_GRADING = 2
 """Largest over smallest edge of a flexspline, at least: edges grow away from the singular ones in all."""
-GROWTH = 0.7
+EDGE_GROWTH = 0.7
 """Of the edge length per distance from the singular edges, of that same mesh."""
 ENVELOPES_PER_WALL, ENVELOPES_PER_FAR = 20, 100
 """How far the mesher may stray, in a flexspline's wall and a shaft's largest edge: the nodes are put back."""
@@ -71,7 +71,7 @@ def first_spec(part: Part, edge_length_mm: float | None = None) -> MeshSpec:
         near = min(near, far)
     envelope = min(envelope, near / ENVELOPES_PER_EDGE)
     return MeshSpec(
-        grading=Grading(near, far, growth=GROWTH),
+        grading=Grading(near, far, growth=EDGE_GROWTH),
         envelope=envelope,
         snap_limit=5 * envelope,
         # half the outer radius: elements twice as long around the tube, fair ones at the bolts

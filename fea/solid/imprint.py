@@ -18,7 +18,7 @@ from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.outline import SAME, joins_smoothly
 from flexspline.geometry.surfaces import Surface, Swept
 
-NEAR = 0.3
+NEAR_EDGE_SHARE = 0.3
 """An end nearer to the patch edge than this share of a crossing mesh edge moves onto it."""
 SLIP = 0.1
 """Share of its way by which a moved node may leave another surface: along a curved one, not across one."""
@@ -85,7 +85,7 @@ def _with(mesh: Meshed, edge: PatchEdge, surfaces: Sequence[Surface], space: Mes
     beyond[np.abs(beyond) < SAME] = 0.0
     crossing = sides[beyond[sides].prod(axis=1) < 0]
     share = np.abs(beyond[crossing]) / np.abs(np.diff(beyond[crossing]))
-    near = np.unique(crossing[share < NEAR])
+    near = np.unique(crossing[share < NEAR_EDGE_SHARE])
     reached = edge.reached(whole[near])
     stay = _stay(mesh, near, whole[near], reached, surfaces)
     near = near[stay]

@@ -20,7 +20,7 @@ from flexspline.geometry.surfaces import Surface
 
 BENT_ROUNDS = 5
 """Of halving bent edges; their number falls from round to round, or no more are."""
-BENT = 0.03
+BENT_SHARE = 0.03
 """Of an edge's length: how far its middle lies off the straight line, where halving helps: an arc of 14°
 has so much. Of what loses less, a few edges may be straight within the check of areas."""
 
@@ -60,7 +60,7 @@ def quadratic(
         bent[np.unique(cells[jacobian_ratio(nodes, cells) < JACOBIAN_RATIO, 4:]) - n] = True
         off = np.linalg.norm(nodes[n:] - points[edges].mean(axis=1), axis=1)
         length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-        bent &= off > BENT * length
+        bent &= off > BENT_SHARE * length
         if not left or not 0 < bent.sum() < before:
             break
         before = bent.sum()

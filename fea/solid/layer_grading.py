@@ -15,9 +15,9 @@ from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import snap_to_surfaces, undo_inverted
 from flexspline.geometry.surfaces import Surface
 
-ROUNDS = 60
+GRADING_ROUNDS = 60
 """Of halving, the longest edges first: 150 random shafts took 5 at most."""
-AT_ONCE = 2.0
+ROUND_RATIO = 2.0
 """A round halves what is longer than is asked and than the longest edge over this, both relative."""
 WHOLE_STEP = 1.01
 """Of the plan's step about the axis: rounding must not halve it."""
@@ -27,13 +27,15 @@ def graded(
     points: np.ndarray, mesh: Simplices, surfaces: Sequence[Surface], grading: Grading, most: float
 ) -> tuple[np.ndarray, Simplices]:
     """Edges halved until none is longer than the grading asks; new nodes of the boundary on its surfaces."""
-    for _ in range(ROUNDS):
+    for _ in range(GRADING_ROUNDS):
         edges = mesh.edges()
         seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
         lengths = _relative_lengths(points, edges, seams, grading)
         if lengths.max() <= 1:
             return points, mesh
-        mesh, cut_edges = halved(mesh, edges, lengths, lengths > max(1.0, lengths.max() / AT_ONCE))
+        mesh, cut_edges = halved(
+            mesh, edges, lengths, lengths > max(1.0, lengths.max() / ROUND_RATIO)
+        )
         if len(mesh.tets) > most:
             raise TooManyElementsError(len(mesh.tets), most)
         points = with_middles_of(points, mesh, cut_edges, surfaces)

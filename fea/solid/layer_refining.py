@@ -17,7 +17,7 @@ from flexspline.fea.solid.layers import RING_STEP
 from flexspline.fea.solid.polar import polar
 from flexspline.geometry.surfaces import Surface
 
-GROWTH = 0.7
+LAYER_GROWTH = 0.7
 """Of the length about the axis beyond that across, per distance from holes and keyway: as in a first mesh."""
 CUT = 0.7
 """Of an element's longest edge: shorter ones are not halved with it, so that long elements become fair."""
@@ -25,11 +25,11 @@ LEFT_AT_EDGE, LEFT_AWAY = 1 / 4, 1 / 64
 """Of an element's squared error in each of its parts. At a singular edge all errors together halve with the
 length (a change of patch, the slowest), and two or three parts stay there; elsewhere they fall with its
 fourth power, in eight parts: 1/128, and half of them are halved along fewer edges."""
-AT_ONCE = 0.04
+ROUND_SHARE = 0.04
 """Of the elements, that a round halves at most."""
-PARTS = 7.0
+ELEMENTS_PER_HALVING = 7.0
 """More elements by one that is halved; its neighbours' parts come on top, so that the last round is small."""
-ROUNDS = 40
+HALVING_ROUNDS = 40
 """Of halving: 2 to 3 double the elements."""
 
 
@@ -45,11 +45,11 @@ def refined(
     `error` (m,) is the elements' share of the energy's, any unit; new nodes of the boundary are on its
     surfaces. A few more than wanted are made.
     """
-    for _ in range(ROUNDS):
+    for _ in range(HALVING_ROUNDS):
         elements = len(mesh.tets)
         if elements >= wanted:
             break
-        count = 1 + int(min(AT_ONCE * elements, (wanted - elements) / PARTS))
+        count = 1 + int(min(ROUND_SHARE * elements, (wanted - elements) / ELEMENTS_PER_HALVING))
         largest = np.zeros(elements, bool)
         largest[np.argpartition(error, -count)[-count:]] = True
         seams = seams_of(points, mesh.facets, mesh.facet_surface, surfaces)
@@ -103,6 +103,6 @@ def _lengths(
     np.minimum.at(across, of_element, meridian[of_element].max(axis=1, keepdims=True))
     away = distance_from(seams.nodes[seams.singular & ~seams.revolved], points, points)
     away = away[edges].mean(axis=1)
-    around = np.minimum(across + GROWTH * away, WHOLE_STEP * RING_STEP * r)
+    around = np.minimum(across + LAYER_GROWTH * away, WHOLE_STEP * RING_STEP * r)
     share = np.divide(across, around, out=np.ones_like(r), where=around > across)
     return edges, np.hypot(meridian, r * turn * share), of_element

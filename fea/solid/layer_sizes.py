@@ -10,7 +10,7 @@ import numpy as np
 from flexspline.fea.solid.layers import Layers
 from flexspline.geometry.outline import SAME
 
-POINTS = 64
+GAUSS_POINTS = 64
 """Gauss's, between radii at which a line begins or ends: square roots there leave 1e-6 of the integral."""
 
 
@@ -56,7 +56,7 @@ def _radii(layers: Layers, low: float, high: float) -> Iterator[tuple[np.ndarray
         breaks |= {rc - rh, rc + rh}
     if part.keyway is not None:
         breaks |= {part.keyway.floor, float(np.hypot(part.keyway.floor, part.keyway.half_width))}
-    x, w = np.polynomial.legendre.leggauss(POINTS)
+    x, w = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     for a, b in pairwise(sorted(c for c in breaks if low <= c <= high)):
         yield (a + b) / 2 + (b - a) / 2 * x, (b - a) / 2 * w
 

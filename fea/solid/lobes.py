@@ -29,7 +29,7 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 
-STEP = 0.37
+LOBE_STEP = 0.37
 """Of √(t/R), about the axis, for 0.5 %: 3.0° on a wall of a fiftieth of the radius. The error of quadratic
 elements goes with the step's fourth power. With 0.40, and 0.3 of the tolerance on the meridian, two of six
 first meshes of random parts missed their tolerance by 2 and 14 %, and a second one took 15 and 11 s of the
@@ -37,7 +37,7 @@ processor."""
 MERIDIAN_SHARE, STEP_SHARE = 0.25, 0.25
 """Of the tolerance: what the harmonics' estimate of the meridian's error may be, and about what the steps
 take. The usual scale of 2 makes half of the tolerance of the first."""
-BULK = 0.4
+SOLID_BULK = 0.4
 """Share of that error whose triangles are refined each round: more rounds, fewer triangles too many."""
 TAIL = 1e-3
 """Of the energy: harmonics beyond play no part in where the mesh is refined."""
@@ -49,7 +49,7 @@ def finer_mesh(
     wall_mm: float, radius_mm: float, material: Elastic, tolerance: float, number: int
 ) -> Finer:
     """What the mesh of that number (0, 1, …) of the case without support asks for."""
-    step = STEP * sqrt(wall_mm / radius_mm) * (tolerance / 0.005) ** 0.25 * NEXT_STEP**number
+    step = LOBE_STEP * sqrt(wall_mm / radius_mm) * (tolerance / 0.005) ** 0.25 * NEXT_STEP**number
     wanted = MERIDIAN_SHARE * tolerance * NEXT_SHARE**number
 
     def adapted(mesh: MeridianMesh) -> MeridianMesh:
@@ -82,7 +82,7 @@ class _FreeRim:
         return self._found.estimate < self._wanted
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, BULK))
+        return refined(mesh, bulk(self._found.error, SOLID_BULK))
 
 
 def lobe_stiffness(

@@ -18,7 +18,7 @@ VOLUME_TOLERANCE = 0.01
 """Parabolas for arcs of a coarse mesh lose 0.1 %; a mesh with a hole closed is off by more."""
 OFF_PLANE = 1e-6
 """Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
-FLAT = 1e-7
+LEAST_SHAPE = 1e-7
 """Least volume over the cube of the longest edge; 0.12 for a regular tetrahedron, 0.006 or more in meshes."""
 
 
@@ -27,7 +27,7 @@ def refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
     corner = points[tets]
     sides = [corner - np.roll(corner, k, axis=1) for k in (1, 2)]
     longest = np.linalg.norm(sides, axis=3).max(axis=(0, 2))
-    flat = signed_volumes(points, tets) < FLAT * longest**3
+    flat = signed_volumes(points, tets) < LEAST_SHAPE * longest**3
     if flat.any():
         raise MeshQualityError(
             f"{int(flat.sum())} elements are flat once their nodes are on the CAD"

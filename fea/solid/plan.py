@@ -34,9 +34,9 @@ FLATTENED = 0.3
 OFF_LINE = 0.12
 """Of a triangle's height over an edge of a line: how far the line's middle may lie off the edge's, into it. A
 middle node moved by 1/4 of the height makes the Jacobian 0 at the edge's ends."""
-ROUNDS = 60
+PLAN_ROUNDS = 60
 """Plans of 150 random shafts took 30 at most."""
-MOST_POINTS = 4_000
+PLAN_POINTS = 4_000
 """A plan is repeated for each layer: more, and lines lie too near each other."""
 
 
@@ -61,8 +61,8 @@ def triangulated(curves: Sequence[Curve], sector: float, smallest_mm: float) -> 
     largest = np.array([c.largest_share for c in curves])
     while (large := (np.diff(own.share, axis=1)[:, 0] > largest[own.owner] * (1 + TOUCH))).any():
         own.split(large)
-    for _ in range(ROUNDS):
-        if len(own.points) > MOST_POINTS:
+    for _ in range(PLAN_ROUNDS):
+        if len(own.points) > PLAN_POINTS:
             break
         crowded = encroached(own.points, own.ends)
         if crowded.any():

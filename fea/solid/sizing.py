@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.fea.solid.errors import SolidError
 from flexspline.fea.solid.tetwild import Background
 
-MOST_POINTS = 500_000
+MOST_GRID_POINTS = 500_000
 """Of a grid of the wanted edge length in the part's box: the mesher would take hours."""
 
 
@@ -27,11 +27,11 @@ class Grading:
 
 
 def refuse_beyond(points: float, edge_mm: float) -> None:
-    """Raise SolidError where edges of this length ask for more than MOST_POINTS."""
-    if points > MOST_POINTS:
+    """Raise SolidError where edges of this length ask for more than MOST_GRID_POINTS."""
+    if points > MOST_GRID_POINTS:
         raise SolidError(
             f"edges of {edge_mm:.3g} mm ask for a mesh of some {points:.2g} points, at most"
-            f" {MOST_POINTS}: raise solver.edge_length_mm"
+            f" {MOST_GRID_POINTS}: raise solver.edge_length_mm"
         )
 
 
@@ -47,7 +47,7 @@ def graded_background(
 
     Raises
     ------
-    SolidError : MOST_POINTS are too few for such short edges.
+    SolidError : MOST_GRID_POINTS are too few for such short edges.
     """
     from scipy.spatial import Delaunay, cKDTree
 

@@ -24,7 +24,7 @@ LEAST_STEPS = 2
 STEP_OF_EDGE = 0.5
 """Step about the axis beside the slot, on the floor's corner, over the grading's largest edge: with that the
 slot's corners and the patch edges hold alike shares of the error on the example's shaft."""
-GROWTH = 1.6
+STEP_GROWTH = 1.6
 """Of one step about the axis to the next, away from the slot's side."""
 LARGEST_STEP = radians(20)
 """Far from the slot, where the shaft is in plain torsion: 15° and 20° differ by 6e-5 of the example's K,
@@ -34,7 +34,7 @@ NEAR_RATIO, FAR_RATIO, GROWTH_RATIO = 0.3, 1.75, 1.6
 number counts, and short edges at singular points alone cost few. The example's shaft: K ± 0.30 % by 15 900
 elements; 0.2 and 1.5 give ± 0.15 % by 21 300; the grading as it is 0.6 % by 40 000. With 2.0 for the second a
 check refuses the mesh of a shaft with a short, deep slot."""
-POINTS = 24
+BLOCK_EDGE_POINTS = 24
 """Along each of the block's edges, where the mesh is fine: closer than any edge there."""
 
 
@@ -84,7 +84,7 @@ class Block:
     def finer(self, grading: Grading) -> Finer:
         """What the meridian must have beside the grading: shorter edges along `edges`, where the stress
         is singular, as the side and the floor are all of the slot's length."""
-        along = np.linspace(0, 1, POINTS)
+        along = np.linspace(0, 1, BLOCK_EDGE_POINTS)
         places = np.vstack([s.at(along) for s in self.edges])
         edge = sqrt(grading.near * grading.far)
         return Finer(LARGEST_STEP, tuple(map(tuple, places.tolist())), edge_mm=edge)
@@ -112,7 +112,7 @@ class Block:
         left = sector - self.angle
         steps = [first]
         while sum(steps) < left:
-            steps.append(min(LARGEST_STEP, GROWTH * steps[-1]))
+            steps.append(min(LARGEST_STEP, STEP_GROWTH * steps[-1]))
         beyond = np.cumsum(steps) * left / sum(steps)
         return np.concatenate(
             [np.arange(0, self.angle - SAME, first), [self.angle], self.angle + beyond]

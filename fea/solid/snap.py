@@ -10,7 +10,7 @@ from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.surfaces import Plane, Surface, sector_planes
 
-ROUNDS = 40
+PROJECTION_ROUNDS = 40
 """Alternating projections: surfaces that meet at 90° agree after two, at 45° each round halves the
 distance, so 40 reach rounding."""
 AGREED = 1e-8
@@ -19,7 +19,7 @@ FLATTENED = 0.1
 """Share of its volume: a tetrahedron that keeps less is a sliver, whose curved copy can turn inside out."""
 MOST_PASSES = 10
 """Each takes back the nodes of what the one before flattened; a mesh that is not done then is refused."""
-SETTLED = 1e-6
+SETTLED_mm = 1e-6
 """[mm] Nearer than this to a surface is on it: a nanometre, where the smallest length of a design is 1 µm."""
 
 
@@ -85,14 +85,14 @@ def _nodes_by_surfaces(
 def common_point(points: np.ndarray, group: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
     """Alternating projections, and whether each point settled on all surfaces."""
     moved = points
-    for _ in range(ROUNDS if len(group) > 1 else 1):
+    for _ in range(PROJECTION_ROUNDS if len(group) > 1 else 1):
         before = moved
         for surface in group:
             moved = surface.project(moved)
         if np.abs(moved - before).max() < AGREED:
             break
     off = np.max([np.abs(s.project(moved) - moved).max(axis=1) for s in group], axis=0)
-    return moved, off < SETTLED
+    return moved, off < SETTLED_mm
 
 
 def _nearest_alone(points: np.ndarray, group: Sequence[Surface], limit: float) -> np.ndarray:

@@ -18,7 +18,7 @@ import numpy as np
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
-from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
+from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
 from flexspline.fea.solid.load_cases import Solved, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
@@ -130,7 +130,7 @@ class _SolidTorsion:
             return None
         made = self._by_error(mesh, self._errors)
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
-            self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, FALLS
+            self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, ERROR_RATIOS
             return made
         now_s, step = self._deadline.elapsed(), near_step(self._tolerance, self.half)
         longer = LONGER * NEAR_STEP[1] / step

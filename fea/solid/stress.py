@@ -20,7 +20,7 @@ from flexspline.fea.solid.elements import (
 )
 from flexspline.fea.types import Elastic, TetMesh
 
-CHUNK = 2000
+STRESS_CHUNK_ELEMENTS = 2000
 """Elements at a time: their stresses at the quadrature points, 1.6 MB, stay in the processor's cache."""
 
 
@@ -57,9 +57,9 @@ def _averaged(curved: Any, mesh: TetMesh, u: np.ndarray, material: Elastic) -> n
 
 
 def _parts(elements: int) -> Iterator[np.ndarray]:
-    """The elements' numbers, CHUNK at a time."""
-    for start in range(0, elements, CHUNK):
-        yield np.arange(start, min(start + CHUNK, elements))
+    """The elements' numbers, STRESS_CHUNK_ELEMENTS at a time."""
+    for start in range(0, elements, STRESS_CHUNK_ELEMENTS):
+        yield np.arange(start, min(start + STRESS_CHUNK_ELEMENTS, elements))
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from flexspline.geometry.outline import Meridian
 
 PLAN_EDGE = 1.2
 """Largest edge in the plan beside a hole, in hole radii."""
-ROUNDS = 60
+BISECTION_ROUNDS = 60
 """A round bisects what is too long; 28 parts of random designs took 7 at most."""
 MOST_ELEMENTS = 500_000
 """2 million unknowns and 16 GB: more is a part of extreme proportions, refused before it is built."""
@@ -86,7 +86,7 @@ def plan_mesh(
 
 def _sized(mesh: MeridianMesh, wanted: Callable[[np.ndarray], np.ndarray]) -> MeridianMesh:
     """No edge longer than `wanted` at its triangle's centre."""
-    for _ in range(ROUNDS):
+    for _ in range(BISECTION_ROUNDS):
         corner = mesh.points[mesh.triangles]
         longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
         large = longest > wanted(corner.mean(axis=1))

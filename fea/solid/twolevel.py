@@ -25,8 +25,8 @@ EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
 MOST_STEPS = 1000
 """22 to 93 were measured on cups from 0.1 to 1.1 million unknowns, to ‖r‖/‖f‖ of 1e-10; a thin free ring
 takes the most."""
-DEGREE, REACH = 3, 10.0
-"""Smoothing: products with K per pass, and the part of the spectrum it covers, largest/REACH up."""
+DEGREE, SMOOTHED_RATIO = 3, 10.0
+"""Smoothing: products with K per pass, and the part of the spectrum it covers, largest/SMOOTHED_RATIO up."""
 SPECTRUM_STEPS, SPECTRUM_SAFETY = 20, 1.1
 """The largest eigenvalue is seen from below; underestimated by a tenth the smoother would amplify it."""
 
@@ -116,7 +116,7 @@ class _Smoother:
         jacobi: Operator = self._inverse.__matmul__
         seen = conjugate_gradients(matrix.__matmul__, jacobi, start, SPECTRUM_STEPS)
         high = SPECTRUM_SAFETY * seen.spectrum[1]
-        low = high / REACH
+        low = high / SMOOTHED_RATIO
         self._middle, self._half = (high + low) / 2, (high - low) / 2
 
     def __call__(self, r: np.ndarray) -> np.ndarray:

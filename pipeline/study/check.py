@@ -13,7 +13,7 @@ from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
 from flexspline.pipeline.study.study import Study, StudyError, is_whole, location_of
 
-SPREAD = "backlash_arcsec.std"
+STD_KEY = "backlash_arcsec.std"
 SMALLEST_SPREAD = 1e-6
 """Of the value: no gauge tells a part in a million, and differences of K drown in rounding."""
 
@@ -40,7 +40,7 @@ def check(study: Study) -> None:
             if key not in FIGURES:
                 said = getattr(file, table)[key] if table == "objective" else {}
                 raise StudyError(f'{table}."{key}"', said, not_a_figure(key))
-            if key == SPREAD and not _always_stated(study):
+            if key == STD_KEY and not _always_stated(study):
                 reason = "needs a standard deviation above 0 in the design's [uncertainty]"
                 raise StudyError(f'{table}."{key}"', {}, reason)
     for key, limit in file.constraint.items():

@@ -39,7 +39,7 @@ GIVEN_BY: dict[Solve, tuple[str, ...]] = {
 SIZES = ("flexspline_mass_g", "flexspline_length_mm", "shaft_mass_g", "shaft_length_mm")
 """Need no solve."""
 FIGURES: tuple[str, ...] = (*(k for keys in GIVEN_BY.values() for k in keys), *SIZES)
-USUAL: tuple[Solve, ...] = ("torsion", "lobes", "ellipse")
+USUAL_SOLVES: tuple[Solve, ...] = ("torsion", "lobes", "ellipse")
 """Solved for every design of a grid, sobol or optimize study, asked for or not."""
 TOTAL = "backlash_arcsec.total"
 USUAL_FIGURES = ("K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", TOTAL)

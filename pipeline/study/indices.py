@@ -18,7 +18,7 @@ MOST_GROUPS = 64
 """Of sample blocks, left out in turn: a standard deviation from so many is known to 9 %."""
 PRINTED = 0.005
 """Half the last digit shown: no interval is narrower."""
-WIDEST = 0.15
+WIDEST_INTERVAL = 0.15
 """± of an index beyond which it says too little to be shown."""
 NET = e**0.5
 """A scrambled net's standard deviation is at most so many times that of independent points (Owen, Ann.
@@ -44,7 +44,7 @@ class Indices:
     @property
     def told(self) -> bool:
         """Whether every index is known well enough to be shown."""
-        return self.widest <= WIDEST
+        return self.widest <= WIDEST_INTERVAL
 
 
 def groups_of(blocks: int) -> list[slice]:

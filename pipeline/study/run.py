@@ -12,7 +12,7 @@ from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
 from flexspline.pipeline.study.drive import Source, StudyProgress, evaluate_all, is_complete
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
-from flexspline.pipeline.study.figures import USUAL
+from flexspline.pipeline.study.figures import USUAL_SOLVES
 from flexspline.pipeline.study.holes import DRIFT, HolesEffect, UnknownEffect, drifts, holes_of
 from flexspline.pipeline.study.plan import Sobol, grid
 from flexspline.pipeline.study.result import StudyResult
@@ -33,7 +33,7 @@ def source_of(study: Study, holes: HolesEffect | None = None) -> Source:
     """Where a study's designs come from, and what corrects their K_e for holes."""
     if study.file.run.method == "tolerance":
         return scattered(study, holes)
-    solves = solves_of(study, USUAL)
+    solves = solves_of(study, USUAL_SOLVES)
     if study.file.run.method == "optimize":
         return Sampled(study, solves, holes=holes)
     plan = grid(study) if study.file.run.method == "grid" else Sobol(study)

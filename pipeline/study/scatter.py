@@ -12,11 +12,11 @@ import numpy as np
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.claims import Row
-from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST, Indices, sampled_indices
+from flexspline.pipeline.study.indices import CONFIDENCE, WIDEST_INTERVAL, Indices, sampled_indices
 from flexspline.pipeline.study.surface import ResponseSurface, surface_through
 from flexspline.pipeline.study.tolerance import ScatteredInput
 
-FACTORS = (0.75, 0.5, 0.25, 0.0)
+TIGHTENING_FACTORS = (0.75, 0.5, 0.25, 0.0)
 """A tolerance times this; 0 is a perfect part."""
 SURFACE_POINTS = 2**13
 """Of a Sobol sequence, a power of 2 as its balance needs; the surface costs nothing to evaluate."""
@@ -163,9 +163,9 @@ def attributed(
     if len(whole) < LEAST_BLOCKS or np.ptp(whole[:, [0, -1]]) == 0:
         return Attribution(explained=explained)
     found, half = sampled_indices(whole)
-    if half <= WIDEST:
+    if half <= WIDEST_INTERVAL:
         return Attribution(found, explained=explained)
-    more = np.ceil(np.log2(len(blocks) * (half / WIDEST) ** 2))
+    more = np.ceil(np.log2(len(blocks) * (half / WIDEST_INTERVAL) ** 2))
     return Attribution(explained=explained, enough=int(2**more) * (k + 2))
 
 
@@ -199,7 +199,7 @@ def tightening(cloud: Cloud) -> tuple[Tightened, ...]:
     now = float(np.ptp(cloud.ends(inputs)))
     found = []
     for i, own in enumerate(inputs):
-        for factor in FACTORS:
+        for factor in TIGHTENING_FACTORS:
             width = float(
                 np.ptp(cloud.ends((*inputs[:i], own.tightened(factor), *inputs[i + 1 :])))
             )

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 Method = Literal["grid", "sobol", "optimize", "tolerance"]
-LARGEST = 1e18
+LARGEST_NUMBER = 1e18
 """No figure of a gear comes near: stiffness ends at 1e15 N·m/rad. Squares stay within a double."""
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
+Number = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER, allow_inf_nan=False)]
 
 
 class _Frozen(BaseModel):
@@ -54,7 +54,7 @@ class Limit(_Frozen):
     def size(self) -> float:
         """Of its limits: what an excess is compared with."""
         size = max(abs(x) for x in (self.min, self.max) if x is not None)
-        return size if size > 1 / LARGEST else 1.0
+        return size if size > 1 / LARGEST_NUMBER else 1.0
 
     def ends(self, low: float, high: float) -> tuple[float, float]:
         """Its ends, those given where it has none."""
@@ -101,7 +101,7 @@ class StudyFile(_Frozen):
     run: Run = Run()
 
 
-WITHIN = f"from {-LARGEST:g} to {LARGEST:g}"
+NUMBER_WORDS = f"from {-LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}"
 WORDS: dict[str, str] = {
     "design": 'the path of a design file, e.g. "xb1-40.toml"',
     "vary": "a table [vary] of design keys",
@@ -113,8 +113,8 @@ WORDS: dict[str, str] = {
     "link": "a table [link] of design keys",
     "link.*": '{ of = "design key", times = 1.0, plus = 0.0 }',
     "link.*.of": "a design key",
-    "link.*.times": f"a number {WITHIN}",
-    "link.*.plus": f"a number {WITHIN}",
+    "link.*.times": f"a number {NUMBER_WORDS}",
+    "link.*.plus": f"a number {NUMBER_WORDS}",
     "tolerance": "a table [tolerance] of design keys",
     "tolerance.*": "{ plus_minus = … } or { std = … }",
     "tolerance.*.plus_minus": "a number above 0",
@@ -123,8 +123,8 @@ WORDS: dict[str, str] = {
     "objective.*": '"minimize" or "maximize"',
     "constraint": "a table [constraint] of figures",
     "constraint.*": "{ min = … }, { max = … } or both",
-    "constraint.*.min": f"a number {WITHIN}",
-    "constraint.*.max": f"a number {WITHIN}",
+    "constraint.*.min": f"a number {NUMBER_WORDS}",
+    "constraint.*.max": f"a number {NUMBER_WORDS}",
     "run": "a table [run]",
     "run.method": '"grid", "sobol", "optimize" or "tolerance"',
     "run.evaluations": "a whole number from 1 to 1000000",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, outcome_of
-from flexspline.pipeline.study.figures import USUAL
+from flexspline.pipeline.study.figures import USUAL_SOLVES
 from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.source import solves_of
 from flexspline.pipeline.study.store import TrialStore
@@ -25,6 +25,6 @@ def start_outcome(
     stored = store.notes().get(START_NOTE)
     if stored is None:
         tables = study.design.model_dump(mode="json", exclude_none=True)
-        stored = asdict(evaluation(Task(tables, {}, solves_of(study, USUAL), holes)))
+        stored = asdict(evaluation(Task(tables, {}, solves_of(study, USUAL_SOLVES), holes)))
         store.note(START_NOTE, stored)
     return outcome_of(stored)

@@ -17,9 +17,9 @@ import numpy as np
 from flexspline.pipeline.study.indices import Indices, groups_of, reach, students_factor, within
 from flexspline.pipeline.study.tolerance import ScatteredInput
 
-NODES = 4096
+QUADRATURE_NODES = 4096
 """Of the quadrature over each input's distribution."""
-SINGULAR = 1e-6
+LEAST_EIGENVALUE = 1e-6
 """Least eigenvalue of what is left of the normal equations without a block, 1 with all of them."""
 
 
@@ -103,7 +103,7 @@ def _fitted(
     if len(x) <= x.shape[1]:
         return None
     q, r = np.linalg.qr(x)
-    if np.abs(np.diag(r)).min() < SINGULAR * np.abs(np.diag(r)).max():
+    if np.abs(np.diag(r)).min() < LEAST_EIGENVALUE * np.abs(np.diag(r)).max():
         return None
     right = q.T @ values
     found, squares, errors = [], [], np.empty(len(values))
@@ -112,7 +112,7 @@ def _fitted(
         if not rows.any():
             continue
         rest = np.eye(x.shape[1]) - q[rows].T @ q[rows]
-        if np.linalg.eigvalsh(rest)[0] < SINGULAR:
+        if np.linalg.eigvalsh(rest)[0] < LEAST_EIGENVALUE:
             return None
         without = np.linalg.solve(rest, right - q[rows].T @ values[rows])
         errors[rows] = values[rows] - q[rows] @ without
@@ -130,8 +130,8 @@ def _fitted(
 
 def _orthonormal(own: ScatteredInput) -> np.ndarray:
     """1, z and z² of the standardised input, made orthonormal over its distribution."""
-    z = _standardised(own, own.at((np.arange(NODES) + 0.5) / NODES))
-    _, r = np.linalg.qr(np.vander(z, 3, increasing=True) / NODES**0.5)
+    z = _standardised(own, own.at((np.arange(QUADRATURE_NODES) + 0.5) / QUADRATURE_NODES))
+    _, r = np.linalg.qr(np.vander(z, 3, increasing=True) / QUADRATURE_NODES**0.5)
     return np.asarray(np.linalg.inv(r * np.sign(np.diag(r))[:, None]))
 
 

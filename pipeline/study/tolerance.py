@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 MODULUS = "material.flexspline.youngs_modulus_GPa"
 SHAFT_MODULUS = "material.shaft.youngs_modulus_GPa"
 CLEARANCE, PLAY = "gear.flank_clearance_um", "bearing.radial_clearance_um"
-REACH = 4.0
+CUT_SIGMAS = 4.0
 """A normal input is cut off so many standard deviations away: 6e-5 of it is beyond."""
 LEAST_BASE = 8
 """Rows of each base sample; a power of 2, as the Sobol sequence's balance needs."""
@@ -106,7 +106,7 @@ def _input(design: Design, key: str, std: float, half: float | None) -> Scattere
     if nominal is None:
         raise StudyError(f'tolerance."{key}"', None, "is no number of the design file")
     least, most = _range(design, key)
-    reach = half if half is not None else REACH * std
+    reach = half if half is not None else CUT_SIGMAS * std
     low, high = nominal - reach, nominal + reach
     if half is None:
         low, high = max(low, least), min(high, most)

@@ -22,7 +22,7 @@ SUM = "#dfe3e7"
 CALIBRATION = "Calibration by measurement"
 ROW, ABOVE, BELOW = 0.62, 0.52, 0.62
 """Inches: of a row of the waterfall, above the rows and below them."""
-LETTERS = 20
+NAME_LETTERS = 20
 """Of a row's name on one line."""
 VALUES, SHARES = 1.31, 1.36
 """Where the figures' column ends and the shares' begins, in widths of the waterfall."""
@@ -122,7 +122,7 @@ def _waterfall(axes: Axes, rows: Sequence[BudgetBar], backlash: Backlash) -> Non
     low, high = min(ends), max(ends)
     axes.set_xlim(low - 0.04 * (high - low) if low < 0 else 0, high + 0.04 * (high - low))
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_yticks(range(len(rows)), [wrapped(r.name, LETTERS) for r in rows])
+    axes.set_yticks(range(len(rows)), [wrapped(r.name, NAME_LETTERS) for r in rows])
     for i, row in enumerate(rows):
         if row.is_sum:
             axes.get_yticklabels()[i].set_fontweight("bold")

@@ -16,7 +16,7 @@ from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, sa
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-REACH = 1.25
+DRAWN_RATIO = 1.25
 """How far beyond ±T_L the line is drawn."""
 
 
@@ -24,7 +24,7 @@ def drawn_branch(
     angle_arcsec: Callable[[np.ndarray], np.ndarray], torque_Nm: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Torques [N·m] above 0 that are drawn at a load of `torque_Nm`, and the line at them [arcsec]."""
-    torque = np.linspace(1e-6, REACH, 60) * torque_Nm
+    torque = np.linspace(1e-6, DRAWN_RATIO, 60) * torque_Nm
     return torque, angle_arcsec(torque)
 
 
@@ -73,7 +73,7 @@ def _annotate(
     low = -high
     gap = backlash.gap_arcsec
     arcsec = quantity("backlash_arcsec.total")
-    end = np.array([REACH * load])
+    end = np.array([DRAWN_RATIO * load])
     highest = float(branch[1][-1])
     top = max(1.35 * highest, 1.08 * (highest + float(band(end, load, backlash)[0])))
     axes.plot([0, 0], [-gap / 2, gap / 2], color=PALETTE[0], lw=2.4, ls=(0, (1.5, 1.5)))
@@ -112,7 +112,7 @@ def _annotate(
         va="center",
         bbox=GROUND,
     )
-    axes.set_xlim(-REACH * load, REACH * load)
+    axes.set_xlim(-DRAWN_RATIO * load, DRAWN_RATIO * load)
     axes.set_ylim(-top, top)
     axes.grid(True)
     axes.set_xlabel("output torque T in N·m")

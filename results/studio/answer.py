@@ -21,7 +21,7 @@ from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
-from flexspline.results.figures.torque_angle import REACH, band
+from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
 from flexspline.results.peaks import BORDER, marked
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
@@ -171,7 +171,7 @@ def _budget(total: Backlash) -> Message:
 def _line(design: Design, total: Backlash, K_b: float, K_e: float) -> Message:
     """The positive branch; the negative one mirrors it."""
     load = design.load.torque_Nm
-    torque = np.linspace(0, REACH, LINE_POINTS) * load
+    torque = np.linspace(0, DRAWN_RATIO, LINE_POINTS) * load
     # at 0 itself it is the gap's middle; the line begins at the gap's end
     angle = angle_rad(design, np.maximum(torque, 1e-9 * load), K_b, K_e) * ARCSEC_PER_RAD
     return {

@@ -30,9 +30,9 @@ GROUPS: tuple[tuple[str, Location], ...] = (
     ("Uncertainty, one standard deviation", ("uncertainty",)),
     ("Solver", ("solver",)),
 )
-SPAN = 0.5
+SLIDER_SHARE = 0.5
 """A slider reaches from the nominal value less half of it to half of it more."""
-STEPS = 200
+SLIDER_PLACES = 200
 """A slider has at least so many places."""
 MOST_HOLES = 12.0
 """Where no bolts are stated the slider goes up to as many as the first hat has."""
@@ -137,8 +137,10 @@ def slider(
     """
     least = float(node["minimum"])
     most = float(node["maximum"])
-    low, high = (value * (1 - SPAN), value * (1 + SPAN)) if value else (0.0, scale / 10)
-    step = _round_step((high - low) / STEPS)
+    low, high = (
+        (value * (1 - SLIDER_SHARE), value * (1 + SLIDER_SHARE)) if value else (0.0, scale / 10)
+    )
+    step = _round_step((high - low) / SLIDER_PLACES)
     if whole:
         # teeth differ by an even number between the gears: steps of two keep it so
         step = 2.0 if key.startswith("teeth") else max(1.0, float(round(step)))

@@ -28,7 +28,7 @@ from flexspline.results.studio.worker import Fault
 VIEWS: tuple[View, ...] = get_args(View)
 RIM: Mapping[str, RimCase] = {figure_of(case): case for case in RIM_CASES}
 """The load cases of the rim by the figure that each answers with."""
-FIRST = "first field wave_generator"
+FIRST_STRESS = "first field wave_generator"
 """The stress on the wave generator before any refinement; its `PEAK_rough` says so."""
 GEAR = "gear"
 """The whole gear's figures and the positive branch of its curve."""
@@ -96,7 +96,7 @@ def _profile(view: View) -> Callable[[Design], Found]:
 _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     "torsion": _torsion,
     GEAR: _gear,
-    FIRST: _first,
+    FIRST_STRESS: _first,
     **{name: _rim(name) for name in RIM},
     **{f"field {view}": _field(view) for view in VIEWS},
     **{f"profile {view}": _profile(view) for view in VIEWS},

@@ -20,7 +20,7 @@ from flexspline.pipeline.live import left_out
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.questions import FIRST, GEAR, RIM, VIEWS
+from flexspline.results.studio.questions import FIRST_STRESS, GEAR, RIM, VIEWS
 from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
@@ -140,9 +140,10 @@ class Tab:
                 late = self._wanted is not wanted
                 if late and (isinstance(found, Fault) or question.startswith("profile")):
                     break
-                if question != FIRST or ROUGH not in wanted.found:  # the exact one may be there
+                # the exact one may be there
+                if question != FIRST_STRESS or ROUGH not in wanted.found:
                     await self._tell(wanted, question, found)
-                if late:  # told all the same: while a hand moves, every answer comes late
+                if late:  # told all the same: while a slider moves, every answer comes late
                     break
 
     async def _tell(self, wanted: Wanted, question: str, found: Any) -> None:
@@ -170,7 +171,10 @@ def _said(wanted: Wanted) -> dict[str, Any]:
 def _picture(view: str) -> list[str]:
     """The stress on the wave generator is wanted at once whatever is in view; exact only after."""
     mine = f"field {view}"
-    return [f"profile {view}", *([FIRST, mine] if view == "wave_generator" else [mine, FIRST])]
+    return [
+        f"profile {view}",
+        *([FIRST_STRESS, mine] if view == "wave_generator" else [mine, FIRST_STRESS]),
+    ]
 
 
 def _slow(view: str) -> list[str]:

@@ -13,7 +13,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
 from flexspline.results.file_names import BEST_DESIGN
 from flexspline.results.study.labels import at_border
-from flexspline.results.study.record import SHOWN
+from flexspline.results.study.record import LISTED_DESIGNS
 
 
 def write_best_design(folder: Path, result: StudyResult) -> Path | None:
@@ -32,7 +32,7 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
     """Of the first of the best designs, a line each; the numbers of the others that have some."""
     if result.about_scatter:
         return
-    said = [(row.slot, tuple(_warnings(result, row))) for row in result.best(SHOWN)]
+    said = [(row.slot, tuple(_warnings(result, row))) for row in result.best(LISTED_DESIGNS)]
     for slot, lines in said[:1]:
         yield from (f"design {slot}: {line}" for line in lines)
     if others := [str(slot) for slot, lines in said[1:] if lines]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SHOWN = 3
+DRAWN_DESIGNS = 3
 """Designs, a row each."""
 WIDE_IN, SECTION_IN, DETAIL_IN = 7.4, 3.8, (2.4, 0.76)
 """The figure's width, the sections' width, a detail's width and height."""
@@ -32,14 +32,14 @@ MARGIN_MM = 0.5
 
 
 def write_best(path: Path, result: StudyResult) -> None:
-    """Half sections of up to SHOWN designs to one scale, and beside each its walls enlarged."""
+    """Half sections of up to DRAWN_DESIGNS designs to one scale, and beside each its walls enlarged."""
     with styled():
         save_png(best_figure(result), path)
 
 
 def best_figure(result: StudyResult) -> Figure:
     """One row for each design."""
-    best = result.best(SHOWN)
+    best = result.best(DRAWN_DESIGNS)
     base = result.study.design
     designs = [result.design_of(r) for r in best]
     everything = np.concatenate([_outline(d) for d in (base, *designs)])

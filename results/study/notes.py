@@ -14,7 +14,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.study.labels import at_border, entry
-from flexspline.results.study.record import SHOWN
+from flexspline.results.study.record import LISTED_DESIGNS
 from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"
@@ -74,7 +74,11 @@ def preloaded(result: StudyResult) -> Iterable[str]:
     """A line where teeth press on both flanks without torque in some designs: no gear runs like that."""
     forces = [r.outcome.figures.get(PRELOAD, 0.0) for r in result.built]
     if count := sum(force > 0 for force in forces):
-        best = [str(r.slot) for r in result.best(SHOWN) if r.outcome.figures.get(PRELOAD, 0.0) > 0]
+        best = [
+            str(r.slot)
+            for r in result.best(LISTED_DESIGNS)
+            if r.outcome.figures.get(PRELOAD, 0.0) > 0
+        ]
         among = f"; among the best: {', '.join(best)}" if best else ""
         yield (
             f"in {count} of {len(forces)} designs teeth press on both flanks without torque ({PRELOAD} in "

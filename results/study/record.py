@@ -18,14 +18,14 @@ from flexspline.results.study.scatter_section import index_text, source_words
 from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import disagreement, incomplete, misses
 
-SHOWN = 5
+LISTED_DESIGNS = 5
 """Best designs that the summary lists."""
 
 
 def summary(result: StudyResult) -> dict[str, Any]:
     """How many designs, how many failed or lack a figure that nothing asks for, by cause, the best."""
     file = result.study.file
-    best = result.pareto if len(result.pareto) >= SHOWN else result.best(SHOWN)
+    best = result.pareto if len(result.pareto) >= LISTED_DESIGNS else result.best(LISTED_DESIGNS)
     return {
         "study": result.study.name,
         "design": result.study.design.name,
@@ -131,7 +131,7 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
     ]
     if result.incomplete:
         lines.append(f"  {incomplete(result)}")
-    best = () if result.about_scatter else result.best(SHOWN)
+    best = () if result.about_scatter else result.best(LISTED_DESIGNS)
     if best and result.start is not None:
         lines.append(_line(result, "start", result.start_values, result.start))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from flexspline.pipeline.study.scatter import FACTORS, Scatter
+from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Scatter
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
 from flexspline.results.study.labels import entry
 
-MOST = 1_000_000
+MOST_EVALUATIONS = 1_000_000
 """Evaluations that a study file may ask for."""
 
 
@@ -64,7 +64,7 @@ def source_words(s: Scatter) -> str:
             "tolerance narrows the range."
         )
     enough = s.shares.enough
-    would = f"; about {enough} would do" if enough and enough <= MOST else ""
+    would = f"; about {enough} would do" if enough and enough <= MOST_EVALUATIONS else ""
     return f"Too few evaluations for Sobol indices{tried}{would}."
 
 
@@ -86,5 +86,5 @@ def _inputs(s: Scatter) -> Iterable[tuple[str, ...]]:
             unit.name, f"{unit.text(x.nominal)}, {kind} {unit.with_unit(spread)}",
             *((index_text(known.first[i], known.first_ends[i]),
                index_text(known.total[i], known.total_ends[i])) if known else ()),
-            *(f"{max(0.0, bought[f]):.1f}" for f in (FACTORS if s.tightened else ())),
+            *(f"{max(0.0, bought[f]):.1f}" for f in (TIGHTENING_FACTORS if s.tightened else ())),
         )  # fmt: skip

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.pipeline.study.indices import Indices
-from flexspline.pipeline.study.scatter import FACTORS, Scatter
+from flexspline.pipeline.study.scatter import TIGHTENING_FACTORS, Scatter
 from flexspline.results.study.labels import axis_label, entry, long_name
 from flexspline.results.style import ACCENT, INK, PALETTE, new_figure, save_png, styled
 
@@ -73,9 +73,9 @@ def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
     y = np.arange(len(order))
     by = {(t.key, t.factor): t.bought for t in s.tightened}
     shades = (PALETTE[3], PALETTE[2], PALETTE[1], PALETTE[0])
-    for i in range(len(FACTORS) - 1, -1, -1):
-        values = [max(0.0, by[s.inputs[j].key, FACTORS[i]]) for j in order]
-        said = f"× {FACTORS[i]:g}" if FACTORS[i] else "perfect"
+    for i in range(len(TIGHTENING_FACTORS) - 1, -1, -1):
+        values = [max(0.0, by[s.inputs[j].key, TIGHTENING_FACTORS[i]]) for j in order]
+        said = f"× {TIGHTENING_FACTORS[i]:g}" if TIGHTENING_FACTORS[i] else "perfect"
         axes.barh(y, values, 0.62, color=shades[i], label=said)
     axes.set_yticks(y, [""] * len(order))
     axes.tick_params(axis="y", length=0)

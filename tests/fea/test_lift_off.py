@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import cholesky
 from scipy.optimize import nnls
 
-from flexspline.fea.axisymmetric.lift_off import EPS, pushing
+from flexspline.fea.axisymmetric.lift_off import SEAT_RESIDUAL, pushing
 
 KINDS = ("mixed", "all touch", "all lifted", "neither", "just touching", "two places in one")
 
@@ -39,10 +39,10 @@ def problem(rng: np.random.Generator, kind: str) -> tuple[np.ndarray, np.ndarray
 def assert_complementary(matrix: np.ndarray, free: np.ndarray, force: np.ndarray) -> None:
     size = np.abs(free).max()
     gap = free + matrix @ force
-    # 10 EPS: the stated rounding, and what forming the gap anew rounds
+    # 10 SEAT_RESIDUAL: the stated rounding, and what forming the gap anew rounds
     assert force.min() >= 0
-    assert gap.min() > -10 * EPS * size
-    assert (force * np.abs(gap)).max() <= 10 * EPS * size * force.max()
+    assert gap.min() > -10 * SEAT_RESIDUAL * size
+    assert (force * np.abs(gap)).max() <= 10 * SEAT_RESIDUAL * size * force.max()
 
 
 @pytest.mark.parametrize("seed", range(200))
@@ -51,9 +51,11 @@ def test_random_problems_settle_and_nothing_pulls(seed: int) -> None:
     matrix, free, known = problem(rng, KINDS[seed % len(KINDS)])
     force = pushing(matrix, free)
     assert_complementary(matrix, free, force)
-    # the energy is least at the known answer; n terms of complementarity EPS are the gap to it
+    # the energy is least at the known answer; n terms of complementarity SEAT_RESIDUAL are the gap to it
     least, found = (p @ matrix @ p / 2 + free @ p for p in (known, force))
-    assert found - least <= len(free) * 10 * EPS * np.abs(free).max() * max(force.max(), 1e-300)
+    assert found - least <= len(free) * 10 * SEAT_RESIDUAL * np.abs(free).max() * max(
+        force.max(), 1e-300
+    )
 
 
 def test_the_answer_is_that_of_non_negative_least_squares() -> None:
@@ -62,7 +64,7 @@ def test_the_answer_is_that_of_non_negative_least_squares() -> None:
         matrix, free, _ = problem(np.random.default_rng(seed), "mixed")
         root = cholesky(matrix)
         exact, _ = nnls(root, -np.linalg.solve(root.T, free))
-        # the softest direction is 1e4 times as soft as the stiffest, and EPS is of products
+        # the softest direction is 1e4 times as soft as the stiffest, and SEAT_RESIDUAL is of products
         assert pushing(matrix, free) == pytest.approx(exact, abs=1e-4 * exact.max())
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine, refinements
-from flexspline.fea.scaled_estimate import FALLS, ScaledEstimate
+from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.types import MeshLevel
 from flexspline.geometry.errors import ComputationError
@@ -129,7 +129,7 @@ def test_an_estimate_that_does_not_see_the_error_is_left_for_the_falls_of_K(q: f
     """K falls by q each time and the estimate hardly at all, as on a shaft whose sharp edges took every
     element: from the third mesh on the bounds, K less twice its error to K, hold the limit."""
     limit, first = 5140.0, 60.0
-    found = ScaledEstimate(usual=2.0, believed=(2.5, 4.2), falls=FALLS)
+    found = ScaledEstimate(usual=2.0, believed=(2.5, 4.2), falls=ERROR_RATIOS)
     for n in range(5):
         found.add(level(limit + first * q**n), 0.0002 * 0.95**n)
         if n >= 2:

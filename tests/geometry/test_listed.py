@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from flexspline.geometry.listed import FIRST, MOST, listed
+from flexspline.geometry.listed import FIRST_ENTRIES, MOST_ENTRIES, listed
 
 
 def test_a_few_are_all_listed() -> None:
     assert listed([3], "cycles") == "3"
-    assert listed(range(1, MOST + 1), "cycles") == "1, 2, 3, 4, 5, 6, 7, 8"
+    assert listed(range(1, MOST_ENTRIES + 1), "cycles") == "1, 2, 3, 4, 5, 6, 7, 8"
 
 
 def test_many_are_counted() -> None:
     assert listed(range(1, 193), "cycles") == "1, 2, 3, … 192 (192 cycles)"
-    assert listed("abcdefghi", "units").count(",") == FIRST
+    assert listed("abcdefghi", "units").count(",") == FIRST_ENTRIES

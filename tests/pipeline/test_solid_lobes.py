@@ -76,7 +76,7 @@ def test_a_coarser_mesh_is_made_only_where_it_promises_half_of_what_is_known(
     usual = first_elements(part, supported=False)
     monkeypatch.setattr(solid_lobes, "MOST_ELEMENTS", usual - 1)
     # 1 % asked; on steps 1/0.7 times as long the fourth power is 4.2 times as large
-    expected = promised(0.01, solid_lobes.COARSER)
+    expected = promised(0.01, solid_lobes.COARSER_MESH)
     assert 0.02 < expected < 0.03
     assert first_elements(part, False, known=2.01 * expected) < usual
     with pytest.raises(NoBetterMeshError):

@@ -14,7 +14,7 @@ from scipy.linalg import cho_factor
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.contact import (
-    MOST_PLACES,
+    MOST_SEAT_PLACES,
     contact_stiffness,
     held_forces,
     lift_off_forces,
@@ -66,7 +66,7 @@ THICKER_CUP = outline(**PUBLISHED | {"wall_thickness_mm": 0.8, "ring_thickness_m
 
 @pytest.fixture(scope="module")
 def seat():
-    return seat_compliance(HarmonicModel(triangulate(EXAMPLE_CUP), STEEL), 32, MOST_PLACES)
+    return seat_compliance(HarmonicModel(triangulate(EXAMPLE_CUP), STEEL), 32, MOST_SEAT_PLACES)
 
 
 def test_holding_every_point_gives_the_supported_case(seat) -> None:
@@ -123,8 +123,8 @@ def test_some_places_tell_what_all_nodes_tell(cup: Meridian) -> None:
     if cup is PUBLISHED_CUP:
         mesh = refined(mesh, np.ones(len(mesh.triangles), bool))
     model = HarmonicModel(mesh, STEEL)
-    few, every = (seat_compliance(model, 32, most) for most in (MOST_PLACES, 1000))
-    assert few.free.shape[1] <= MOST_PLACES < every.free.shape[1]
+    few, every = (seat_compliance(model, 32, most) for most in (MOST_SEAT_PLACES, 1000))
+    assert few.free.shape[1] <= MOST_SEAT_PLACES < every.free.shape[1]
     ratio = [s.stiffness(lift_off_forces(s)) / s.stiffness(held_forces(s)) for s in (few, every)]
     # places at the edges stand as close as nodes do; a hundredth of the tolerance of K is asked
     assert ratio[0] == pytest.approx(ratio[1], rel=5e-5)
@@ -141,12 +141,12 @@ def test_a_wide_seat_on_a_thin_wall_costs_no_more_than_a_narrow_one(monkeypatch)
     monkeypatch.setattr("flexspline.fea.axisymmetric.contact.pushing", counted)
     held = Stiffness(1.0, 1.0, 1.0, False, "axisymmetric", "", "", ())
     found = contact_stiffness(THIN_WIDE_SEAT, STEEL, held)
-    assert max(sizes) <= 32 * MOST_PLACES
+    assert max(sizes) <= 32 * MOST_SEAT_PLACES
     assert 0 < found.lower_Nm_per_rad < found.K_Nm_per_rad < found.upper_Nm_per_rad < 1
 
 
 def test_more_angles_change_little(seat) -> None:
-    fine = seat_compliance(HarmonicModel(triangulate(EXAMPLE_CUP), STEEL), 48, MOST_PLACES)
+    fine = seat_compliance(HarmonicModel(triangulate(EXAMPLE_CUP), STEEL), 48, MOST_SEAT_PLACES)
     K = [s.stiffness(lift_off_forces(s)) for s in (seat, fine)]
     assert K[0] == pytest.approx(K[1], rel=3e-4)
 
@@ -201,7 +201,7 @@ def test_a_tolerance_is_met_by_more_meshes() -> None:
     assert not found.shortfall
     mesh, ratios = triangulate(THICKER_CUP), []
     for _ in range(len(found.levels) + 1):
-        own = seat_compliance(HarmonicModel(mesh, STEEL), 32, MOST_PLACES)
+        own = seat_compliance(HarmonicModel(mesh, STEEL), 32, MOST_SEAT_PLACES)
         ratios.append(own.stiffness(lift_off_forces(own)) / own.stiffness(held_forces(own)))
         mesh = refined(mesh, np.ones(mesh.elements, bool))
     for ratio in (ratios[-1], settling(ratios)[0]):

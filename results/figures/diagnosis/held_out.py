@@ -9,10 +9,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import DPI
-from flexspline.results.figures.diagnosis.seen import MOST_POINTS
+from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
-STEPS = (
+BARS = (
     ("before", "simulation as it stands", PALETTE[2]),
     ("calibrated", "calibrated", PALETTE[1]),
     ("after", "with the causes found", PALETTE[0]),
@@ -26,8 +26,8 @@ def write_held_out(path: Path, gain: Gain) -> None:
         rows = figure.add_axes((0.095, 0.155, 0.51, 0.66))
         bars = figure.add_axes((0.715, 0.155, 0.265, 0.66))
         count = len(next(iter(gain.left.values())))
-        step = max(1, -(-count // MOST_POINTS))
-        for name, words, colour in STEPS:
+        step = max(1, -(-count // MOST_DRAWN_POINTS))
+        for name, words, colour in BARS:
             values = gain.left[name]
             rows.plot(
                 np.arange(1, count + 1)[::step], values[::step], "o", ms=2.8, mew=0, color=colour,
@@ -41,7 +41,7 @@ def write_held_out(path: Path, gain: Gain) -> None:
         rows.set_xlabel("held-out row, in order")
         rows.set_ylabel(f"measured − predicted, {gain.unit}")
         sizes = [gain.rmse_before, gain.rmse_calibrated, gain.rmse_after]
-        bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in STEPS], edgecolor=INK, lw=0.6)
+        bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in BARS], edgecolor=INK, lw=0.6)
         for i, size in enumerate(sizes):
             bars.annotate(
                 figures_text(size),

@@ -17,7 +17,7 @@ MOST_RIVALS = 8
 """Explanations drawn: with all plans and 0.36 inch a row, 6.5 inches; the shares are of those."""
 MOST_PLANS = 4
 """Further measurements drawn: all that are compared."""
-FLAT = "an unnamed curve over torque"
+UNNAMED_CURVE = "an unnamed curve over torque"
 
 
 def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
@@ -90,7 +90,8 @@ def _words(hypothesis: Hypothesis, names: tuple[str, ...]) -> str:
     if not hypothesis.causes:
         return "the simulation, within its uncertainty"
     titles = [
-        FLAT if c.startswith("?") else title_of(c).partition(" (")[0] for c in hypothesis.causes
+        UNNAMED_CURVE if c.startswith("?") else title_of(c).partition(" (")[0]
+        for c in hypothesis.causes
     ]
     text = " and ".join(titles)
     return text if hypothesis.own is None else f"{text}, unit {names[hypothesis.own]}"

@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 from flexspline.pipeline.diagnosis.timeless import over_rows
 
-MOST_POINTS = 4000
+MOST_DRAWN_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
 LABELS = {
     "torque_Nm": "output torque in N·m",
@@ -149,7 +149,7 @@ def seen(diagnosis: Diagnosis) -> SweepPictureData | None:
 def thinned(rows: np.ndarray) -> np.ndarray:
     """Row numbers of a mask, no more than can be told apart."""
     found = np.flatnonzero(rows)
-    return found[:: max(1, -(-len(found) // MOST_POINTS))]
+    return found[:: max(1, -(-len(found) // MOST_DRAWN_POINTS))]
 
 
 def plain_names(names: tuple[str, ...]) -> tuple[str, ...]:

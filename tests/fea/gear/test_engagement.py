@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexspline.fea.gear.engagement import WITHIN, Engagement
+from flexspline.fea.gear.engagement import TORQUE_SHARE, Engagement
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.load import load_design
 from flexspline.geometry.rated import rated_torque
@@ -53,7 +53,7 @@ def test_faces_hardly_matter(model: GearModel) -> None:
     """One place along the face, condensed anew, in place of five that move as one."""
     single = gear_model(DESIGN, DESIGN.part("flexspline"), face_places=1)
     limits = [Engagement(each).limit(RATED) for each in (model, single)]
-    assert limits[0] == pytest.approx(limits[1], rel=2 * WITHIN)
+    assert limits[0] == pytest.approx(limits[1], rel=2 * TORQUE_SHARE)
 
 
 def test_without_balls_twice_the_modulus_holds_twice_the_torque(model: GearModel) -> None:
@@ -69,7 +69,7 @@ def test_without_balls_twice_the_modulus_holds_twice_the_torque(model: GearModel
     )
     limits = [Engagement(each).limit(RATED) for each in (rigid, stiff)]
     assert limits[0] is not None
-    assert limits[1] == pytest.approx(2 * limits[0], rel=2 * WITHIN)
+    assert limits[1] == pytest.approx(2 * limits[0], rel=2 * TORQUE_SHARE)
 
 
 def test_deeper_teeth_hold_longer(model: GearModel) -> None:
@@ -83,8 +83,8 @@ def test_what_lets_go_is_beyond_and_what_holds_below(model: GearModel) -> None:
     engagement = Engagement(model)
     limit = engagement.limit(RATED)
     assert limit is not None
-    assert engagement.held(limit * (1 - 2 * WITHIN)) is not None
-    assert engagement.held(limit * (1 + 2 * WITHIN)) is None
+    assert engagement.held(limit * (1 - 2 * TORQUE_SHARE)) is not None
+    assert engagement.held(limit * (1 + 2 * TORQUE_SHARE)) is None
 
 
 def test_teeth_do_not_pass_through_a_soft_circular_spline() -> None:

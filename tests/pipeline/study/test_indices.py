@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from known_indices import KNOWN, Known
 
-from flexspline.pipeline.study.indices import WIDEST
+from flexspline.pipeline.study.indices import WIDEST_INTERVAL
 from flexspline.pipeline.study.scatter import Attribution, attributed
 from flexspline.pipeline.study.tolerance import LEAST_BASE, saltelli
 
@@ -52,7 +52,7 @@ def check(name: str, base: int, repetitions: int) -> None:
         )
     # of 100 intervals of 95 % ten or fewer miss with a probability of 0.99, of 25 four or fewer
     assert missed.max(initial=0) <= max(4, 0.1 * told)
-    assert max(widths, default=0.0) <= WIDEST
+    assert max(widths, default=0.0) <= WIDEST_INTERVAL
     if name in ("linear", "quadratic", "additive"):
         # the surface is the function: every sample tells, to the digits shown
         assert told == repetitions
