@@ -10,9 +10,9 @@ from aiohttp import web
 
 from flexspline.geometry.errors import DesignError
 from flexspline.results.studio.fields import received
+from flexspline.results.studio.job_summary import job_summary
 from flexspline.results.studio.jobs import Done, Kind, StudioJob
 from flexspline.results.studio.notes import Start, Want, note_from
-from flexspline.results.studio.results import told
 from flexspline.results.studio.tab import Tab, Workers
 
 
@@ -89,7 +89,7 @@ class Session:
         else:
             ended = await job.run(design, self.measured if job.kind == "diagnose" else b"")
             done = ended.state == "done"
-            answer = told(job.kind, design, ended.text) if done else {"text": ended.text}
+            answer = job_summary(job.kind, design, ended.text) if done else {"text": ended.text}
         if self._jobs[job.kind] is job:
             await self._send({"is": "ended", "kind": job.kind, "state": ended.state,
                               "files": ended.files, **answer})  # fmt: skip

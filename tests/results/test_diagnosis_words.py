@@ -31,7 +31,7 @@ from flexspline.results.diagnosis.record import diagnosis_record
 from flexspline.results.diagnosis.summary import left_out, summary
 from flexspline.results.records import as_json
 from flexspline.results.report.diagnosis import diagnosis_document
-from flexspline.results.studio.results import told
+from flexspline.results.studio.job_summary import job_summary
 
 DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
 NONE = np.zeros(0)
@@ -106,7 +106,7 @@ def test_what_specimens_leave_is_in_percent_everywhere() -> None:
     assert "left over in the order of the specimens: 6.50 % rms" in " ".join(table.split())
     report = repr(diagnosis_document(found, (), StiffnessPair(1.0, 1.0)).blocks)
     assert "Size, % rms" in report
-    page = told("diagnose", DESIGN, as_json(record))
+    page = job_summary("diagnose", DESIGN, as_json(record))
     (line,) = page["diagnosis"]["unexplained"]
     assert line.endswith("6.5 % rms")
     assert not any("arcsec rms" in said for said in (table, report, line))
@@ -117,7 +117,7 @@ def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     zone = replace(named("load_zone", 1.4, "1"), none=1.0)  # 0.8 of its deviations from none
     outcome = DiagnosisOutcome("named", (friction, zone))
     found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
-    page = told("diagnose", DESIGN, as_json(diagnosis_record(found)))["diagnosis"]
+    page = job_summary("diagnose", DESIGN, as_json(diagnosis_record(found)))["diagnosis"]
     loop, load = page["causes"]
     assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
     assert loop["magnitude"] == "12.00 ± 0.50 arcsec at T = 0"

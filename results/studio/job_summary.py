@@ -1,4 +1,4 @@
-"""What a finished job says to the page, in the words and figures of the reports."""
+"""What the page shows of a finished job, in the words and figures of the reports."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from flexspline.results.diagnosis.words import capital, channel_words, figures_t
 from flexspline.results.studio.answer import message
 from flexspline.results.studio.jobs import Kind
 
-Told = dict[str, Any]
+Summary = dict[str, Any]
 
 
-def told(kind: Kind, design: Design, printed: str) -> Told:
+def job_summary(kind: Kind, design: Design, printed: str) -> Summary:
     """From what the command printed with --json."""
     if kind == "step":
         return {}
@@ -30,7 +30,7 @@ def told(kind: Kind, design: Design, printed: str) -> Told:
     }
 
 
-def _diagnosis(record: Told) -> Told:
+def _diagnosis(record: Summary) -> Summary:
     after, gain = record.get("next_measurement"), record.get("gain")
     return {
         "verdict": record["heading"],
@@ -47,7 +47,7 @@ def _diagnosis(record: Told) -> Told:
     }
 
 
-def _cause(entry: Told) -> Told:
+def _cause(entry: Summary) -> Summary:
     return {
         "title": capital(entry["title"]),
         "magnitude": entry["size"],
@@ -56,7 +56,7 @@ def _cause(entry: Told) -> Told:
     }
 
 
-def _gain(gain: Told) -> str:
+def _gain(gain: Summary) -> str:
     before, after = figures_text(gain["rmse_before"]), figures_text(gain["rmse_after"])
     floor = figures_text(gain["noise_floor"])
     return (
