@@ -30,21 +30,21 @@ from flexspline.pipeline.diagnosis.slope_hints import ANGLE_UNITS, TORQUE_UNITS,
 from flexspline.pipeline.diagnosis.structure import FarSlope, UnitSuspect
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
-ABSURD = 30.0
+ABSURD_RATIO = 30.0
 """Times stiffer or softer than simulated, docs/contract.md, section 4."""
 LIKELY_RATIO = 3.0
 """Times that readings in the likely unit may be off: a real gear's twist is within."""
-RESOLVED = 10.0
+RESOLVED_RATIO = 10.0
 """Times the rms off the line that a slope's twist must have: a curve through the gap is no slope."""
 POSITION_ERROR_arcsec = 120.0
 """Readings wander so far without torque: catalogues allow small wave gears 2 arcmin of position error."""
-NOTHING = 1e-3
+NO_SIGNAL_SHARE = 1e-3
 """Of the simulated twist: less is a channel without a signal as likely as a unit."""
-AS_LIKELY = 1.5
+AS_LIKELY_RATIO = 1.5
 """Times further off than the best unit, and a unit is still asked for."""
-TINY = 1e-12
+LEAST_RATIO = 1e-12
 """Ratios are cut here, for their logarithms."""
-OPPOSITE = -1 / 3
+OPPOSITE_SHARE = -1 / 3
 """Of the simulated twist: no friction or drift turns it over."""
 
 
@@ -79,33 +79,37 @@ def absurd_sweep(size: SweepSize, sweep: Sweep) -> Absurd | None:
     if np.ptp(sweep.angle_arcsec) == 0:
         return Still()
     low, high = size.chord_range
-    if low > ABSURD or high < -ABSURD or -1 / ABSURD < low <= high < 1 / ABSURD:
+    if (
+        low > ABSURD_RATIO
+        or high < -ABSURD_RATIO
+        or -1 / ABSURD_RATIO < low <= high < 1 / ABSURD_RATIO
+    ):
         return _far_twist(size.chord, size, sweep)
-    if high < OPPOSITE:
+    if high < OPPOSITE_SHARE:
         return Turned("sweep")
-    if size.span_arcsec > ABSURD * (size.simulated_arcsec + POSITION_ERROR_arcsec):
+    if size.span_arcsec > ABSURD_RATIO * (size.simulated_arcsec + POSITION_ERROR_arcsec):
         return _far_twist(size.span_arcsec / size.simulated_arcsec, size, sweep)
-    return far_slope(size, sweep) if slope_beyond(size, ABSURD) else None
+    return far_slope(size, sweep) if slope_beyond(size, ABSURD_RATIO) else None
 
 
 def slope_beyond(size: SweepSize, limit: float) -> bool:
     """Whether the slope is surely `limit` times softer or stiffer than simulated."""
     least, most = size.compliance_range
     if least > limit:
-        return size.elastic_arcsec > RESOLVED * size.residual_arcsec
+        return size.elastic_arcsec > RESOLVED_RATIO * size.residual_arcsec
     simulated = size.elastic_arcsec / max(abs(size.compliance), 1e-3 / limit)
-    return most < 1 / limit and simulated > RESOLVED * size.residual_arcsec
+    return most < 1 / limit and simulated > RESOLVED_RATIO * size.residual_arcsec
 
 
 def far_slope(size: SweepSize, sweep: Sweep) -> FarSlope:
     """How much stiffer or softer the gear would be, and why that may seem so."""
-    return FarSlope(size.compliance, suspects(size, sweep), abs(size.chord) >= NOTHING)
+    return FarSlope(size.compliance, suspects(size, sweep), abs(size.chord) >= NO_SIGNAL_SHARE)
 
 
 def _far_twist(ratio: float, size: SweepSize, sweep: Sweep) -> FarTwist:
     column = sweep.read_as.column("angle")
     head = column.head if column else ""
-    return FarTwist(ratio, suspects(size, sweep), abs(size.chord) >= NOTHING, head)
+    return FarTwist(ratio, suspects(size, sweep), abs(size.chord) >= NO_SIGNAL_SHARE, head)
 
 
 def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
@@ -121,13 +125,15 @@ def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
         for unit, off in likely_units((1 / size.compliance,), torque, TORQUE_UNITS, TORQUE):
             elastic = size.simulated_arcsec - size.simulated_gap_arcsec
             simulated = elastic * TORQUE[unit] / torque.factor + size.simulated_gap_arcsec
-            chord = float(np.log(max(abs(size.chord), TINY) * size.simulated_arcsec / simulated))
+            chord = float(
+                np.log(max(abs(size.chord), LEAST_RATIO) * size.simulated_arcsec / simulated)
+            )
             if abs(chord) < np.log(LIKELY_RATIO):
                 off = max(off, abs(chord))
                 found.append((off, UnitSuspect(torque.head, unit, symbol(torque.unit))))
     found += [(0.0, UnitSuspect(h.head, h.other, h.unit)) for h in unit_hints(size, sweep)]
     best = min((off for off, _ in found), default=0.0)
-    likely = (one for off, one in sorted(found) if off <= best + np.log(AS_LIKELY))
+    likely = (one for off, one in sorted(found) if off <= best + np.log(AS_LIKELY_RATIO))
     return tuple(dict.fromkeys(likely))
 
 
@@ -135,7 +141,7 @@ def likely_units(
     ratios: tuple[float, ...], column: ReadColumn, units: tuple[str, ...], factors: Factors
 ) -> list[tuple[str, float]]:
     """Units in which readings `ratios` times too large are right within `LIKELY_RATIO`; how far off in ln."""
-    size = np.clip(np.abs(ratios), TINY, 1 / TINY)
+    size = np.clip(np.abs(ratios), LEAST_RATIO, 1 / LEAST_RATIO)
     off = {u: float(np.abs(np.log(size * factors[u] / column.factor)).max()) for u in units}
     return [(u, off[u]) for u in units if u != column.unit and off[u] < np.log(LIKELY_RATIO)]
 
@@ -161,7 +167,7 @@ def _whole(readings: np.ndarray) -> bool:
 
 
 def _beyond(ratio: float) -> bool:
-    return ratio > ABSURD or ratio < 1 / ABSURD
+    return ratio > ABSURD_RATIO or ratio < 1 / ABSURD_RATIO
 
 
 def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | None:
@@ -173,7 +179,7 @@ def _absurd_end_points(points: EndPoints, prediction: Prediction) -> Absurd | No
         column = points.read_as.column("angle_plus")
         unit = likely_unit(ratio, column, ANGLE_UNITS, ANGLE)
         return FarReading("end_points", ratio, _suspect(column, unit))
-    return Turned("end_points") if ratio < OPPOSITE else None
+    return Turned("end_points") if ratio < OPPOSITE_SHARE else None
 
 
 def _absurd_specimens(specimens: Specimens, K_b: float, K_e: float) -> Absurd | None:

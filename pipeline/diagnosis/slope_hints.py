@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
-NEAR = 0.05
+NEAR_FACTOR = 0.05
 """Of a unit's factor, relative: Young's modulus and a solver's mesh are known to some 2 % each."""
 CHORD_NEAR = 0.3
 """The same of the twist with the gap in it, which is stated to 10 to 20 %."""
@@ -55,8 +55,8 @@ class SlopeRatio:
 
     @property
     def sharp(self) -> bool:
-        """Whether it is known as well as the simulated one is: to `NEAR`."""
-        return self.low > 0 and max(self.high / self.ratio, self.ratio / self.low) < 1 + NEAR
+        """Whether it is known as well as the simulated one is: to `NEAR_FACTOR`."""
+        return self.low > 0 and max(self.high / self.ratio, self.ratio / self.low) < 1 + NEAR_FACTOR
 
     @property
     def far(self) -> bool:
@@ -64,11 +64,11 @@ class SlopeRatio:
         return self.low > AS_GEAR or self.high < 1 / AS_GEAR
 
     def spans(self, factor: float) -> bool:
-        """Whether the ratio may be `factor`; `NEAR` and the record's own range in quadrature."""
+        """Whether the ratio may be `factor`; `NEAR_FACTOR` and the record's own range in quadrature."""
         if self.low <= 0:
             return False
         end = self.high if factor > self.ratio else self.low
-        return abs(log(factor / self.ratio)) < hypot(log(end / self.ratio), NEAR)
+        return abs(log(factor / self.ratio)) < hypot(log(end / self.ratio), NEAR_FACTOR)
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def slope_hint(
 def unit_hints(
     size: SweepSize, sweep: Sweep, slope: SlopeRatio | None = None
 ) -> tuple[UnitHint, ...]:
-    """Units in which the slope would be as simulated, within `NEAR` and its own range.
+    """Units in which the slope would be as simulated, within `NEAR_FACTOR` and its own range.
 
     None of a slope that is known roughly and may be a fault's.
     """
@@ -141,5 +141,5 @@ def _hints(column: ReadColumn, factors: Factors, slope: SlopeRatio, power: int) 
         UnitHint(column.head, symbol(column.unit), symbol(unit))
         for unit, factor in factors.items()
         if slope.spans((factor / column.factor) ** power)
-        and abs(log(factor / column.factor)) > NEAR
+        and abs(log(factor / column.factor)) > NEAR_FACTOR
     ]

@@ -18,7 +18,7 @@ CREEP = "creep"
 """This cause's id."""
 EXPONENTS = (0.0, 0.15, 0.3, 0.5)
 """Twist as log t (0) or as t^n, 0.3 being near Andrade's t^⅓; 0 cannot be refined, the others are."""
-PARTS = (300.0, 30.0, 5.0)
+HOLD_DIVISORS = (300.0, 30.0, 5.0)
 """Of a hold, the shortest retardation times tried: about decades, as each decade adds an equal twist."""
 ALONE = (0.15, 0.4, 1.0, 3.0)
 """Of a hold: time constants of a single Kelvin element, less than a factor e apart."""
@@ -73,7 +73,7 @@ class Creep(Cause):
         found: list[Shape] = [
             {"shortest_s": low, "longest_s": long, "exponent": n, "hold_s": hold}
             for n in EXPONENTS
-            for low in sorted({hold / part for part in PARTS})
+            for low in sorted({hold / part for part in HOLD_DIVISORS})
         ]
         for share in ALONE:
             tau = share * hold

@@ -34,7 +34,7 @@ ALIKE, GROWING, CLOSING = 0, 1, 2
 SPREAD_ELEMENTS = 14
 """Against 4000, the first loading of the even spread is within 0.13 % of its end, of the exponential one,
 whose tail is cut, within 3.6 %."""
-REACH, MOST_REACH = 0.35, 0.8
+CLOSING_REACH, MOST_CLOSING_REACH = 0.35, 0.8
 """Of the largest torque, start and limit of what `loaded` = CLOSING has: at 0.8 the loop is still
 exp(−1/(2·0.8²)) = 46 % as wide at the largest torque, and closes no more."""
 LEAST_GROWTH, MOST_GROWTH = 0.5, 3.0
@@ -99,7 +99,7 @@ class FrictionHysteresis(Cause):
                     "threshold_Nm": share * largest, "spread": spread, "loaded": loaded,
                     "held": held, "start": start, "largest_torque_Nm": largest,
                     "deadband_Nm": deadband, "exponent": float(spread == DAHL),
-                    "reach": REACH * (loaded == CLOSING), "growth": float(loaded == GROWING),
+                    "reach": CLOSING_REACH * (loaded == CLOSING), "growth": float(loaded == GROWING),
                 })  # fmt: skip
         return found + [
             {POWER: p, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
@@ -116,7 +116,7 @@ class FrictionHysteresis(Cause):
                 or shape["threshold_Nm"] <= LARGEST_SHARP * shape["largest_torque_Nm"]
             )
             and shape["exponent"] <= MOST_BENT
-            and shape["reach"] < MOST_REACH
+            and shape["reach"] < MOST_CLOSING_REACH
             and (shape["loaded"] != GROWING or LEAST_GROWTH <= shape["growth"] <= MOST_GROWTH)
         )
 

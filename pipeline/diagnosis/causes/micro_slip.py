@@ -18,9 +18,9 @@ a spread of thresholds that is even between two values has more."""
 LEAST_POWER, MOST_POWER = 1.3, 4.0
 """The least of bolted joints: towards 1 twist is in proportion to torque, without a loop, and a spring in
 series passes for friction. Above 4 it all lies in the last fifth of torque."""
-INSIDE, OUTSIDE, REACH = 24, 10, 4.0
-"""Elements with thresholds up to the largest torque, and beyond it up to `REACH` times that, for predictions.
-The loop's width at the largest torque is then good to 0.5 %."""
+INSIDE, OUTSIDE, THRESHOLD_RATIO = 24, 10, 4.0
+"""Elements with thresholds up to the largest torque, and beyond it up to `THRESHOLD_RATIO` times that, for
+predictions. The loop's width at the largest torque is then good to 0.5 %."""
 
 
 def thresholds(power: float, largest_Nm: float) -> tuple[np.ndarray, np.ndarray]:
@@ -29,7 +29,9 @@ def thresholds(power: float, largest_Nm: float) -> tuple[np.ndarray, np.ndarray]
     Σw·play is (T/L)^p when first loaded, L the largest torque. Its second derivative, p(p − 1)T^(p−2)/L^p,
     is the density of thresholds. Each cell's is taken at its centroid: the first load is exact at its ends.
     """
-    edge = np.r_[np.linspace(0, 1, INSIDE + 1) ** 2, np.geomspace(1, REACH, OUTSIDE + 1)[1:]]
+    edge = np.r_[
+        np.linspace(0, 1, INSIDE + 1) ** 2, np.geomspace(1, THRESHOLD_RATIO, OUTSIDE + 1)[1:]
+    ]
     weight = power * np.diff(edge ** (power - 1))
     centroid = (power - 1) * np.diff(edge**power) / weight
     return centroid * largest_Nm, weight / largest_Nm

@@ -41,7 +41,7 @@ from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.plans import PlanSeparation
 from flexspline.pipeline.diagnosis.prediction import Prediction
 
-MOST_ROWS = 1000
+MOST_RACE_ROWS = 1000
 """Of the race: every unit is held against the envelope, but so many tell what all share."""
 
 
@@ -104,9 +104,9 @@ def _some(
     points: EndPoints, deviations: UnitDeviations, names: Sequence[str], furthest: Sequence[int]
 ) -> EndPoints:
     """All rows, or, of a very large file, those of evenly chosen units and of the suspects."""
-    if len(points.unit) <= MOST_ROWS:
+    if len(points.unit) <= MOST_RACE_ROWS:
         return points
-    step = -(-len(points.unit) // MOST_ROWS)
+    step = -(-len(points.unit) // MOST_RACE_ROWS)
     chosen = set(range(0, len(names), step)) | set(furthest[:SUSPECTS])
     rows = np.sort(np.concatenate([r for u, r in enumerate(deviations.unit_rows) if u in chosen]))
     return EndPoints(

@@ -18,11 +18,11 @@ from flexspline.pipeline.backlash import (
 )
 from flexspline.pipeline.play_spread import play_distribution
 
-REACH = 6.0
+ENVELOPE_SIGMAS = 6.0
 """Standard deviations of the play that are integrated: beyond lie 2e-9 of good units, far below any
 p-value that a verdict turns on."""
-NODES = 200
-"""`explanation` chooses among the nodes: over 2·REACH they lie at most π/200·REACH = 0.09 σ apart."""
+ENVELOPE_NODES = 200
+"""`explanation` chooses among the nodes: over ± 6 σ they lie at most 6π/200 = 0.09 σ apart."""
 COVERED = 0.95
 """Of the interval that is called the envelope."""
 
@@ -142,7 +142,9 @@ def envelope(
     doubt = design.uncertainty
     c, s = design.bearing.radial_clearance_um, doubt.radial_clearance_um
     if s > 0:
-        steps, weight = play_distribution(design.gear, design.bearing, s, REACH, NODES)
+        steps, weight = play_distribution(
+            design.gear, design.bearing, s, ENVELOPE_SIGMAS, ENVELOPE_NODES
+        )
         play = c + s * steps
     else:
         play, weight = np.array([c]), np.ones(1)

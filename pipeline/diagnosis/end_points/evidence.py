@@ -18,7 +18,7 @@ from scipy.special import log_ndtr, logsumexp
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.end_points.regressors import EndPointRegressor
 
-SHARES = (0.1, 0.5, 0.9)
+CORRELATIONS = (0.1, 0.5, 0.9)
 """ρ; even odds."""
 READINGS = 5
 """Points of the grid of σ."""
@@ -86,7 +86,7 @@ def readings(resolution_arcsec: float, total_arcsec: np.ndarray) -> tuple[float,
 def unit_evidence(deviations: UnitDeviations, terms: Sequence[EndPointRegressor]) -> UnitEvidence:
     """Evidence of a set of terms, over the grids of ρ and σ."""
     cells = [
-        _cell(deviations, terms, rho, sigma) for rho in SHARES for sigma in deviations.readings
+        _cell(deviations, terms, rho, sigma) for rho in CORRELATIONS for sigma in deviations.readings
     ]  # fmt: skip
     logs = np.array([c[0] for c in cells])
     weight = np.exp(logs - logsumexp(logs))
@@ -95,7 +95,7 @@ def unit_evidence(deviations: UnitDeviations, terms: Sequence[EndPointRegressor]
     variances = np.array([c[3] for c in cells])
     mean = weight @ means
     std = np.sqrt(weight @ (variances + (means - mean) ** 2))
-    grid = [(rho, sigma) for rho in SHARES for sigma in deviations.readings]
+    grid = [(rho, sigma) for rho in CORRELATIONS for sigma in deviations.readings]
     own = weight @ np.array([c[4] for c in cells])
     return UnitEvidence(
         tuple(terms),

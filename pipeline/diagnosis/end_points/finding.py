@@ -9,7 +9,7 @@ from flexspline.pipeline.diagnosis.end_points.envelope import Envelope, Explanat
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.pipeline.diagnosis.plans import PlanSeparation
 
-SIGNIFICANT = 0.05
+CORRECTED_P_VALUE = 0.05
 """A unit is beyond the envelope where its p-value, corrected for all units looked at, is below this."""
 
 
@@ -35,7 +35,7 @@ class UnitFinding:
     @property
     def within(self) -> bool:
         """Whether the design's uncertainty covers it."""
-        return self.p_corrected >= SIGNIFICANT
+        return self.p_corrected >= CORRECTED_P_VALUE
 
 
 @dataclass(frozen=True)

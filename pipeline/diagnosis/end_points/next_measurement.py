@@ -17,9 +17,9 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 
 AMPLITUDES = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Times the torque measured, two octaves either way: a spring's twist then spans 16 to 1, a gap's none."""
-ROWS = 64
+PLANNED_ROWS = 64
 """Of one loop."""
-TIMES_OVER = ROWS // 2
+TIMES_OVER = PLANNED_ROWS // 2
 """The same two end points, in as many rows."""
 READING_ARCSEC = 1.0
 """No reading is taken to be better than this when plans are compared."""
@@ -28,7 +28,7 @@ READING_ARCSEC = 1.0
 def plans(torque_Nm: float) -> list[MeasurementPlan]:
     """What can be done with the same rig."""
     ends = [s * a * torque_Nm for a in AMPLITUDES for s in (1, -1)]
-    quarter = np.arange(1, ROWS // 4 + 1) / (ROWS // 4)
+    quarter = np.arange(1, PLANNED_ROWS // 4 + 1) / (PLANNED_ROWS // 4)
     loop = np.concatenate([quarter, 1 - quarter, -quarter, quarter - 1])
     one = np.concatenate([loop, loop])
     listed = tuple(a * torque_Nm for a in AMPLITUDES)

@@ -37,7 +37,7 @@ UNNAMED = "?torque_Nm"
 CONCAVE = {CLEARANCE, FRICTION, HARDENING}
 """All rise steeply and level off with torque: of two at once, end points would fit the second to the
 first one's shape. A pair has at most one of them."""
-FREE = 100.0
+FREE_SPREAD_RATIO = 100.0
 """So many times wider a prior leaves an amplitude to the likelihood."""
 
 
@@ -112,7 +112,9 @@ def _of(
     scores = [e.evidence for e in each]
     best = each[int(np.argmax(scores))]
     score = float(logsumexp(scores)) - log(len(scores)) - null.evidence + odds
-    free = unit_evidence(deviations, [replace(t, spread=FREE * t.spread) for t in best.terms])
+    free = unit_evidence(
+        deviations, [replace(t, spread=FREE_SPREAD_RATIO * t.spread) for t in best.terms]
+    )
     allowed = all(not t.positive or m > 0 for t, m in zip(best.terms, free.mean, strict=True))
     penalty = len(best.terms) * log(max(len(deviations.deviation), 2)) / 2
     return Hypothesis(

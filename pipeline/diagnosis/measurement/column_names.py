@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.measurement.vocabulary import (
     PLUS,
     QUANTITY_OF,
     SAYS_NOTHING,
-    SPREAD,
+    STD_WORDS,
     SYMBOLS,
 )
 
@@ -156,8 +156,8 @@ def _by_symbol(words: list[str], written: str) -> tuple[set[str], list[str]]:
 
 def _qualified(quantity: str, words: list[str], written: str | None) -> ColumnName | None:
     left = [w for w in words if w and w not in SAYS_NOTHING]
-    if quantity == "stiffness" and SPREAD & set(left):
-        quantity, left = "stiffness_std", [w for w in left if w not in SPREAD]
+    if quantity == "stiffness" and STD_WORDS & set(left):
+        quantity, left = "stiffness_std", [w for w in left if w not in STD_WORDS]
     if (OTHER_TIMES if quantity == "time" else ANOTHER) & set(left):
         return None
     if INPUT & set(left):

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_
 SUDDEN = 0.3
 """Of the ramps' rate, between two neighbouring stretches of a few rows: it is 1 at a hold's ends and 2 at
 a triangle's; at a sine's turn half of this, over a sixtieth of the cycle."""
-CLEAR = 4.5
+CORNER_SIGMAS = 4.5
 """Deviations of a change by the torque's noise: one row of noise in 150 000 changes by more."""
 WAY = 4
 """Rows through which a straight way is laid on either side of a corner."""
@@ -74,7 +74,7 @@ def _sudden(
         change[width:-width] = rate[width:] - rate[:-width]
         before, after = 1 / span[:-width], 1 / span[width:]
         doubt[width:-width] = noise_s * np.sqrt(before**2 + after**2 + (before + after) ** 2)
-        clear = np.abs(change) > np.maximum(SUDDEN, CLEAR * doubt)
+        clear = np.abs(change) > np.maximum(SUDDEN, CORNER_SIGMAS * doubt)
         for i in np.argsort(-np.abs(change), kind="stable")[: int(clear.sum())]:
             mine = taken[float(np.sign(change[i]))]
             if clear[i] and not mine[i]:

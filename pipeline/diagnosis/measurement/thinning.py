@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
-MOST_ROWS = 6000
+MOST_FIT_ROWS = 6000
 """A design matrix of 600 columns then takes 14 MB in float32."""
 FEWEST_PER_CYCLE = 150
 """Rows of a cycle that are left: a block is then well below the crossing's band."""
@@ -27,12 +27,12 @@ def thinned(sweep: Sweep) -> Sweep:
     are many and short, whole cycles are left out instead, evenly.
     """
     n = len(sweep)
-    if n <= MOST_ROWS:
+    if n <= MOST_FIT_ROWS:
         return sweep
     h = sweep.history
     keys = h.unit * (int(h.cycle.max()) + 1) + h.cycle
     labels, counts = np.unique(keys, return_counts=True)
-    block = int(np.ceil(n / MOST_ROWS))
+    block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
     near = np.abs(h.torque_Nm) < crossing_band_Nm(h)
@@ -63,7 +63,7 @@ def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
 
 def _spared(labels: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:
     """Cycles that are kept, so that few enough rows remain; the first and the last always."""
-    many = int(MOST_ROWS / max(1.0, np.median(counts) / block))
+    many = int(MOST_FIT_ROWS / max(1.0, np.median(counts) / block))
     if len(labels) <= many:
         return labels
     return labels[np.unique(np.linspace(0, len(labels) - 1, max(2, many)).round().astype(int))]

@@ -67,7 +67,7 @@ ANOTHER = _words(
 """Words that make of a quantity another one, or scale it."""
 OTHER_TIMES = _words("step remaining left zbývající 剩余 间隔 采样 残り 間隔 サンプリング")
 """Of a time: the others of `ANOTHER` leave it one, as in "Time 1 - default sample rate"."""
-SPREAD = _words(
+STD_WORDS = _words(
     "std sd standard deviation standardabweichung abweichung směrodatná odchylka 标准差 标准偏差 標準偏差"
 )
 PLUS = _words("plus + pos positive positiv")
@@ -75,6 +75,6 @@ MINUS = _words("minus - − neg negative negativ")
 
 EASTERN = re.compile("[぀-ヿ㐀-鿿]")
 """Letters of Japanese and Chinese, which have no spaces between words."""
-_EVERY = QUANTITY_OF.keys() | SAYS_NOTHING | INPUT | ANOTHER | OTHER_TIMES | SPREAD
+_EVERY = QUANTITY_OF.keys() | SAYS_NOTHING | INPUT | ANOTHER | OTHER_TIMES | STD_WORDS
 EASTERN_WORDS = re.compile(f"({'|'.join(sorted(filter(EASTERN.search, _EVERY), key=len)[::-1])})")
 """Known words in those letters, the longest first: a head is cut into them."""

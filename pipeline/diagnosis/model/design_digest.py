@@ -10,7 +10,7 @@ from flexspline.geometry.design import Design
 
 TABLES = ("flexspline", "shaft", "material", "gear", "bearing", "wave_generator")
 """Of a design file: geometry, stiffness and gap come from these. Its name and its solver change no gear."""
-LETTERS = 12
+DIGEST_LETTERS = 12
 """Of a digest: 48 bits tell any two designs apart that a person ever compares."""
 
 
@@ -30,4 +30,4 @@ def changed_tables(design: Design, recorded: Mapping[str, str]) -> tuple[str, ..
 
 
 def _digest(values: object) -> str:
-    return sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:LETTERS]
+    return sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:DIGEST_LETTERS]

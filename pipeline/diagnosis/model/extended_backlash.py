@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
 RAMP_S = 600.0
 """From 0 to T_L: slow, so that what lags torque counts for little."""
-ROWS = 200
+RAMP_ROWS = 200
 """Of a ramp from 0 to T_L."""
 
 
@@ -75,12 +75,12 @@ def extended_backlash(
 def _there_and_back(torque_Nm: float) -> tuple[History, int, np.ndarray]:
     """The history, the row of the last −T_L, and the rows of +T_L on either side of it."""
     ends = [0.0, *(copysign(torque_Nm, s) for s in (1, -1, 1, -1, 1))]
-    parts = [np.linspace(a, b, ROWS * (1 if a == 0 else 2) + 1)[1:] for a, b in pairwise(ends)]
+    parts = [np.linspace(a, b, RAMP_ROWS * (1 if a == 0 else 2) + 1)[1:] for a, b in pairwise(ends)]
     torque = np.concatenate([[0.0], *parts])
     at = np.cumsum([len(p) for p in parts])
     n = len(torque)
     zero = np.zeros(n)
-    time = np.arange(n) * RAMP_S / ROWS
+    time = np.arange(n) * RAMP_S / RAMP_ROWS
     history = History(
         torque, np.zeros(n, int), np.zeros(n, int), time, np.full(n, REFERENCE_C), zero
     )

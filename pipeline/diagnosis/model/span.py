@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_
 Ends = tuple[float, float]
 MOST_TRAVEL = 0.95
 """Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
-SLACK = 0.05
+RANGE_SLACK = 0.05
 """Of a channel's range: noise and rounding are no extrapolation."""
 RATE_SLACK = 0.5
 """Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
@@ -59,13 +59,13 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     """
     low, high = span.torque_Nm
     largest = max(abs(low), abs(high), 1e-12)
-    room = SLACK * largest + 3 * torque_noise_Nm(history)
+    room = RANGE_SLACK * largest + 3 * torque_noise_Nm(history)
     found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
     if span.rate_Nm_per_s is not None and history.time_s is not None:
         found["torque_rate"] = _doublings(history, span.rate_Nm_per_s * (1 + RATE_SLACK))
     if span.temperature_C is not None and history.temperature_C is not None:
         wide = max(float(np.ptp(span.temperature_C)), LEAST_RANGE_K)
-        out = _outside(history.temperature_C, span.temperature_C, SLACK * wide)
+        out = _outside(history.temperature_C, span.temperature_C, RANGE_SLACK * wide)
         found["temperature_C"] = out / wide
     if span.input_angle_deg is not None and history.input_angle_deg is not None:
         found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
@@ -110,7 +110,7 @@ def _turned(angle_deg: np.ndarray, ends: Ends) -> np.ndarray:
         return np.zeros(len(angle_deg))
     past = (angle_deg - ends[0]) % 360.0
     out = np.where(past <= arc, 0.0, np.minimum(past - arc, 360.0 - past))
-    return np.where(out > SLACK * QUARTER_DEG, out / QUARTER_DEG, 0.0)
+    return np.where(out > RANGE_SLACK * QUARTER_DEG, out / QUARTER_DEG, 0.0)
 
 
 def _rates(history: History, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:

@@ -20,12 +20,12 @@ NOISES = (0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05)
 """Relative standard deviation of a stiffness, where the file states none."""
 USUAL_NOISE, NOISE_FACTOR = 0.01, 2.0
 """One percent, within a factor of two, is what torsion rigs reach."""
-ROUNDS = 8
+GAUSS_NEWTON_STEPS = 8
 """Of Gauss-Newton at most: of 333 fits of the example and two made-up sets 303 are done after five, 3 not
 after eight."""
 MOST_STEP = 3.0
 """Prior standard deviations that a round may move a parameter: beyond, the linear model is not trusted."""
-STEP = 1e-4
+DIFFERENCE_STEP = 1e-4
 """Of a prior standard deviation, for forward differences: doubles round them at 1e-12 of it."""
 PAIR_NATS = -1.0
 """Log prior odds of a second term, 1 to 2.7."""
@@ -113,11 +113,12 @@ def fit(data: SpecimenData, terms: Sequence[SpecimenParameter]) -> LaplaceFit:
     slope = np.zeros((len(noise), len(spread)))
     model = log_compliance(data.fe, terms, at)
     scores = np.zeros(len(noises))
-    for round_ in range(ROUNDS):
+    for round_ in range(GAUSS_NEWTON_STEPS):
         for j in range(len(at)):
             moved = at.copy()
-            moved[j] += STEP * spread[j]
-            slope[:, j] = (log_compliance(data.fe, terms, moved) - model) / STEP  # per spread
+            moved[j] += DIFFERENCE_STEP * spread[j]
+            # per spread
+            slope[:, j] = (log_compliance(data.fe, terms, moved) - model) / DIFFERENCE_STEP
         target = data.log_compliance - model + slope @ ((at - centre) / spread)
         if round_ in (1, 3):
             scores = np.array([p + _evidence(target, slope, s) for p, s in noises])

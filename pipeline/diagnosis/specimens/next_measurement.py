@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance
 
-FACTORS = (0.6, 1.6)
+DIMENSION_FACTORS = (0.6, 1.6)
 """Of the drawing's dimension: what can still be made and bolted to the same rig."""
 ANOTHER_GEAR = ("inner_diameter_mm", "bore_diameter_mm")
 """Not to be changed on the same wave generator, teeth and rig."""
@@ -54,7 +54,7 @@ def _separating(
     found: list[tuple[float, str, float, float]] = []
     for name in PARTS[part]:
         for key, nominal in lengths(design.part(name)).items():
-            for factor in () if key.endswith(ANOTHER_GEAR) else FACTORS:
+            for factor in () if key.endswith(ANOTHER_GEAR) else DIMENSION_FACTORS:
                 value = round(nominal * factor, 3)
                 try:
                     other = with_values(design, {key: value})

@@ -22,16 +22,16 @@ ZONES = ((1.0, 0.12, 0.35), (0.5, 0.35, 0.15))
 evenly, a real wave generator mostly takes it at its lobes, or part of the way."""
 WRONG_TOLERANCES = 3.0
 """A dimension that is wrong is off by some general tolerances."""
-WITHIN = 0.5
+TOLERANCE_SHARE = 0.5
 """A dimension that is right is off by some half of its tolerance."""
 MOST_TOLERANCES = 8.0
 """Beyond, it would be another drawing."""
 UNNAMED_SPREAD = 0.07
 """Of ln K, for structure without a name."""
-KINDS = 4
+CAUSE_KINDS = 4
 """Modulus, dimension, fixture, load zone: even odds."""
 UNNAMED_NATS = -3.0
-"""Log prior odds of all structure without a name, 1 in 20: a fifth of one of KINDS."""
+"""Log prior odds of all structure without a name, 1 in 20: a fifth of one of CAUSE_KINDS."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def specimen_parameters(
     fe: Compliances, overrides: Mapping[str, np.ndarray], one_material: bool
 ) -> list[SpecimenParameter]:
     """All hypotheses for some specimens."""
-    even = -float(np.log(KINDS))
+    even = -float(np.log(CAUSE_KINDS))
     found = [
         SpecimenParameter(SERIES, "series", SERIES_SPREAD * float(np.median(fe.total)), even, True)
     ]
@@ -101,7 +101,7 @@ def specimen_parameters(
         ]
     each = -0.5 * float(np.log(max(len(fe.sensitivities), 1)))
     for s in fe.sensitivities:
-        for factor, within in ((WRONG_TOLERANCES, False), (WITHIN, True)):
+        for factor, within in ((WRONG_TOLERANCES, False), (TOLERANCE_SHARE, True)):
             found.append(SpecimenParameter(
                 GEOMETRY + s.key, "geometry", factor * s.tolerance_mm, even + each,
                 sensitivity=s, within=within,

@@ -20,9 +20,9 @@ from flexspline.pipeline.gear_chain import Chain
 
 FOLLOWED = 3
 """Pairs that are followed with the model: slopes at the nominal values order them, roughly."""
-ROUNDS = 6
+PAIR_STEPS = 6
 """Of Gauss-Newton; the sixth step of made-up records is below a hundredth of a deviation."""
-SETTLED = 0.02
+PAIR_SETTLED_SHARE = 0.02
 """Of a first step: a smaller change of both inputs ends the search."""
 Curve = Callable[[Chain], np.ndarray]
 
@@ -85,9 +85,9 @@ def _followed(
     (angles, slope), (wanted, std) = start, measured
     at = _nominal(both)
     best = at, float((((wanted - angles) / std) ** 2).sum())
-    for _ in range(ROUNDS):
+    for _ in range(PAIR_STEPS):
         step, _ = _bounded(both, at, slope, wanted - angles, std)
-        if (np.abs(step) < SETTLED * np.array([one.first for one in both])).all():
+        if (np.abs(step) < PAIR_SETTLED_SHARE * np.array([one.first for one in both])).all():
             break
         try:
             other = curve(_with(chain, both, at + step))

@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
-from flexspline.pipeline.diagnosis.measurement.thinning import MOST_ROWS, thinned
+from flexspline.pipeline.diagnosis.measurement.thinning import MOST_FIT_ROWS, thinned
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -167,7 +167,7 @@ def test_thinning_keeps_straight_branches_and_both_sides_of_the_gap() -> None:
     history = History(torque, np.zeros(n, int), cycle, np.arange(n, dtype=float))
     angle = PREDICTION.angle_arcsec(history)
     short = thinned(_sweep(history, angle))
-    assert len(short) < 1.3 * MOST_ROWS
+    assert len(short) < 1.3 * MOST_FIT_ROWS
     # on a straight branch means of torque and angle stay on it; a mean over the gap would be on neither side
     off = short.angle_arcsec - PREDICTION.angle_arcsec(short.history)
     assert np.abs(off).max() < 1e-9

@@ -12,7 +12,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
-from flexspline.pipeline.diagnosis.end_points.finding import SIGNIFICANT
+from flexspline.pipeline.diagnosis.end_points.finding import CORRECTED_P_VALUE
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.results.diagnosis.advice import why
@@ -146,7 +146,7 @@ def test_units_within_are_consistent() -> None:
     assert outcome.verdict == "consistent"
     assert not outcome.causes
     assert model is not None
-    assert all(u.p_corrected >= SIGNIFICANT for u in analysis.units)
+    assert all(u.p_corrected >= CORRECTED_P_VALUE for u in analysis.units)
 
 
 def test_false_alarms_are_as_rare_as_stated() -> None:
