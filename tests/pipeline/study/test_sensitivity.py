@@ -35,7 +35,7 @@ def slopes_of(name: str) -> tuple[Slope, ...]:
 def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     """K is proportional to the cube of all lengths together, so Σ p·dK/dp = 3K (Euler).
 
-    The third example is asked by the command (`tests/results/test_study_command.py`).
+    The third example is asked by the command (`tests/results/study/test_study_command.py`).
     """
     slopes = slopes_of(name)
     assert [(s.key, s.why) for s in slopes if s.agree is not True] == []

@@ -1,0 +1,63 @@
+"""A finer mesh that would end too late is not begun; the coarse one's K stays, and why is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flexspline.fea.deadline import Deadline
+from flexspline.fea.shortfall import of_the_machine
+from flexspline.fea.solid.defaults import first_spec
+from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.swept import swept_mesh
+from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.geometry.load import load_design
+from flexspline.geometry.symmetry import sector_of
+
+SHAFT = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml").part("shaft")
+MESH_S = 25.0
+"""What each mesh takes on the clock of these tests."""
+
+
+FINE = 6e-3
+"""Tolerance: the first mesh leaves ± 0.8 %."""
+
+
+def stiffness(limit_s: float, tolerance: float = FINE) -> Stiffness:
+    shown = [0.0]
+    sector = sector_of(SHAFT, "torsion").degrees
+
+    def mesher(spec: MeshSpec) -> TetMesh:
+        shown[0] += MESH_S
+        mesh = swept_mesh(SHAFT, sector, spec)
+        assert mesh is not None
+        return mesh
+
+    deadline = Deadline(limit_s, *2 * [lambda: shown[0]])
+    coarse, own = first_spec(SHAFT).scaled(4.0), Elastic.of(SHAFT.material)
+    return solid_stiffness(mesher, coarse, own, "grip", tolerance, "", print, deadline).stiffness
+
+
+def test_a_mesh_that_would_end_too_late_is_not_begun() -> None:
+    """25 s for the first, twice as long for the second: 75 s."""
+    found = stiffness(limit_s=74.0)
+    assert len(found.levels) == 1
+    assert of_the_machine(found.shortfall)
+    assert "74 s" in found.shortfall
+
+
+def test_one_that_would_end_in_time_is() -> None:
+    assert len(stiffness(limit_s=200.0).levels) > 1
+
+
+def test_one_with_much_shorter_edges_is_expected_to_take_longer() -> None:
+    """Where an eighth of the error is wanted the next mesh's edges are a quarter: five times 25 s."""
+    assert len(stiffness(140.0, FINE / 6).levels) == 1
+    assert len(stiffness(140.0).levels) > 1
+
+
+def test_a_first_mesh_that_comes_late_is_solved() -> None:
+    """25 s for the mesh alone, where 10 s are allowed: its K is the answer."""
+    found = stiffness(limit_s=10.0)
+    assert len(found.levels) == 1
+    assert of_the_machine(found.shortfall)

@@ -1,0 +1,124 @@
+"""A diagnosis in words: one way to write a number, a sign and a cause, whatever was measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
+    Doing,
+    NamedCause,
+    NextMeasurement,
+    Unexplained,
+)
+from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.stiffness_pair import StiffnessPair
+from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.console import diagnosis_table
+from flexspline.results.diagnosis.notes import notes
+from flexspline.results.diagnosis.record import diagnosis_record
+from flexspline.results.diagnosis.summary import left_out, summary
+from flexspline.results.records import as_json
+from flexspline.results.report.diagnosis import diagnosis_document
+from flexspline.results.studio.job_summary import job_summary
+
+DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+NONE = np.zeros(0)
+HISTORY = History(NONE, NONE.astype(int), NONE.astype(int))
+KINDS = {
+    "sweep": Sweep(Path("m.csv"), HISTORY, NONE, (), (), NONE, True),
+    "end_points": EndPoints(Path("m.csv"), (), NONE, NONE, NONE),
+    "specimens": Specimens(Path("m.csv"), (), (), NONE, None, {}, NONE),
+}
+
+
+def named(cause: str, magnitude: float, unit: str = "%") -> NamedCause:
+    return NamedCause(cause, 1.0, (), magnitude, 0.5, unit, 20.0, 3.0)
+
+
+def test_a_stiffer_gear_is_no_part_left_out() -> None:
+    soft, stiff = named("series_compliance", 12.0), named("series_compliance", -36.8)
+    friction = named("friction_hysteresis", 12.0, "arcsec")
+    said = "elastic part left out of the simulation, 12.00 ± 0.50 %"
+    assert left_out([soft]) == f"The simulation leaves out: {said}."
+    stiffer = "gear stiffer than simulated, −36.80 ± 0.50 %"
+    assert left_out([stiff]) == f"The simulation is too soft: {stiffer}."
+    assert left_out([stiff, friction]) == (
+        "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec. "
+        f"The simulation is too soft: {stiffer}."
+    )
+
+
+def test_many_units_are_counted_and_not_all_listed() -> None:
+    own = replace(
+        named("series_compliance", 12.0), own_units=tuple(f"no{i}" for i in range(1, 193))
+    )
+    assert "(only no1, no2, no3, … no192 (192 units))" in left_out([own])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_writes_a_magnitude_alike(kind: str) -> None:
+    """A true minus sign, and digits to the second of the standard deviation."""
+    outcome = DiagnosisOutcome("named", (named("series_compliance", -19.5),))
+    diagnosis = Diagnosis(DESIGN, KINDS[kind], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    assert diagnosis.kind == kind
+    assert "−19.50 ± 0.50 %" in summary(diagnosis)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_rival_is_named_in_the_advice(kind) -> None:
+    rivals = ("series_compliance", "friction_hysteresis")
+    after = NextMeasurement(
+        "torque_Nm", "separate", rivals, Doing("hold"), "3", 5.0, None, (2.0, 1.0)
+    )
+    said = why(after, kind)
+    assert "elastic part left out of the simulation" in said
+    assert "friction hysteresis" in said
+
+
+@pytest.mark.parametrize("cause", [c for c in known_causes().values() if c.unit in ("%", "1")])
+def test_a_ratio_says_of_what(cause: Cause) -> None:
+    assert cause.ratio
+    found = DiagnosisOutcome("named", (named(cause.id, 2.0, cause.unit),))
+    diagnosis = Diagnosis(DESIGN, KINDS["sweep"], Prediction(1.0, 1.0, 0.0, 0.0), found)
+    (note,) = (n for n in notes(diagnosis) if n.startswith("size of"))
+    assert note == f"size of {cause.title_at(2.0)}: {cause.ratio}"
+
+
+def test_what_specimens_leave_is_in_percent_everywhere() -> None:
+    trend = Unexplained("specimen_order", 6.5, 1e-5, (UnnamedForm("trend"),), unit="%")
+    outcome = DiagnosisOutcome("unknown", unexplained=(trend,))
+    found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    record = diagnosis_record(found)
+    assert record["unexplained"][0]["unit"] == "%"
+    table = diagnosis_table(found, Path("out"))
+    assert "left over in the order of the specimens: 6.50 % rms" in " ".join(table.split())
+    report = repr(diagnosis_document(found, (), StiffnessPair(1.0, 1.0)).blocks)
+    assert "Size, % rms" in report
+    page = job_summary("diagnose", DESIGN, as_json(record))
+    (line,) = page["diagnosis"]["unexplained"]
+    assert line.endswith("6.5 % rms")
+    assert not any("arcsec rms" in said for said in (table, report, line))
+
+
+def test_the_live_page_says_a_cause_as_the_table_does() -> None:
+    friction = replace(named("friction_hysteresis", 12.0, "arcsec"), widest_arcsec=30.0)
+    zone = replace(named("load_zone", 1.4, "1"), none=1.0)  # 0.8 of its deviations from none
+    outcome = DiagnosisOutcome("named", (friction, zone))
+    found = Diagnosis(DESIGN, KINDS["specimens"], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
+    page = job_summary("diagnose", DESIGN, as_json(diagnosis_record(found)))["diagnosis"]
+    loop, load = page["causes"]
+    assert loop["title"] == "Friction hysteresis (loop up to 30.0 arcsec wide)"
+    assert loop["magnitude"] == "12.00 ± 0.50 arcsec at T = 0"
+    assert load["sure"] == "beyond doubt, size uncertain"

@@ -1,0 +1,122 @@
+"""The figures of a diagnosis can be read, whatever was measured."""
+
+from math import pi, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+from legibility import drawn_figures, faults
+from typer.testing import CliRunner
+
+from flexspline.results.cli import app
+
+ROOT = Path(__file__).parents[3]
+CUP = ROOT / "examples" / "xb1-40.toml"
+MEASURED = ROOT / "examples" / "measured"
+COMPLIANCE, GAP = 11.343, 72.2
+"""arcsec per N·m and arcsec, of the example with the stiffnesses below."""
+
+
+def sweep(path, extra, units=("u0",), cycles=5, scale=1.0, columns=()):
+    """Triangles of 60 rows to ±2 N·m; `extra(torque, row, unit)` [arcsec] is added."""
+    rng = np.random.default_rng(4)
+    lines = [",".join(("unit", "cycle", "time_s", *columns, "torque_Nm", "angle_arcsec"))]
+    for u, name in enumerate(units):
+        for i in range(60 * cycles):
+            torque = 2 * (1 - 4 * abs(((i + 0.5) / 60 + 0.25) % 1 - 0.5))
+            angle = COMPLIANCE * torque + GAP / 2 * np.sign(torque) + extra(torque, i, u)
+            angle = scale * (angle + rng.normal(0, 0.3))
+            own = {"temperature_C": 20 + i / 20, "input_angle_deg": (30 * (i // 60)) % 360}
+            more = [f"{own[c]:g}" for c in columns]
+            lines.append(
+                ",".join((name, f"{i // 60}", f"{40 * i}", *more, f"{torque:.5f}", f"{angle:.4f}"))
+            )
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def branch(row):
+    """1 while torque rises, −1 while it falls."""
+    return 1 if ((row + 0.5) / 60 + 0.25) % 1 < 0.5 else -1
+
+
+def many(torque, row, unit):
+    """Friction, drift, a gap that changes with temperature, an offset, position error."""
+    drift, gap = 0.01 * row, np.sign(torque) * 0.05 * row
+    return -3 * branch(row) + drift + gap + 6 * sin(2 * pi * ((row // 60) * 30) / 360)
+
+
+def end_points(path, units):
+    rng = np.random.default_rng(2)
+    lines = ["unit,torque_Nm,angle_plus_arcsec,angle_minus_arcsec"]
+    for i, name in enumerate(units):
+        half = 41.7 + rng.normal(0, 4) + (4000 if i == 2 else 0)
+        lines.append(f"{name},0.5,{half + 3:.2f},{-half + 3:.2f}")
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def specimens(path, names, keys):
+    """Of four designs in turn: each design is a set of solves."""
+    rng = np.random.default_rng(1)
+    lines = [",".join(("specimen", "part", *keys, "stiffness_Nm_per_rad"))]
+    for i, name in enumerate(names):
+        values = [f"{each[i % 4]:g}" for each in keys.values()]
+        K = 0.8 * 31329 * (1 + 0.01 * rng.normal())
+        lines.append(",".join((name, "flexspline", *values, f"{K:.0f}")))
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+LONG = [f"unit of the second shift; bench {i}" for i in range(4)]
+DIMENSIONS = {
+    "flexspline.length_mm": (30.0, 24.0, 36.0, 33.0),
+    "flexspline.wall_thickness_mm": (0.4, 0.45, 0.5, 0.4),
+    "flexspline.diaphragm_thickness_mm": (0.6, 0.8, 0.6, 0.9),
+}  # fmt: skip
+"""The first four of the measured example's: the suite's cache holds their solves for other tests too."""
+RECORDS = {
+    "example sweep": lambda f: MEASURED / "xb1-40-sweep.csv",
+    "nothing wrong": lambda f: sweep(f, lambda *_: 0.0),
+    "one cycle": lambda f: sweep(f, lambda t, i, u: -4 * branch(i), cycles=1),
+    "every channel": lambda f: sweep(
+        f, many, cycles=5, columns=("temperature_C", "input_angle_deg")
+    ),
+    "unknown": lambda f: sweep(f, lambda t, i, u: (0.0, 9.0, -4.0, 14.0, 3.0)[i // 60]),
+    "units with long names": lambda f: sweep(
+        f, lambda t, i, u: -3 * branch(i) * (u != 1), LONG, cycles=3
+    ),
+    "units in other letters": lambda f: sweep(
+        f, lambda t, i, u: -3 * branch(i) * u, ("Größe 1", "名前", "$x$", "d"), cycles=3
+    ),
+    "thirty units": lambda f: sweep(
+        f, lambda t, i, u: -3 * branch(i), [f"A-{i:03d}" for i in range(12)], cycles=2
+    ),
+    "large effect": lambda f: sweep(f, lambda t, i, u: -40 * branch(i)),
+    "example end points": lambda f: MEASURED / "size-40-end-points.csv",
+    "end points, one far out": lambda f: end_points(f, [*LONG, "b", "c", "d"]),
+    "end points of many": lambda f: end_points(f, [f"{i}" for i in range(60)]),
+    "example specimens": lambda f: MEASURED / "xb1-40-specimens.csv",
+    "specimens": lambda f: specimens(f, [f"S{i}" for i in range(8)], {"flexspline.length_mm": (30.0,) * 4}),
+    "specimens with long names": lambda f: specimens(
+        f, [f"batch of 2026; no. {i}" for i in range(14)], DIMENSIONS
+    ),
+}  # fmt: skip
+
+
+SLOW = ("example specimens", "specimens")  # each a set of solves; one more of the kind stays
+RUNS = [pytest.param(n, marks=[pytest.mark.long] if n in SLOW else []) for n in RECORDS]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
+    monkeypatch.setattr(
+        "flexspline.results.diagnosis.files.reports_of", lambda *_, **__: {}
+    )  # only figures
+    record = RECORDS[name](tmp_path / "m.csv")
+    words = ["diagnose", CUP, record, "--Kb", 31329, "--Ke", 43339, "--out", tmp_path / "o"]
+    with drawn_figures() as found:
+        result = CliRunner().invoke(app, [str(w) for w in words])
+    assert result.exit_code == 0, result.stderr
+    assert len(found) >= 2
+    assert [fault for figure in found for fault in faults(figure)] == []

@@ -1,0 +1,101 @@
+"""Study figures: no words on words, no legend over bars, walls thick enough to be seen."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from legibility import drawn_figures, faults
+
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.figures import TOTAL
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.scatter import scatter_of
+from flexspline.pipeline.study.tolerance import ScatteredInput, saltelli
+from flexspline.results.study.best_figure import best_figure
+from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
+from flexspline.results.study.tolerance_figure import write_scatter
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
+K, STRESS = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa"
+KEYS = (
+    "material.flexspline.youngs_modulus_GPa", "gear.flank_clearance_um", WALL,
+    "bearing.radial_clearance_um", "flexspline.diaphragm_thickness_mm", LENGTH,
+)  # fmt: skip
+
+
+def result_of(name: str, wall_mm: float, length_mm: float) -> StudyResult:
+    study = study_from(
+        tomllib.loads(
+            f'design = "{name}.toml"\n[vary]\n"{WALL}" = {{ min = 0.1, max = 0.6 }}\n'
+            f'"{LENGTH}" = {{ min = 10, max = 60 }}\n'
+            f'[objective]\n"{K}" = "maximize"\n"{STRESS}" = "minimize"\n[run]\nmethod = "optimize"\n'
+        ),
+        EXAMPLES, "test",
+    )  # fmt: skip
+    shares = [(0.75, 0.85), (1.0, 1.1), (1.25, 1.0), (0.9, 0.95)]
+    rows = tuple(
+        Row(
+            i,
+            {WALL: wall_mm * a, LENGTH: length_mm * b},
+            Outcome({K: 3e4 * a, STRESS: 300.0 * a * b}),
+        )
+        for i, (a, b) in enumerate(shares)
+    )
+    return StudyResult(study, rows)
+
+
+@pytest.mark.parametrize(
+    ("name", "wall_mm", "length_mm"), [("xb1-40", 0.4, 30), ("hat-25", 0.45, 28)]
+)
+def test_walls_of_the_best_can_be_seen(name: str, wall_mm: float, length_mm: float) -> None:
+    figure = best_figure(result_of(name, wall_mm, length_mm))
+    assert faults(figure) == []
+    for section, *details in zip(*[iter(figure.axes)] * 3, strict=True):
+        for axes in (section, *details):
+            box = axes.get_window_extent()
+            scales = box.width / np.ptp(axes.get_xlim()), box.height / np.ptp(axes.get_ylim())
+            assert scales[0] == pytest.approx(scales[1], rel=1e-6)  # in proportion
+            if axes is not section:  # a tenth of an inch: the thinnest wall is ten lines wide
+                assert scales[0] * 0.75 * wall_mm / figure.dpi > 0.1
+
+
+@pytest.mark.parametrize("draw", [write_pareto, write_parallel, write_convergence])
+def test_charts_of_designs_can_be_read(draw, tmp_path: Path) -> None:
+    with drawn_figures() as figures:
+        draw(tmp_path / "chart.png", result_of("xb1-40", 0.4, 30))
+    assert [faults(f) for f in figures] == [[]]
+
+
+@pytest.mark.parametrize("inputs", [1, 3, 6])
+@pytest.mark.parametrize("kind", ["even", "steep", "surface", "sample", "nothing", "constant"])
+def test_a_tolerance_study_s_chart_can_be_read(kind: str, inputs: int, tmp_path: Path) -> None:
+    """Bars of every length; with indices by surface, by the sample, without any."""
+    own = tuple(ScatteredInput(k, 1.0, 0.1 / 3**0.5, 0.9, 1.1, False) for k in KEYS[:inputs])
+    points = saltelli(own, 1024 if kind == "sample" else 16, 1)
+    z = (points - 1) / 0.1
+    weights = {"even": np.ones(inputs), "steep": 5.0 ** np.arange(inputs)}.get(
+        kind, np.ones(inputs)
+    )
+    values = z @ weights
+    if kind in ("sample", "nothing"):
+        values = np.sin(np.pi * z[:, 0]) * 7 + np.cos(4 * z).sum(axis=1)
+    if kind == "constant":
+        values = 0 * values + 80
+    keys = [x.key for x in own]
+    rows = tuple(
+        Row(i, dict(zip(keys, map(float, p), strict=True)), Outcome({TOTAL: 80.0 + float(v)}))
+        for i, (p, v) in enumerate(zip(points, values, strict=True))
+    )
+    scatter = scatter_of(TOTAL, own, rows, 1)
+    if kind == "nothing":
+        scatter = replace(
+            scatter, shares=replace(scatter.shares, indices=None, surface=None), tightened=()
+        )
+    with drawn_figures() as figures:
+        write_scatter(tmp_path / "tolerance.png", scatter)
+    assert [faults(f) for f in figures] == [[]]

@@ -1,0 +1,82 @@
+"""Designs of a study that cannot be built: by cause, with a count and an example, each part's own reason."""
+
+import tomllib
+from pathlib import Path
+
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.study.failures import TOLD, causes, failure_lines
+from flexspline.results.study.record import summary, words
+from flexspline.results.study.report import study_document
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+WALL, FILLET = "flexspline.wall_thickness_mm", "shaft.fillet_mm"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ min = 0.3, max = 3.0 }}
+"{FILLET}" = {{ min = 0.0, max = 6.0 }}
+[run]
+method = "sobol"
+"""
+
+
+def result_of(*outcomes: Outcome) -> StudyResult:
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
+    rows = (Row(i, {WALL: 0.4, FILLET: 0.5}, each) for i, each in enumerate(outcomes))
+    return StudyResult(study, tuple(rows))
+
+
+def outcome(wall: float, fillet: float) -> Outcome:
+    tables = tomllib.loads((EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8"))
+    return evaluate(Task(tables, {WALL: wall, FILLET: fillet}, ()))
+
+
+def test_every_fault_counts_not_only_a_design_s_first() -> None:
+    """The wall is thicker than the ring in two designs, the shaft's fillet larger than its step in two."""
+    result = result_of(outcome(0.7, 0.5), outcome(0.8, 5.0), outcome(0.4, 3.0))
+    found = {cause.name: cause for cause in causes(result)}
+    assert {name: cause.designs for name, cause in found.items()} == {
+        "flexspline.ring_thickness_mm": 2,
+        FILLET: 2,
+    }
+    shaft = found[FILLET]
+    assert shaft.example.slot == 1
+    assert shaft.fault.startswith("shaft.fillet_mm = 5")
+    assert "segment[0] to segment[1]" in shaft.fault
+
+
+def test_numbers_alone_make_no_other_cause() -> None:
+    result = result_of(
+        *(Outcome(faults=(f"K_b: edge {i}.5e-3 mm, {i} rounds",)) for i in (3, 4)),
+        Outcome(faults=("K_e: edge 3 mm",)),
+    )
+    assert [(c.name, c.designs) for c in causes(result)] == [
+        ("K_b: edge … mm, … rounds", 2),
+        ("K_e: edge … mm", 1),
+    ]
+
+
+def test_report_terminal_and_json_say_the_same() -> None:
+    result = result_of(outcome(0.4, 3.0), outcome(0.4, 4.0))
+    said = "design 0 has 3.0: must be from 0 to 1 mm"
+    record = summary(result)
+    (cause,) = record["causes"]
+    assert (cause["cause"], cause["designs"], cause["example"]["design"]) == (FILLET, 2, 0)
+    assert f"2 × {FILLET}: {said}" in words(result, record | {"files": []})
+    assert said in str(study_document(result, ()).payload())
+
+
+def test_many_causes_are_cut_and_counted() -> None:
+    letters = [chr(ord("a") + i) for i in range(TOLD + 2)]
+    lines = list(failure_lines(result_of(*(Outcome(faults=(letter,)) for letter in letters))))
+    assert len(lines) == 1 + TOLD + 1
+    assert "and 2 more causes" in lines[-1]
+    assert not list(failure_lines(result_of(Outcome({"K_b_Nm_per_rad": 1.0}))))
+
+
+def test_no_word_of_constraints_where_there_are_none() -> None:
+    result = result_of(Outcome({"K_b_Nm_per_rad": 1.0}))
+    assert "constraint" not in words(result, summary(result) | {"files": []})

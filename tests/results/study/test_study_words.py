@@ -1,0 +1,243 @@
+"""What a study's report says when models disagree, and when no design is allowed."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import spearmanr
+
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+from flexspline.pipeline.study.verified import Check, Verified
+from flexspline.results.report.pdf import pdf_of
+from flexspline.results.study.labels import valued
+from flexspline.results.study.notes import border_warnings, notes
+from flexspline.results.study.report import study_document
+from flexspline.results.study.unbeaten import unbeaten_start
+from flexspline.results.study.why import (
+    disagreement,
+    influences,
+    limits,
+    misses,
+    unfollowed,
+)
+
+WALL = "flexspline.wall_thickness_mm"
+LENGTH = "flexspline.length_mm"
+FLAG = "wave_generator_peak_at_excluded_border"
+K, STRESS, TOTAL = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa", "backlash_arcsec.total"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ min = 0.3, max = 0.5 }}
+[objective]
+"{K}" = "maximize"
+[constraint]
+"{STRESS}" = {{ max = 300.0 }}
+"{TOTAL}" = {{ max = 90.0 }}
+[run]
+method = "sobol"
+"""
+
+
+def result_of(text: str = STUDY) -> StudyResult:
+    """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
+    study = study_from(tomllib.loads(text), Path(__file__).parents[3] / "examples", "test")
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i}))
+        for i in range(10)
+    )  # fmt: skip
+    return StudyResult(study, rows)
+
+
+def test_where_nothing_is_allowed_each_constraint_says_how_far() -> None:
+    stress, total, nearest = misses(result_of())
+    assert nearest == "Design 0: wall thickness 0.3\u202fmm."
+    assert "0 of 10 designs keep to at most 300" in stress
+    assert "design 0, has 310" in stress
+    assert "6 of 10 designs keep to at most 90.0" in total  # 85, 86, …, 90
+
+
+def test_where_something_is_allowed_nothing_is_missed() -> None:
+    assert misses(result_of(STUDY.replace("300.0", "310.0"))) == []
+
+
+@pytest.mark.parametrize(
+    ("K_start", "stress", "said"),
+    [(3.2e4, 300.0, True), (2.9e4, 300.0, False), (3.2e4, 311.0, False)],
+)
+def test_a_start_that_nothing_beats_is_said(K_start: float, stress: float, said: bool) -> None:
+    """The stiffest allowed design has 30 000 N·m/rad; a start above 310 MPa is not allowed."""
+    result = result_of(STUDY.replace("300.0", "310.0"))
+    began = replace(result, start=Outcome({K: K_start, STRESS: stress, TOTAL: 85.0}))
+    text = str(study_document(began, ()).payload())
+    assert ("No design is better than the start" in text) is said
+    assert bool(unbeaten_start(began)) is said
+
+
+def test_a_constraint_that_holds_is_said_with_its_limit() -> None:
+    (line,) = (t for t in limits(result_of(STUDY.replace("300.0", "310.0"))) if "is held by" in t)
+    assert "310" in line.partition("allowed are")[0]
+    assert "at most 310" in line
+
+
+def at_an_end(objective: str) -> StudyResult:
+    """All designs allowed; stiffness rises with the wall, and the best lies at the span's upper end."""
+    text = (
+        STUDY.replace("300.0", "900.0").replace("90.0", "900.0").replace("max = 0.5", "max = 0.48")
+    )
+    return result_of(text.replace(f'"{K}" = "maximize"', objective))
+
+
+def test_a_wider_span_is_named_where_the_objective_still_gains() -> None:
+    (said,) = limits(at_an_end(f'"{K}" = "maximize"'))
+    assert "upper end of its span in wall thickness" in said
+
+
+def test_a_wider_span_is_not_named_where_the_objective_falls_towards_it() -> None:
+    """Two dimensions; the objective gains with one and falls with the other, whose end the best happens
+    to lie at."""
+    text = (
+        STUDY.replace("300.0", "900.0")
+        .replace("90.0", "900.0")
+        .replace("[objective]", f'"{LENGTH}" = {{ min = 20.0, max = 30.0 }}\n[objective]')
+    )
+    study = study_from(tomllib.loads(text), Path(__file__).parents[3] / "examples", "test")
+    places = [(i / 11, (5 * i % 12) / 11) for i in range(12)]
+    places[-1] = (1.0, 1.0)
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.2 * w, LENGTH: 20 + 10 * x},
+            Outcome({K: 3e4 + 100 * w - 8 * x, STRESS: 300.0 + i, TOTAL: 85.0}))
+        for i, (w, x) in enumerate(places)
+    )  # fmt: skip
+    said = limits(StudyResult(study, rows))
+    assert len(said) == 1
+    assert "wall thickness" in said[0]
+
+
+def test_without_an_objective_the_usual_figures_are_followed() -> None:
+    said = influences(result_of(STUDY.replace(f'[objective]\n"{K}" = "maximize"\n', "")))
+    assert [s.split(",")[0] for s in said] == [
+        "Flexspline stiffness", "Peak von Mises stress", "Backlash",
+    ]  # fmt: skip
+    assert all("rises with wall thickness (rank correlation +1.00)" in s for s in said)
+
+
+def test_what_only_goes_along_is_no_influence() -> None:
+    """The stiffness follows the length alone; an optimiser moved the wall with it, rank correlation 0.7."""
+    text = STUDY.replace("[objective]", f'"{LENGTH}" = {{ min = 20.0, max = 30.0 }}\n[objective]')
+    study = study_from(tomllib.loads(text), Path(__file__).parents[3] / "examples", "test")
+    rng = np.random.default_rng(20261124)
+    along, own, scatter = rng.random((3, 30))
+    rows = tuple(
+        Row(i, {WALL: 0.3 + 0.1 * (a + o), LENGTH: 20 + 10 * a},
+            Outcome({K: 3e4 - 1e3 * a + 50 * s, STRESS: 300.0, TOTAL: 85.0}))
+        for i, (a, o, s) in enumerate(zip(along, own, scatter, strict=True))
+    )  # fmt: skip
+    said = next(s for s in influences(StudyResult(study, rows)) if s.startswith("Flexspline stiff"))
+    assert spearmanr(along + own, -along).statistic < -0.5
+    assert "falls with length" in said
+    assert "wall" not in said
+
+
+def test_ranks_count_and_equal_values_share_theirs() -> None:
+    """Spearman's correlation as scipy has it, of a cubic with pairs of equal values."""
+    walls, cubes = [0.3 + 0.04 * (i // 2) for i in range(10)], [(i - 3.0) ** 3 for i in range(10)]
+    given = result_of()
+    rows = tuple(
+        replace(row, values={WALL: w}, outcome=Outcome({K: 3e4 + c, STRESS: 300.0, TOTAL: 85.0}))
+        for row, w, c in zip(given.rows, walls, cubes, strict=True)
+    )
+    (said, *_) = influences(replace(given, rows=rows))
+    assert f"(rank correlation {spearmanr(walls, cubes).statistic:+.2f})" in said
+
+
+@pytest.mark.parametrize(
+    ("check", "said"),
+    [
+        (Check(K, 100.0, (99.0, 101.0), 90.0, (89.0, 91.0)), "beyond their bounds"),
+        (Check(STRESS, 500.0, None, 600.0, None), "by more than 5 %"),
+    ],
+)
+def test_an_alarm_says_what_may_be_behind_it(check: Check, said: str) -> None:
+    assert not check.agrees
+    assert said in disagreement(check)
+    result = replace(result_of(), verified=(Verified(0, (check,)),))
+    document = study_document(result, ())
+    assert said in str(document.payload())
+    assert pdf_of(document, {}).startswith(b"%PDF")
+
+
+def test_the_report_says_how_holes_entered() -> None:
+    """The example has holes in both parts."""
+    result = result_of()
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, "K_e_holes_factor": 0.97}))
+        for r in result.rows
+    )
+    with_factor = " ".join(notes(replace(result, rows=rows)))
+    assert "change K_e by −3.0 %" in with_factor
+    assert "shaft without its holes" not in with_factor
+    assert "shaft without its holes" not in " ".join(notes(result))  # K_e was in no row
+    failed = " ".join(notes(replace(result, no_holes_effect="the keyway has no mesh")))
+    assert "shaft without its holes or keyway" in failed
+    assert "failed (the keyway has no mesh)" in failed
+    assert "K_b of every design with bolt holes lies between" in with_factor
+
+
+def test_a_constraint_on_a_peak_at_the_excluded_border_is_said() -> None:
+    result = result_of()
+    assert not list(border_warnings(result))
+    rows = tuple(
+        replace(r, outcome=Outcome({**r.outcome.figures, FLAG: float(r.slot < 3)}))
+        for r in result.rows
+    )
+    (line,) = border_warnings(replace(result, rows=rows))
+    assert line.startswith(f"{STRESS} (a constraint of this study): in 3 of 10 designs at excluded")
+    assert "(a constraint of this study): in 3 of 10" in " ".join(notes(replace(result, rows=rows)))
+    unasked = STUDY.replace(f'"{STRESS}" = {{ max = 300.0 }}\n', "")
+    assert not list(border_warnings(replace(result_of(unasked), rows=rows)))
+
+
+def test_keys_of_holes_are_named_as_not_followed() -> None:
+    key = "shaft.bolt_hole_diameter_mm"
+    text = STUDY.replace("[objective]", f'"{key}" = {{ values = [2.5, 3.0] }}\n[objective]')
+    assert unfollowed(result_of(text).study) == key
+    assert f"{key}: the fast model does not follow" in " ".join(notes(result_of(text)))
+
+
+@pytest.mark.parametrize(
+    ("density", "said"),
+    [
+        ("", "7850 kg/m³ (steel's, since the file states none)"),
+        ("4430.0", "4430 kg/m³ (as stated)"),
+    ],
+)
+def test_the_report_says_which_density_the_mass_is_of(density: str, said: str) -> None:
+    result = result_of()
+    steel = result.study.design.material.flexspline
+    if density:
+        steel = steel.model_copy(update={"density_kg_per_m3": float(density)})
+    design = result.study.design.model_copy(
+        update={"material": result.study.design.material.model_copy(update={"flexspline": steel})}
+    )
+    assert f"Mass at {said}." in notes(replace(result, study=replace(result.study, design=design)))
+
+
+def test_a_peak_at_the_excluded_border_is_marked_in_study_table_and_notes() -> None:
+    result = result_of(STUDY.replace("300.0", "450.0"))
+    marked = tuple(
+        replace(r, outcome=replace(r.outcome, figures={**r.outcome.figures, FLAG: float(i < 4)}))
+        for i, r in enumerate(result.rows)
+    )
+    said = replace(result, rows=marked)
+    assert valued(STRESS, marked[0].outcome.figures).endswith("MPa (at excluded border)")
+    assert valued(STRESS, marked[4].outcome.figures).endswith("MPa")
+    (line,) = [n for n in notes(said) if "at excluded border" in n]
+    assert "in 4 of 10 designs" in line
+    assert not any("at excluded border" in n for n in notes(result))  # of a study begun before
+    assert "†" in str(study_document(said, ()).payload())
