@@ -24,7 +24,8 @@ from flexspline.geometry.fields import (
     within,
 )
 from flexspline.geometry.material import ElasticMaterial, Material
-from flexspline.geometry.part import Part, PartName
+from flexspline.geometry.part import Part
+from flexspline.geometry.part_name import PartName
 from flexspline.geometry.shapes import Flexspline, Shaft
 from flexspline.geometry.wave_generator import WaveGenerator
 

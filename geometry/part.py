@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian
+from flexspline.geometry.part_name import PartName
 from flexspline.geometry.shapes import BoltCircle, Flexspline, Shaft, Slot
 
-PartName = Literal["flexspline", "shaft"]
 NO_HOLES: dict[str, Any] = {
     "bolt_count": 0,
     "bolt_circle_diameter_mm": None,

@@ -12,7 +12,7 @@ from typing import Literal
 from flexspline.fea.types import SolidField, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PART_NAMES, PartName
 from flexspline.pipeline.analysis import analysis_context, torque_field
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.backlash import backlash as sum_of_terms
@@ -28,13 +28,12 @@ from flexspline.pipeline.no_design import require_design
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 from flexspline.pipeline.stiffness_pair import stiffness_pair
+from flexspline.pipeline.stress_limits import STRESS_CASES, StressCase
 from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import trial_store_of, whole_study
 from flexspline.pipeline.study.sensitivity import sensitivities
 from flexspline.pipeline.study.slope import Slope
-
-StressCase = Literal["wave_generator", "flexspline_torque", "shaft_torque"]
 
 
 def stiffness(
@@ -72,7 +71,7 @@ def stiffness(
     True
     """
     require_design(design)
-    if part not in ("flexspline", "shaft"):
+    if part not in PART_NAMES:
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
     if case not in ("uniform", *RIM_CASES):
         raise DesignError("case", case, f"must be one of uniform, {', '.join(RIM_CASES)}")
@@ -111,7 +110,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     context = analysis_context(design)
     if case == "wave_generator":
         return ellipse_field(context.part("flexspline"))
-    if case not in ("flexspline_torque", "shaft_torque"):
+    if case not in STRESS_CASES:
         raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
     return torque_field(context.part("shaft" if case == "shaft_torque" else "flexspline"))
 

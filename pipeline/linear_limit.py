@@ -8,7 +8,7 @@ from math import pi, sqrt
 
 from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
 

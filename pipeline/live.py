@@ -6,8 +6,6 @@ so). Every body of revolution is solved exactly as `flexspline stiffness` does, 
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
@@ -21,8 +19,7 @@ from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
 from flexspline.pipeline.rim_case import RimCase
-
-View = Literal["flexspline_torque", "wave_generator", "shaft_torque"]
+from flexspline.pipeline.stress_limits import StressCase
 
 
 def left_out(design: Design) -> tuple[str, ...]:
@@ -63,7 +60,7 @@ def gear(design: Design) -> GearCurve:
     return curve_of(design, fast_chain(design, K_e, tolerance))
 
 
-def field(design: Design, view: View) -> RevolvedField:
+def field(design: Design, view: StressCase) -> RevolvedField:
     """Displacement and stress of a view of a `revolved` design; errors as `torsion`."""
     part = _in_view(design, view)
     if view == "wave_generator":
@@ -80,10 +77,10 @@ def first_field(design: Design) -> RevolvedField:
     return first_ellipse_field(design.part("flexspline"), w0, PEAK_STRESS_TOLERANCE)
 
 
-def profile(design: Design, view: View, chord_error: float) -> np.ndarray:
+def profile(design: Design, view: StressCase, chord_error: float) -> np.ndarray:
     """The meridian (n, 2) [mm] of the part in view, arcs as chords: its shape before any solve."""
     return _in_view(design, view).meridian.polygon(chord_error)
 
 
-def _in_view(design: Design, view: View) -> Part:
+def _in_view(design: Design, view: StressCase) -> Part:
     return design.part("shaft" if view == "shaft_torque" else "flexspline")

@@ -15,7 +15,8 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Elastic, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.part import Part, PartName
+from flexspline.geometry.part import Part
+from flexspline.geometry.part_name import PartName
 from flexspline.geometry.symmetry import Sector, sector_of
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.drawn_teeth import ring_of, with_plain_ring

@@ -20,7 +20,8 @@ from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.material import Material
-from flexspline.geometry.part import Part, PartName
+from flexspline.geometry.part import Part
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosure import enclosed

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol, get_args
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import Material
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 
 HIGHEST_STRENGTH_MPA = 2000.0
 """Spring wire, maraging steel and metallic glass yield at about this; nothing that a flexspline is made of is
@@ -20,12 +20,15 @@ PART_OF: Mapping[str, PartName] = {
     "shaft_torque_peak": "shaft",
 }
 """The part that bears a peak, by the peak's name in result.json."""
-PEAK_OF = {
+StressCase = Literal["flexspline_torque", "shaft_torque", "wave_generator"]
+"""The flexspline or the shaft under the load torque, or the flexspline on the wave generator's ellipse."""
+STRESS_CASES: tuple[StressCase, ...] = get_args(StressCase)
+PEAK_OF: Mapping[str, str] = {
     "flexspline_torque": "torque_peak",
     "shaft_torque": "shaft_torque_peak",
     "wave_generator": "wave_generator_peak",
 }
-"""result.json's name of the peak of a field."""
+"""result.json's name of the peak of a case."""
 
 
 class Peak(Protocol):

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flexspline.fea.types import SolidField
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.analysis import RunResult
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, angle_rad
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash

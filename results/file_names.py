@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-PARTS = ("flexspline", "shaft")
+from flexspline.geometry.part_name import PART_NAMES
+
 RESULT = "result.json"
 """Of `run`, `stiffness` and `backlash`."""
 PREVIOUS = "result.previous.json"
@@ -35,7 +36,7 @@ def _reports(name: str) -> tuple[str, ...]:
 ONE_RECORD = (RESULT, PREVIOUS)
 RUN = (
     *ONE_RECORD, *_reports(REPORT),
-    *_pictures(*(f"{part}_{what}" for part in PARTS for what in ("mesh", "torque")), ELLIPSE),
+    *_pictures(*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torque")), ELLIPSE),
     *_pictures("backlash_budget", "torque_angle", "convergence", CURVE, LOADS),
 )  # fmt: skip
 GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
@@ -55,4 +56,4 @@ def of_export(formats: Iterable[str], deck: bool) -> tuple[str, ...]:
     """Of `export` with these `--format`s, and with or without `--deck`."""
     endings = [".step", ".stl", "_torque.vtu", *(f".{suffix}" for suffix in formats)]
     endings += ["_torsion.inp"] * deck
-    return (*(part + ending for part in PARTS for ending in endings), f"{ELLIPSE}.vtu")
+    return (*(part + ending for part in PART_NAMES for ending in endings), f"{ELLIPSE}.vtu")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 
 
 @dataclass(frozen=True)

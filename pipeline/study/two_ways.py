@@ -15,7 +15,8 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import lengths, with_values
-from flexspline.geometry.part import Part, PartName
+from flexspline.geometry.part import Part
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.revolved import revolved, torsion
 from flexspline.pipeline.study.evaluate import OUR_ERRORS

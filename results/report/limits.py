@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexspline.geometry.part_name import PART_NAMES
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
@@ -56,9 +57,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         found.append(["Largest torque", _linear(content, content.linear_limit)])
     peaks = (content.wave_generator_peak or content.flexspline_peak, content.shaft_peak)
     stated = [
-        f"{part}: {p.excluded}"
-        for part, p in zip(("flexspline", "shaft"), peaks, strict=True)
-        if p is not None
+        f"{part}: {p.excluded}" for part, p in zip(PART_NAMES, peaks, strict=True) if p is not None
     ]
     if stated:
         found.append(

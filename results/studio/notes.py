@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from flexspline.pipeline.live import View
+from flexspline.pipeline.stress_limits import StressCase
 from flexspline.results.studio.jobs import Kind
 
 _LARGEST_EXACT = 2**53
@@ -23,7 +23,7 @@ class Want(_Note):
     do: Literal["want"]
     number: int = Field(ge=0, le=_LARGEST_EXACT)
     tables: dict[str, Any]
-    view: View
+    view: StressCase
 
 
 class Start(_Note):

@@ -7,10 +7,10 @@ from functools import cache
 from typing import Any
 
 from flexspline.geometry.shapes import KINDS
-from flexspline.pipeline.live import View
+from flexspline.pipeline.stress_limits import StressCase
 from flexspline.results.style import ACCENT, COLOUR_MAP, PALETTE
 
-VIEW_TITLES: Mapping[View, str] = {
+VIEW_TITLES: Mapping[StressCase, str] = {
     "wave_generator": "On the wave generator",
     "flexspline_torque": "Flexspline under torque",
     "shaft_torque": "Shaft under torque",

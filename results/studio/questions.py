@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, get_args
+from typing import Any
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.live import (
-    View,
     field,
     first_field,
     gear,
@@ -20,12 +19,11 @@ from flexspline.pipeline.live import (
 )
 from flexspline.pipeline.revolved import revolved
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
-from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES, StressCase
 from flexspline.results.records import bounded_record, gear_figures, peak_record
 from flexspline.results.studio.shape import field_message, profile_message
 from flexspline.results.studio.worker import Fault
 
-VIEWS: tuple[View, ...] = get_args(View)
 RIM: Mapping[str, RimCase] = {figure_of(case): case for case in RIM_CASES}
 """The load cases of the rim by the figure that each answers with."""
 FIRST_STRESS = "first field wave_generator"
@@ -65,7 +63,7 @@ def _gear(design: Design) -> Found:
     return {"gear": {**gear_figures(curve), "line": line}}
 
 
-def _field(view: View) -> Callable[[Design], Found]:
+def _field(view: StressCase) -> Callable[[Design], Found]:
     def ask(design: Design) -> Found:
         return _solved(view, field(revolved(design), view), rough=False)
 
@@ -76,7 +74,7 @@ def _first(design: Design) -> Found:
     return _solved("wave_generator", first_field(revolved(design)), rough=True)
 
 
-def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
+def _solved(view: StressCase, solved: RevolvedField, rough: bool) -> Found:
     name = PEAK_OF[view]
     return {
         **peak_record(name, solved.peak),
@@ -85,7 +83,7 @@ def _solved(view: View, solved: RevolvedField, rough: bool) -> Found:
     }
 
 
-def _profile(view: View) -> Callable[[Design], Found]:
+def _profile(view: StressCase) -> Callable[[Design], Found]:
     def ask(design: Design) -> Found:
         chord = design.flexspline.wall_thickness_mm / CHORDS_PER_WALL
         return {"picture": profile_message(view, profile(revolved(design), view, chord))}
@@ -98,6 +96,6 @@ _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     GEAR: _gear,
     FIRST_STRESS: _first,
     **{name: _rim(name) for name in RIM},
-    **{f"field {view}": _field(view) for view in VIEWS},
-    **{f"profile {view}": _profile(view) for view in VIEWS},
+    **{f"field {view}": _field(view) for view in STRESS_CASES},
+    **{f"profile {view}": _profile(view) for view in STRESS_CASES},
 }

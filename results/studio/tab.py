@@ -17,10 +17,10 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
 from flexspline.pipeline.live import left_out
-from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.questions import FIRST_STRESS, GEAR, RIM, VIEWS
+from flexspline.results.studio.questions import FIRST_STRESS, GEAR, RIM
 from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
@@ -180,6 +180,6 @@ def _picture(view: str) -> list[str]:
 def _slow(view: str) -> list[str]:
     """The wave generator's peak, the whole gear, the other peaks, then the other rim cases; the peak of the
     view itself comes with its picture."""
-    peaks = [f"field {v}" for v in VIEWS if v != view]
+    peaks = [f"field {v}" for v in STRESS_CASES if v != view]
     peaks.sort(key=lambda question: question != "field wave_generator")
     return [*peaks[:1], GEAR, *peaks[1:], *(name for name in RIM if name not in QUICK)]

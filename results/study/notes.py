@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
+from flexspline.geometry.part_name import PART_NAMES
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
@@ -105,7 +106,7 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
 def _mass(design: Design) -> str:
     """Which density weighs the parts, and who says so."""
     said = []
-    for part in ("flexspline", "shaft"):
+    for part in PART_NAMES:
         material = design.part(part).material
         source = "as stated" if material.density_stated else "steel's, since the file states none"
         said.append(f"{material.density_kg_per_m3:g} kg/m³ ({source})")

@@ -14,7 +14,8 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
-from flexspline.geometry.part import NO_HOLES, PartName
+from flexspline.geometry.part import NO_HOLES
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.part_stiffness import part_stiffness

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench
 from flexspline.pipeline.diagnosis.specimens.sensitivity import (
     Sensitivity,

@@ -14,7 +14,7 @@ import numpy as np
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.keys import lengths, with_values
-from flexspline.geometry.part import PartName
+from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.diagnosis.specimens.bench import Bench
 from flexspline.pipeline.diagnosis.specimens.tolerance import general_tolerance_mm
 

@@ -10,8 +10,9 @@ import pytest
 
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline.live import View, field
+from flexspline.pipeline.live import field
 from flexspline.pipeline.revolved import revolved
+from flexspline.pipeline.stress_limits import StressCase
 from flexspline.results.studio.shape import field_message
 from flexspline.results.studio.simplify import simplified
 
@@ -52,7 +53,7 @@ def test_two_loops_stay_two() -> None:
 
 
 @pytest.mark.parametrize("view", ["wave_generator", "shaft_torque"])
-def test_a_cup_is_drawn_with_a_fraction_of_its_edges(view: View) -> None:
+def test_a_cup_is_drawn_with_a_fraction_of_its_edges(view: StressCase) -> None:
     design = revolved(design_from(tomllib.loads(template("cup"))))
     message = field_message(view, field(design, view))
     length = int.from_bytes(message[:4], "little")
