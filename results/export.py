@@ -9,6 +9,7 @@ from pathlib import Path
 
 from flexspline.fea.solid.deck import torsion_deck
 from flexspline.fea.solid.unfold import Parity
+from flexspline.fea.solid.whole import whole_part
 from flexspline.fea.types import SolidField
 from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.design import Design
@@ -20,7 +21,6 @@ from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.results.atomic import write_bytes
 from flexspline.results.mesh_files import PatchedMesh, write_mesh
-from flexspline.results.renders.whole import whole_part
 
 STL_CHORD_ERROR_MM = 0.01
 """Below what a printer or a viewer resolves."""

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.fea.solid.unfold import MIRRORED_CELL
+from flexspline.fea.solid.whole import FACES, whole_part
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
-from flexspline.results.renders.whole import FACES, whole_part
 
 if TYPE_CHECKING:
     import meshio

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexspline.fea.solid.whole import WholePart, whole_part
 from flexspline.fea.types import SolidField
 from flexspline.results.renders.scene import Shot, View, shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
@@ -22,7 +23,6 @@ from flexspline.results.renders.shown import (
 )
 from flexspline.results.renders.surface import crease_edges, lines, skin
 from flexspline.results.renders.turntable import Drawn, Said, turning
-from flexspline.results.renders.whole import WholePart, whole_part
 from flexspline.results.style import ACCENT
 
 _VIEWS = tuple(View(-68.0, elevation) for elevation in (34.0, 48.0, 62.0, -34.0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from flexspline.fea.solid.whole import WholePart, whole_part
 from flexspline.fea.types import SolidField
 from flexspline.results.renders.scene import shoot
 from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
@@ -19,7 +20,6 @@ from flexspline.results.renders.shown import (
 )
 from flexspline.results.renders.surface import opening, skin
 from flexspline.results.renders.turntable import Drawn, Said, turning
-from flexspline.results.renders.whole import WholePart, whole_part
 
 
 def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm: float) -> None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.fea.solid.whole import FACES, WholePart
 from flexspline.geometry.above_zero import ABOVE_ZERO
-from flexspline.results.renders.whole import FACES, WholePart
 
 if TYPE_CHECKING:
     import pyvista as pv

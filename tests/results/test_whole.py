@@ -14,9 +14,9 @@ from hand_made_tube import (
     twisted,
 )  # fmt: skip
 
+from flexspline.fea.solid.whole import whole_part
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 from flexspline.results.renders.surface import opening, skin
-from flexspline.results.renders.whole import whole_part
 
 SECTORS = [(30.0, 2), (90.0, 6), (180.0, 12), (360.0, 24)]
 ROUNDING = 1e-12  # of sums of a few thousand terms of order one

@@ -12,7 +12,7 @@ from flexspline.fea.types import TetMesh
 FACES = np.array([[0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [2, 0, 3, 6, 7, 9], [0, 2, 1, 6, 5, 4]])
 """Outward faces of a quadratic tetrahedron: three corners, then the middles of their edges."""
 MIRRORED_FACES = [2, 1, 0, 3]
-"""Which of FACES each becomes where corners 1 and 2 are exchanged, as `fea.solid.unfold` does."""
+"""Which of FACES each becomes where corners 1 and 2 are exchanged, as by `MIRRORED_CELL`."""
 
 
 @dataclass(frozen=True)
