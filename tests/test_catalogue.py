@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from catalogue_page import DATA, PAGE, page
-
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.catalogue.compare import compare, lost_motion
-from flexspline.pipeline.diagnosis.catalogue.soft import (
+from catalogue.compare import compare, lost_motion
+from catalogue.soft import (
     hardening_elements,
     soft_shape,
     straight_stiffness,
     torques,
 )
-from flexspline.pipeline.diagnosis.catalogue.table import (
+from catalogue.table import (
     CatalogueRow,
     read_catalogue,
     twist_rad,
 )
+from catalogue_page import DATA, PAGE, page
+
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.history import History

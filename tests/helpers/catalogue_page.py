@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexspline.pipeline.diagnosis.catalogue.compare import CatalogueFinding, compare
+from catalogue.compare import CatalogueFinding, compare
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "examples" / "catalogue"

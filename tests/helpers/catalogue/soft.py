@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from catalogue.table import CatalogueRow, twist_rad
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.catalogue.table import CatalogueRow, twist_rad
 from flexspline.pipeline.diagnosis.causes.cause import Element
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import LAWS
 

@@ -9,23 +9,22 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.diagnosis.catalogue.soft import (
+from catalogue.soft import (
     TOP,
     SoftShape,
     soft_shape,
     straight_stiffness,
     torques,
 )
-from flexspline.pipeline.diagnosis.catalogue.table import (
+from catalogue.table import (
     CatalogueRow,
     read_catalogue,
     twist_rad,
 )
+from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.outcome import Gain
-
-LOST_MOTION_SHARE = 0.04
-"""Of rated torque; 0.03 at some makers."""
+from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.gear import LOST_MOTION_SHARE
 
 
 @dataclass(frozen=True)
@@ -92,10 +91,10 @@ def compare(folder: Path, share: float = LOST_MOTION_SHARE) -> CatalogueFinding:
     sizes = sorted({r.size for r in rows})
     gain = Gain(
         f"each of {len(sizes)} sizes in turn, all its ratio classes at once",
-        _rms([c.line_pct for c in compared]),
-        _rms([c.line_pct for c in compared]),
-        _rms([c.soft_pct for c in compared]),
-        _rms([c.floor_pct for c in compared]),
+        rms([c.line_pct for c in compared]),
+        rms([c.line_pct for c in compared]),
+        rms([c.soft_pct for c in compared]),
+        rms([c.floor_pct for c in compared]),
         "%",
         tuple(range(len(rows))),
     )
@@ -155,8 +154,4 @@ def lost_motion(path: Path, share: float = LOST_MOTION_SHARE) -> tuple[LostMotio
 
 def _share(curve: np.ndarray, true: np.ndarray) -> float:
     """Rms difference in % of the rms of the true curve."""
-    return 100 * float(np.sqrt(np.mean((curve - true) ** 2) / np.mean(true**2)))
-
-
-def _rms(values: Sequence[float]) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
+    return 100 * rms(curve - true) / rms(true)
