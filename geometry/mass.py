@@ -15,31 +15,15 @@ GRAMS_PER_MM3 = 1e-6
 
 @dataclass(frozen=True)
 class Masses:
-    """Mass of each part [g], teeth left out, and the density that gave it [kg/m³].
-
-    `flexspline_density_stated`, `shaft_density_stated`: whether the design file gives the density; else it
-    is steel's.
-    """
+    """Mass of each part [g], teeth left out."""
 
     flexspline_g: float
     shaft_g: float
-    flexspline_kg_per_m3: float
-    shaft_kg_per_m3: float
-    flexspline_density_stated: bool
-    shaft_density_stated: bool
 
 
 def masses(design: Design) -> Masses:
     """What both parts weigh."""
-    flexspline, shaft = design.parts
-    return Masses(
-        mass_g(flexspline),
-        mass_g(shaft),
-        flexspline.material.density_kg_per_m3,
-        shaft.material.density_kg_per_m3,
-        flexspline.material.density_stated,
-        shaft.material.density_stated,
-    )
+    return Masses(*map(mass_g, design.parts))
 
 
 def mass_g(part: Part) -> float:
