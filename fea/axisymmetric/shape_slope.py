@@ -19,6 +19,7 @@ from scipy.sparse.linalg import spsolve
 
 from flexspline.fea.axisymmetric.bisection import refined
 from flexspline.fea.axisymmetric.harmonics import TANGENTIAL, Fixed, Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.lobes import LOBE_BULK
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.recovery import recovered
 from flexspline.fea.axisymmetric.torsion import MOST_TRIANGLES, bulk
@@ -29,8 +30,6 @@ from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import SAME, Meridian
 
-SLOPE_BULK = 0.6
-"""As for the lobes."""
 LAYER_POINTS = 16
 """On each edge: a layer may end within it."""
 TWIST = Harmonic(0, torsion=True)
@@ -88,7 +87,7 @@ class _Twisted:
         return self.error < self._tolerance
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
-        return refined(mesh, bulk(self._found.error, SLOPE_BULK))
+        return refined(mesh, bulk(self._found.error, LOBE_BULK))
 
 
 def moved_stiffness(found: Twist, outline: Meridian) -> float:

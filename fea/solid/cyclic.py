@@ -28,6 +28,7 @@ from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 HALF_DEG = 180.0
+"""Half of the circle: half a repeat of n is one n-th of it."""
 
 
 def repeats_of(mesh: TetMesh) -> int:

@@ -10,15 +10,13 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from skfem import condense
 
+from flexspline.fea.axisymmetric.harmonics import LOST_ENERGY_LIMIT
 from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import IterationError, SolveError
 from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_of_factors
 from flexspline.fea.solid.twolevel import iterate
 from flexspline.geometry.above_zero import ABOVE_ZERO
 
-LOST_ENERGY_LIMIT = 1e-6
-"""Largest |u·(Ku − f)| over u·Ku, as in `fea.axisymmetric.harmonics`: the ‖Ku − f‖/‖f‖ of a thin part
-that a load bends is large by rounding alone (2e-8 for a roof of one layer), the energy is not."""
 ITERATION_ENERGY = 1e-11
 """Energy of the error over u·Ku at which an iteration ends: it is K's own error, and displacements, of which
 energy is the square, are off by 3e-7."""
