@@ -15,7 +15,17 @@ FIXED = range(-6, 7)
 
 
 class FlexsplineError(Exception):
-    """The base of every error that the program raises on purpose."""
+    """The base of every error that the program raises on purpose; its text is one line.
+
+    Examples
+    --------
+    >>> from flexspline import FlexsplineError, load_design
+    >>> try:
+    ...     load_design("no-such-design.toml")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    no-such-design.toml: no such file
+    """
 
 
 class DesignError(FlexsplineError, ValueError):

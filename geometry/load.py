@@ -30,6 +30,13 @@ def load_design(path: Path | str) -> Design:
     DesignFileError : no such file, a directory, too large, not UTF-8, not TOML.
     DesignError : unknown, missing or wrong key, or impossible geometry. Keys are dotted, array
         elements are counted from 0: ``shaft.segment[1].length_mm``.
+
+    Examples
+    --------
+    >>> from flexspline import load_design
+    >>> design = load_design("examples/xb1-40.toml")
+    >>> design.name, design.flexspline.kind, design.gear.ratio
+    ('XB1-40 cup', 'cup', 100.0)
     """
     return design_from(read_toml(path))
 

@@ -1,39 +1,30 @@
 """What `import flexspline` offers: the commands as functions.
 
-Results are kept in the same cache as the commands'. Nothing is printed.
+Results are kept in the same cache as the commands'. Nothing is printed. What a function needs is imported
+in it: to name one loads nothing heavy, and `predict`, or a backlash of given stiffnesses, loads no solver.
 """
 
 from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from flexspline.fea.types import SolidField, Stiffness
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part_name import PART_NAMES, PartName
-from flexspline.pipeline.analysis import analysis_context, torque_field
-from flexspline.pipeline.backlash import Backlash
-from flexspline.pipeline.backlash import backlash as sum_of_terms
-from flexspline.pipeline.default_folder import default_folder
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.model.model_file import read_model_file
-from flexspline.pipeline.diagnosis.model.predict import Predicted, predict_file
-from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
-from flexspline.pipeline.ellipse_peak import ellipse_field
-from flexspline.pipeline.gear import GearCurve, gear_curve
-from flexspline.pipeline.load_cases import rim_stiffness
-from flexspline.pipeline.no_design import require_design
-from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
-from flexspline.pipeline.stiffness_pair import stiffness_pair
-from flexspline.pipeline.stress_limits import STRESS_CASES, StressCase
-from flexspline.pipeline.study.load import load_study
-from flexspline.pipeline.study.result import StudyResult
-from flexspline.pipeline.study.run import trial_store_of, whole_study
-from flexspline.pipeline.study.sensitivity import sensitivities
-from flexspline.pipeline.study.slope import Slope
+
+if TYPE_CHECKING:
+    from flexspline.fea.types import SolidField, Stiffness
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.backlash import Backlash
+    from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+    from flexspline.pipeline.diagnosis.model.predict import Predicted
+    from flexspline.pipeline.gear import GearCurve
+    from flexspline.pipeline.parts import AnalysisContext
+    from flexspline.pipeline.stress_limits import StressCase
+    from flexspline.pipeline.study.result import StudyResult
+    from flexspline.pipeline.study.slope import Slope
 
 
 def stiffness(
@@ -70,6 +61,11 @@ def stiffness(
     >>> K_b.guaranteed and lower < 31337 and upper > 31330
     True
     """
+    from flexspline.pipeline.analysis import analysis_context
+    from flexspline.pipeline.load_cases import rim_stiffness
+    from flexspline.pipeline.no_design import require_design
+    from flexspline.pipeline.part_stiffness import part_stiffness
+
     require_design(design)
     if part not in PART_NAMES:
         raise DesignError("part", part, 'must be "flexspline" or "shaft"')
@@ -106,6 +102,11 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     >>> round(double / once, 9)
     2.0
     """
+    from flexspline.pipeline.analysis import analysis_context, torque_field
+    from flexspline.pipeline.ellipse_peak import ellipse_field
+    from flexspline.pipeline.no_design import require_design
+    from flexspline.pipeline.stress_limits import STRESS_CASES
+
     require_design(design)
     context = analysis_context(design)
     if case == "wave_generator":
@@ -136,8 +137,16 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     >>> found.total_arcsec > found.shaft_arcsec + found.flexspline_arcsec
     True
     """
+    from flexspline.pipeline.backlash import backlash as sum_of_terms
+    from flexspline.pipeline.no_design import require_design
+    from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
+
     require_design(design)
-    used = stiffness_pair(analysis_context(design), K_b, K_e)
+    used = given_pair(K_b, K_e)
+    if used is None:
+        from flexspline.pipeline.analysis import analysis_context
+
+        used = stiffness_pair(analysis_context(design), K_b, K_e)
     return sum_of_terms(design, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad)
 
 
@@ -163,6 +172,10 @@ def gear(design: Design) -> GearCurve:
     >>> found.K1_Nm_per_rad < found.K2_Nm_per_rad < found.K3_Nm_per_rad
     True
     """
+    from flexspline.pipeline.analysis import analysis_context
+    from flexspline.pipeline.gear import gear_curve
+    from flexspline.pipeline.no_design import require_design
+
     require_design(design)
     return gear_curve(analysis_context(design))
 
@@ -183,6 +196,9 @@ def sensitivity(design: Design) -> tuple[Slope, ...]:
     >>> slopes["flexspline.wall_thickness_mm"].elasticity > 0
     True
     """
+    from flexspline.pipeline.no_design import require_design
+    from flexspline.pipeline.study.sensitivity import sensitivities
+
     require_design(design)
     return sensitivities(design, lambda line: None)
 
@@ -204,6 +220,10 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     >>> len(found.rows)
     9
     """
+    from flexspline.pipeline.default_folder import default_folder
+    from flexspline.pipeline.study.load import load_study
+    from flexspline.pipeline.study.run import trial_store_of, whole_study
+
     path = Path(path)
     asked = load_study(path)
     folder = Path(out) if out is not None else default_folder(path)
@@ -251,13 +271,22 @@ def diagnose(
     >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
     True
     """
+    from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
+    from flexspline.pipeline.no_design import require_design
+
+    @cache
+    def context() -> AnalysisContext:
+        from flexspline.pipeline.analysis import analysis_context
+
+        return analysis_context(design)
+
     require_design(design)
     found, _ = diagnose_with_stiffness(
         design,
         Path(path),
         (K_b, K_e),
         ("K_b = ", "K_e = "),
-        cache(lambda: analysis_context(design)),
+        context,
         counts_per_turn,
         gear=against == "gear",
     )
@@ -288,4 +317,7 @@ def predict(
     ...     print(fault)
     no-such-model.toml: no such file
     """
+    from flexspline.pipeline.diagnosis.model.model_file import read_model_file
+    from flexspline.pipeline.diagnosis.model.predict import predict_file
+
     return predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)
