@@ -15,8 +15,8 @@ from flexspline.pipeline.backlash import (
     backlash,
     series_stiffness,
 )
+from flexspline.pipeline.fast_model import left_out
 from flexspline.pipeline.linear_limit import linear_limit
-from flexspline.pipeline.live import left_out
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
 from flexspline.pipeline.study.figures import GIVEN_BY

@@ -19,7 +19,7 @@ from typing import Literal
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.template import design_text
-from flexspline.pipeline.live import left_out
+from flexspline.pipeline.fast_model import left_out
 
 Kind = Literal["solid", "report", "step", "diagnose"]
 SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step",

@@ -9,7 +9,7 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from
-from flexspline.pipeline.live import (
+from flexspline.pipeline.fast_model import (
     field,
     first_field,
     gear,

@@ -16,7 +16,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
-from flexspline.pipeline.live import left_out
+from flexspline.pipeline.fast_model import left_out
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received

@@ -10,7 +10,7 @@ import pytest
 
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline.live import field
+from flexspline.pipeline.fast_model import field
 from flexspline.pipeline.revolved import revolved
 from flexspline.pipeline.stress_limits import StressCase
 from flexspline.results.studio.shape import field_message

@@ -1,4 +1,4 @@
-"""A design while its dimensions move: the command line's axisymmetric answers, piece by piece.
+"""The fast model of a design: the command line's axisymmetric answers, piece by piece, for the live page.
 
 K_b of a flexspline with bolt holes is enclosed; everything else leaves holes and keyway out (`left_out` says
 so). Every body of revolution is solved exactly as `flexspline stiffness` does, to the design's own tolerance.

@@ -12,7 +12,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
-from flexspline.pipeline import live
+from flexspline.pipeline import fast_model
 from flexspline.pipeline.ellipse_peak import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.revolved import revolved
 from flexspline.pipeline.rim_case import RIM_CASES
@@ -27,8 +27,8 @@ def walled(wall_mm: float) -> Design:
 def test_the_last_of_the_refinements_is_what_is_found_in_one_go() -> None:
     design = walled(0.41)
     own = design.material.flexspline
-    first = live.first_field(design)
-    last = live.field(design, "wave_generator")
+    first = fast_model.first_field(design)
+    last = fast_model.field(design, "wave_generator")
     whole = ellipse_stress(
         design.part("flexspline").meridian, Elastic(own.youngs_modulus_GPa * 1e3, own.poissons_ratio),
         design.gear.centre_distance_mm, 0.41, PEAK_STRESS_TOLERANCE,
@@ -42,34 +42,36 @@ def test_the_last_of_the_refinements_is_what_is_found_in_one_go() -> None:
 
 def test_a_first_answer_after_the_last_leaves_it_as_it_is() -> None:
     design, other = walled(0.42), walled(0.43)
-    last = live.field(design, "wave_generator")
-    live.first_field(other)
-    assert live.field(design, "wave_generator").peak == last.peak
-    assert live.field(other, "wave_generator").peak.mises_MPa != last.peak.mises_MPa
+    last = fast_model.field(design, "wave_generator")
+    fast_model.first_field(other)
+    assert fast_model.field(design, "wave_generator").peak == last.peak
+    assert fast_model.field(other, "wave_generator").peak.mises_MPa != last.peak.mises_MPa
 
 
 def test_refinements_cut_short_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
     design = walled(0.4437)  # no other test asks for it, so it is not remembered
     monkeypatch.setattr("flexspline.fea.axisymmetric.peak_refinement.MOST_TRIANGLES", 10)
-    assert live.first_field(design).levels  # the first mesh is not refused
-    ended = live.field(design, "wave_generator")
+    assert fast_model.first_field(design).levels  # the first mesh is not refused
+    ended = fast_model.field(design, "wave_generator")
     assert len(ended.levels) == 1
     assert "none is refined beyond 10" in ended.peak.shortfall
     monkeypatch.undo()
-    assert not live.field(walled(0.4537), "wave_generator").peak.shortfall
+    assert not fast_model.field(walled(0.4537), "wave_generator").peak.shortfall
 
 
 def test_a_shaft_without_its_holes_and_teeth_as_a_ring_have_no_guaranteed_bounds() -> None:
     holed = design_from(tomllib.loads(template("cup")))
     assert holed.flexspline.bolt_count
     assert holed.shaft.bolt_count
-    kinds = [[k.guaranteed for k in live.torsion(design)] for design in (CUP, holed)]
+    kinds = [[k.guaranteed for k in fast_model.torsion(design)] for design in (CUP, holed)]
     assert kinds == [[True, True], [True, False]]
     toothed = with_values(CUP, {"flexspline.bolt_count": 0})
     drawn = toothed.flexspline.model_copy(update={"teeth": "drawn"})
-    kinds = [k.guaranteed for k in live.torsion(toothed.model_copy(update={"flexspline": drawn}))]
+    kinds = [
+        k.guaranteed for k in fast_model.torsion(toothed.model_copy(update={"flexspline": drawn}))
+    ]
     assert kinds == [False, True]
 
 
 def test_lobe_cases_are_estimates() -> None:
-    assert not any(live.rim(CUP, case).guaranteed for case in RIM_CASES)
+    assert not any(fast_model.rim(CUP, case).guaranteed for case in RIM_CASES)
