@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from flexspline.pipeline.diagnosis.whole_gear.identification import FittedInput, GearInputs
+    from flexspline.pipeline.diagnosis.whole_gear.fitted_input import FittedInput
+    from flexspline.pipeline.diagnosis.whole_gear.identification import GearInputs
     from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair
 
 

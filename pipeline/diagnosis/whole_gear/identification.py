@@ -12,16 +12,19 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 from scipy.special import chdtrc
 
 from flexspline.fea.gear.equilibrium import Equilibrium
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.diagnose import SweepAnalysis
 from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve, central_curve
+from flexspline.pipeline.diagnosis.whole_gear.fitted_input import (
+    FittedInput,
+    angles_as_recorded,
+    fitted,
+)
 from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.diagnosis.whole_gear.pairs import FittedPair, fitted_pairs
 from flexspline.pipeline.gear_chain import Chain
@@ -32,28 +35,11 @@ MISFIT_P_VALUE = 0.01
 """Probability of a chi square as large below which a curve does not fit."""
 RIVAL_CHI_SQUARE = 6.0
 """Chi square by which a rival may fit worse: 2·3 nats, odds of 20 to 1."""
-SECANT_STEPS = 4
-"""Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""
 RIVAL_TORQUE_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Torques at which rivals are compared, of the largest measured."""
 MEASURABLE_DEVIATIONS = 3.0
 """Deviations of a place by which two rivals must differ to be told apart there."""
-KNOTS = 16
-"""Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
 Outcome = Literal["consistent", "named", "pair", "unknown"]
-
-
-@dataclass(frozen=True)
-class FittedInput:
-    """Where an input fits best, one standard deviation, and the chi square left with it."""
-
-    key: str
-    unit: str
-    nominal: float
-    value: float
-    std: float
-    chi_square: float
-    at_limit: bool
 
 
 @dataclass(frozen=True)
@@ -110,7 +96,7 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     start = chain.model.at_torque(
         curve.smallest_Nm
     )  # its solve takes longest; the others start from it
-    nominal = _angles(chain, curve, start)
+    nominal = angles_as_recorded(chain, curve, start)
     curve = _with_numerical(curve, nominal)
     off = curve.angle_arcsec - nominal
     base = float(((off / curve.std_arcsec) ** 2).sum())
@@ -126,7 +112,7 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     one = inputs[best.key]
 
     def alone(learnt: CentralCurve) -> Chain:
-        drawn = _angles(chain, learnt, start)
+        drawn = angles_as_recorded(chain, learnt, start)
         return one.changed(chain, fitted(one, chain, learnt, drawn, start).value)
 
     before, left = _on_other_cycles(alone, chain, analysis, start)
@@ -154,7 +140,7 @@ def _of_pairs(
         return fitted_pairs(
             of,
             chain,
-            lambda each: _angles(each, learnt, start),
+            lambda each: angles_as_recorded(each, learnt, start),
             learnt.angle_arcsec,
             learnt.std_arcsec,
         )
@@ -172,63 +158,6 @@ def _of_pairs(
         lambda learnt: together(learnt, best.inputs)[0].changed(chain), chain, analysis, start
     )
     return replace(plain, outcome="pair", pairs=pairs, before_arcsec=before, left_arcsec=left)
-
-
-def fitted(
-    one: GearInput, chain: Chain, curve: CentralCurve, nominal: np.ndarray, start: Equilibrium
-) -> FittedInput:
-    """Its value of least chi square, by secants from the nominal curve (m,) [arcsec]; `start`: as below."""
-    value, angles, trial = one.nominal, nominal, one.nominal + one.first
-    best = (value, _chi_square(curve, angles))
-    slope = np.zeros_like(nominal)
-    states: list[Equilibrium] = []
-    for _ in range(SECANT_STEPS):
-        gear = one.changed(chain, trial)
-        try:
-            if gear.model is not chain.model or not states:  # a spring in series turns no contact
-                states = _states(gear, curve, start)
-            other = _as_recorded(gear, curve, states)
-        except ComputationError:  # no gear with that value
-            break
-        slope = (other - angles) / (trial - value)
-        value, angles = trial, other
-        best = min(best, (value, _chi_square(curve, angles)), key=lambda each: each[1])
-        weight = slope / curve.std_arcsec**2
-        if not weight @ slope > 0:  # it moves nothing
-            break
-        step = float(weight @ (curve.angle_arcsec - angles)) / float(weight @ slope)
-        trial = float(np.clip(value + step, one.low, one.high))
-        if abs(trial - value) < 0.01 * one.first:
-            break
-    information = float(((slope / curve.std_arcsec) ** 2).sum())
-    std = information**-0.5 if information > 0 else float("inf")
-    at_limit = best[0] in (one.low, one.high)
-    return FittedInput(one.key, one.unit, one.nominal, best[0], std, best[1], at_limit)
-
-
-def _angles(chain: Chain, curve: CentralCurve, start: Equilibrium) -> np.ndarray:
-    """(m,) the gear's angle as the record has it [arcsec]: its mean over the torques of each place.
-
-    `start`: an equilibrium at about the smallest torque, of a gear like it.
-    """
-    return _as_recorded(chain, curve, _states(chain, curve, start))
-
-
-def _knots(curve: CentralCurve) -> np.ndarray:
-    return np.geomspace(curve.smallest_Nm, curve.largest_Nm, KNOTS)
-
-
-def _states(chain: Chain, curve: CentralCurve, start: Equilibrium) -> list[Equilibrium]:
-    return chain.along(_knots(curve).tolist(), start)
-
-
-def _as_recorded(chain: Chain, curve: CentralCurve, states: list[Equilibrium]) -> np.ndarray:
-    angle = PchipInterpolator(_knots(curve), [chain.angle(at) for at in states])
-    return ARCSEC_PER_RAD * np.array([float(angle(t).mean()) for t in curve.torques_Nm])
-
-
-def _chi_square(curve: CentralCurve, angles: np.ndarray) -> float:
-    return float((((curve.angle_arcsec - angles) / curve.std_arcsec) ** 2).sum())
 
 
 def _with_numerical(curve: CentralCurve, nominal: np.ndarray) -> CentralCurve:
@@ -249,8 +178,10 @@ def _on_other_cycles(
     learnt, other = (central_curve(analysis, cycles[start::2].tolist()) for start in (0, 1))
     if learnt is None or other is None:
         return None, None
-    better = learn(_with_numerical(learnt, _angles(chain, learnt, start)))
-    before, after = (other.angle_arcsec - _angles(each, other, start) for each in (chain, better))
+    better = learn(_with_numerical(learnt, angles_as_recorded(chain, learnt, start)))
+    before, after = (
+        other.angle_arcsec - angles_as_recorded(each, other, start) for each in (chain, better)
+    )
     return rms(before), rms(after)
 
 
