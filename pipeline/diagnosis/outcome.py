@@ -11,6 +11,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.shortage import Shortage
 from flexspline.pipeline.diagnosis.structure import BrokenLimit, Structure
 
@@ -79,7 +80,7 @@ class Unexplained:
 class Gain:
     """Errors on held-out data, before and after, and the floor that noise sets; all in `unit`."""
 
-    held_out: str
+    held_out: LeftOut
     rmse_before: float
     rmse_calibrated: float
     rmse_after: float
@@ -88,10 +89,13 @@ class Gain:
     held_out_rows: tuple[int, ...] = ()
     left: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False, repr=False)
     """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
-    channel: str = ""
-    """Of which a whole level was held out: an amplitude, a rate, a temperature."""
     stated_std: float = 0.0
     """Root mean square of the standard deviation that what was learnt states for these rows, noise aside."""
+
+    @property
+    def channel(self) -> str:
+        """Of which a whole level was held out: an amplitude, a rate, a temperature; else ""."""
+        return self.held_out.channel if self.held_out.level else ""
 
 
 Aim = Literal["more_data", "find_structure", "confirm", "separate"]

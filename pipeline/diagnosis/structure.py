@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from flexspline.pipeline.diagnosis.left_out import LeftOut
+
 FormKind = Literal[
     "smooth",
     "even_curve",
@@ -102,7 +104,7 @@ class NegativeGap:
 class MissedLevel:
     """Errors [arcsec rms] at a level held out, with what was learnt on the other rows and without it."""
 
-    held_out: str
+    held_out: LeftOut
     with_causes_arcsec: float
     without_arcsec: float
 

@@ -11,8 +11,9 @@ from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.sweep.next_measurement import MORE_CYCLES, WARMER_K
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.structure_words import words_of
-from flexspline.results.diagnosis.words import channel_words, title_of
+from flexspline.results.diagnosis.words import title_of
 
 CONFIRMS = {
     YOUNGS_MODULUS: "a tensile or resonance test of the same bar gives E directly",

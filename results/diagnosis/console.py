@@ -8,6 +8,7 @@ from pathlib import Path
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.channels import channel_words, left_out_words
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.structure_words import structure_words
@@ -16,7 +17,6 @@ from flexspline.results.diagnosis.words import (
     calibrated_words,
     capital,
     cause_title,
-    channel_words,
     figures_text,
     magnitude_words,
     sure_words,
@@ -65,7 +65,9 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
     """Errors on what was held out: between other cycles, then on whole amplitudes, rates and temperatures."""
     lines, gain = [], outcome.gain
     if gain is not None:
-        lines.append(f"  Error on {gain.held_out}, not used for fitting, in {gain.unit} rms:")
+        lines.append(
+            f"  Error on {left_out_words(gain.held_out)}, not used for fitting, in {gain.unit} rms:"
+        )
         for words, value in (
             ("simulation as it stands", gain.rmse_before),
             (calibrated_words(gain), gain.rmse_calibrated),
@@ -79,7 +81,7 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
         )
     for level in outcome.gains_at_levels:
         before, after = figures_text(level.rmse_before), figures_text(level.rmse_after)
-        lines.append(f"    {level.held_out:<60} {before:<7} {after}")
+        lines.append(f"    {left_out_words(level.held_out):<60} {before:<7} {after}")
     return lines
 
 

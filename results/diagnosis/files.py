@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.model.model_file import Provenance
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.atomic import write_together
+from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.record import Record
 from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.figures.diagnosis.draw import draw_figures
@@ -76,4 +77,5 @@ def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:
     )
     outcome, sweep = diagnosis.outcome, diagnosis.sweep
     doubt = sweep.doubt if sweep is not None else None
-    return model_text(diagnosis.model, provenance, outcome.causes, outcome.gain, doubt)
+    held_out = "" if outcome.gain is None else left_out_words(outcome.gain.held_out)
+    return model_text(diagnosis.model, provenance, outcome.causes, outcome.gain, doubt, held_out)

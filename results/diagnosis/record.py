@@ -7,6 +7,7 @@ from typing import Any
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import Gain, NamedCause
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_record
 from flexspline.results.diagnosis.notes import notes
@@ -83,7 +84,7 @@ def _cause(cause: NamedCause) -> Record:
 
 def _gain(gain: Gain) -> Record:
     return {
-        "held_out": gain.held_out,
+        "held_out": left_out_words(gain.held_out),
         "rmse_before": gain.rmse_before,
         "rmse_calibrated": gain.rmse_calibrated,
         "rmse_after": gain.rmse_after,

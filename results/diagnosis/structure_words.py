@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.structure import (
 )
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import BOTH, DELAY, FILTER
 from flexspline.pipeline.diagnosis.sweep.slip import OUTER
+from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import title_of
 
 FORMS: Mapping[tuple[FormKind, str], str] = {
@@ -108,9 +109,9 @@ def words_of(structure: Structure, channel: str) -> str:
             return f"the best explanation needs a gap of {gap}, which no gear has"
         case MissedLevel():
             return (
-                f"what was found does not hold at {structure.held_out}: learnt on the other rows it misses "
-                f"these by {structure.with_causes_arcsec:.3g} arcsec rms, the simulation without it by "
-                f"{structure.without_arcsec:.3g}"
+                f"what was found does not hold at {left_out_words(structure.held_out)}: learnt on the other "
+                f"rows it misses these by {structure.with_causes_arcsec:.3g} arcsec rms, the simulation "
+                f"without it by {structure.without_arcsec:.3g}"
             )
         case BackwardLoop():
             return _backward(structure)

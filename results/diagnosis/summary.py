@@ -13,12 +13,12 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
 from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
 from flexspline.pipeline.diagnosis.structure import FarSlope
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.shortage_words import shortage_words
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
-    channel_words,
     magnitude_words,
     plus_minus,
     title_of,

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.results.diagnosis.words import channel_words
+from flexspline.results.diagnosis.channels import channel_words
 
 BOTH_WAYS = 0.05
 """Of the rows: fewer on one side, or in one direction, are an approach or a turn."""

@@ -7,28 +7,9 @@ from math import floor, log, log10
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.numbers import grouped
 
-CHANNELS = {
-    "torque_Nm": "torque",
-    "angle": "the angle itself",
-    "angle_arcsec": "the angle itself",
-    "specimen": "further specimens",
-    "specimen_order": "the order of the specimens",
-    "repeat": "repetition",
-    "sweep": "a closed sweep",
-    "direction": "direction of loading",
-    "cycle": "load cycle",
-    "time_s": "time",
-    "row": "the order of the rows",
-    "temperature_C": "temperature",
-    "input_angle_deg": "wave generator angle",
-    "unit": "unit under test",
-    "torque_rate": "rate of torque",
-    "torque_amplitude": "amplitude of torque",
-    "hold": "holds at constant torque",
-}
-"""Channel or thing to vary, as a person says it."""
 SPECIMENS = {
     YOUNGS_MODULUS: "material softer or stiffer than stated",
     LOAD_ZONE: "load that enters at the lobes, not evenly",
@@ -47,13 +28,6 @@ EVIDENCE_WORDS = ((10.0, "beyond doubt"), (5.0, "very sure"), (3.0, "sure"), (1.
 
 WIDER = 1.1
 """Times the width at T = 0 that a friction loop is somewhere else, where it is said."""
-
-
-def channel_words(name: str) -> str:
-    """A channel's name in words; a design key without its unit; an unknown one as it is."""
-    if "." in name:
-        return name.rpartition("_")[0].replace(".", " ").replace("_", " ")
-    return CHANNELS.get(name, name)
 
 
 def sure_words(cause: NamedCause) -> str:

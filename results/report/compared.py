@@ -8,8 +8,9 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.stiffness_pair import StiffnessPair
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.data_used import rows_used
-from flexspline.results.diagnosis.words import channel_words, figures_text
+from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.numbers import grouped
 
 

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause, Unexplained
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.data_used import calibrated_sentences
 from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.structure_words import structure_words
@@ -17,7 +18,6 @@ from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
     capital,
     cause_title,
-    channel_words,
     figures_text,
     magnitude_words,
     odds_words,

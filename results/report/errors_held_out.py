@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
+from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import calibrated_words, capital, figures_text
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
 
@@ -15,7 +16,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if gain is None:
         return
     yield Heading("Prediction error on data not used in the fit")
-    yield Paragraph(f"Held out: {gain.held_out}.")
+    yield Paragraph(f"Held out: {left_out_words(gain.held_out)}.")
     yield Table(
         columns=(Column("Prediction by", grow=1), Column(f"{gain.unit} rms", "right")),
         rows=tuple((name, figures_text(value)) for name, value in _errors(gain, found)),
@@ -44,7 +45,7 @@ def errors_at_levels(gains: Sequence[Gain]) -> Iterable[Block]:
         ),
         rows=tuple(
             (
-                capital(g.held_out),
+                capital(left_out_words(g.held_out)),
                 *(figures_text(v) for v in (g.rmse_before, g.rmse_calibrated, g.rmse_after)),
             )
             for g in gains

@@ -6,7 +6,8 @@ import json
 from typing import Any
 
 from flexspline.geometry.design import Design
-from flexspline.results.diagnosis.words import capital, channel_words, figures_text, title_of
+from flexspline.results.diagnosis.channels import channel_words
+from flexspline.results.diagnosis.words import capital, figures_text, title_of
 from flexspline.results.studio.answer import message
 from flexspline.results.studio.jobs import Kind
 

@@ -61,7 +61,7 @@ Soft wind-up with one shape for each ratio class, and T1 in proportion to size³
 |---|---|---|---|---|
 {shapes}
 
-Held out: {gain.held_out}. The size left out lends
+Held out: each of {gain.held_out.each} sizes in turn, all its ratio classes at once. The size left out lends
 its straight stiffness (all that a simulation knows) and nothing else. Rms error of twist, over all
 rows: straight line {gain.rmse_calibrated:.1f} %, soft wind-up {gain.rmse_after:.1f} %, rounding of the \
 printed K {gain.noise_floor:.1f} %; {100 * above:.0f} % of the

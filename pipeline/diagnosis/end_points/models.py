@@ -20,6 +20,7 @@ from flexspline.pipeline.diagnosis.end_points.regressors import (
     EndPointRegressor,
     end_point_regressors,
 )
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Gain
@@ -108,6 +109,6 @@ def gain_of(deviations: UnitDeviations, best: Hypothesis, names: Sequence[str]) 
         for term, amplitude in zip(terms, trained.mean, strict=True):
             after[out] -= amplitude * term.column[out]
     return Gain(
-        f"each of {len(names)} units in turn", rms(deviations.deviation), rms(calibrated), rms(after),
+        LeftOut("unit", each=len(names)), rms(deviations.deviation), rms(calibrated), rms(after),
         best.best.reading, held_out_rows=tuple(range(len(deviations.deviation))),
     )  # fmt: skip

@@ -30,14 +30,18 @@ def model_text(
     found: Sequence[NamedCause] = (),
     gain: Gain | None = None,
     doubt: Doubt | None = None,
+    held_out: str = "",
 ) -> str:
-    """The file's text; `found` and `gain` are told beside the numbers that predict."""
+    """The file's text; `found` and `gain` are told beside the numbers that predict.
+
+    `held_out` : in words, what the gain was measured on.
+    """
     name = one_line(provenance.design)
     lines = [f"# Extended model of {name}, written by {provenance.program}.", ABOUT]
     lines += [
         f"format = {FORMAT}",
         "",
-        *_provenance(provenance, gain),
+        *_provenance(provenance, gain, held_out),
         *_calibrated(model),
         *_bend(model.bend),
     ]
@@ -50,7 +54,7 @@ def model_text(
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _provenance(p: Provenance, gain: Gain | None) -> list[str]:
+def _provenance(p: Provenance, gain: Gain | None, held_out: str) -> list[str]:
     lines = [
         "[provenance]",
         f"program = {quoted(p.program)}",
@@ -70,7 +74,7 @@ def _provenance(p: Provenance, gain: Gain | None) -> list[str]:
     if gain is not None:
         lines += [
             "[provenance.gain]   # root mean square error on rows not used for fitting",
-            f"held_out = {quoted(gain.held_out)}",
+            f"held_out = {quoted(held_out)}",
             f"rmse_before = {number(gain.rmse_before)}   # simulation, its zero fitted",
             f"rmse_calibrated = {number(gain.rmse_calibrated)}   # stiffness and gap fitted too",
             f"rmse_after = {number(gain.rmse_after)}   # with the causes below",

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.geometry.design import Design
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Doing, Gain, NextMeasurement
 from flexspline.pipeline.diagnosis.robust import rms
@@ -75,7 +76,7 @@ def diagnose_specimens(
     gain = None
     if n >= FEWEST_HELD_OUT:
         gain = Gain(
-            f"each of {n} specimens in turn", 100 * rms(before), 100 * rms(calibrated), 100 * rms(after),
+            LeftOut("specimen", each=n), 100 * rms(before), 100 * rms(calibrated), 100 * rms(after),
             100 * rms(chosen.noise), "%", tuple(range(n)),
         )  # fmt: skip
     most = max(set(parts), key=parts.count)

@@ -103,14 +103,13 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     left = {"before": before[test], "calibrated": calibrated[test], "after": after[test]}
     floor = explained.identified.fit.residual_as_read()[test]  # of these rows, not of all
     return Gain(
-        split.label,
+        split.what,
         rmse_before=_rms(left["before"]),
         rmse_calibrated=_rms(left["calibrated"]),
         rmse_after=_rms(left["after"]),
         noise_floor=_rms(floor),
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
         left=left,
-        channel=split.channel,
         stated_std=_rms(fit.stated_std()[test]),
     )
 

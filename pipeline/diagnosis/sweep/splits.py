@@ -8,31 +8,28 @@ from math import log
 
 import numpy as np
 
-from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """A channel of which a record may have several levels: its words, and what parts two levels.
+    """A channel of which a record may have several levels, and what parts two of them.
 
     `step` : in the channel's unit, or in the logarithm of its value (`by_ratio`).
     """
 
     channel: str
-    name: str
-    unit: str
-    digits: str
     step: float
     by_ratio: bool = False
 
 
-AMPLITUDE = _Kind("torque_amplitude", "amplitude", "N·m", ".3g", log(1.2), by_ratio=True)
+AMPLITUDE = _Kind("torque_amplitude", log(1.2), by_ratio=True)
 """1.2: the turns of smaller loops are then clear of the larger ones' (two rows at each are never used)."""
-RATE = _Kind("torque_rate", "rate", "N·m/s", ".2g", log(1.5), by_ratio=True)
+RATE = _Kind("torque_rate", log(1.5), by_ratio=True)
 """1.5: what lags in proportion to the rate then differs by half."""
-TEMPERATURE = _Kind("temperature_C", "temperature", "°C", ".1f", 4.0)
+TEMPERATURE = _Kind("temperature_C", 4.0)
 """4 K: what an ordinary room, ±2 K, does not do by itself."""
 
 
@@ -45,11 +42,10 @@ EVERY = 3
 
 @dataclass(frozen=True)
 class Split:
-    """What is held out, in words, and its rows (n,); `channel` where it is a whole level of one."""
+    """What is held out, and its rows (n,)."""
 
-    label: str
+    what: LeftOut
     rows: np.ndarray
-    channel: str = ""
 
 
 def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Split | None:
@@ -65,20 +61,18 @@ def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Sp
         places = [1] if count == 2 else [c for c in range(1, count - 1) if c % EVERY == 1]
         chosen = present[places]
         own = names[0] if len(names[0]) == count else tuple(present + 1.0)
-        label = listed((f"{own[c]:g}" for c in places), "cycles")
-        return Split(
-            f"cycle{'s' if len(chosen) > 1 else ''} {label}", np.isin(history.cycle, chosen)
-        )
+        left = LeftOut("cycle", tuple(float(own[c]) for c in places))
+        return Split(left, np.isin(history.cycle, chosen))
     position = history.input_angle_deg
     if position is not None and len(spots := np.unique(position)) >= FEWEST_PLACES:
         chosen_places = spots[1::EVERY]
-        label = listed((f"{p:g}" for p in chosen_places), "positions")
-        return Split(f"input_angle_deg {label}", np.isin(position, chosen_places))
+        left = LeftOut("input_angle_deg", tuple(map(float, chosen_places)))
+        return Split(left, np.isin(position, chosen_places))
     units = history.unit_slices
     if len(units) >= FEWEST_UNITS:
         rows = np.zeros(len(history), bool)
         rows[units[1]] = True
-        return Split("unit 2", rows)
+        return Split(LeftOut("unit", (2.0,)), rows)
     return None
 
 
@@ -102,7 +96,8 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
             for unit in history.unit_slices:
                 rows[unit] &= not rows[unit].all()
             if rows.any() and not any(np.array_equal(rows, other.rows) for other in found):
-                found.append(Split(_words(kind, values[chosen]), rows, kind.channel))
+                ends = (float(values[chosen].min()), float(values[chosen].max()))
+                found.append(Split(LeftOut(kind.channel, ends, level=True), rows))
     return found
 
 
@@ -140,13 +135,3 @@ def _levels(values: np.ndarray, step: float) -> np.ndarray:
             first, level = values[k], level + 1
         out[k] = level
     return out
-
-
-def _words(kind: _Kind, values: np.ndarray) -> str:
-    """A level in words: its value, or its ends where they differ in the digits told."""
-    low, high = (format(v, kind.digits) for v in (values.min(), values.max()))
-    return (
-        f"{kind.name} {low} {kind.unit}"
-        if low == high
-        else f"{kind.name} {low} to {high} {kind.unit}"
-    )

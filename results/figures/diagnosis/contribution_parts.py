@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Effect
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import (
     capital,
     cause_title,
-    channel_words,
     magnitude_words,
     odds_words,
     sure_words,

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
-from flexspline.results.diagnosis.words import channel_words
+from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.figures.diagnosis.captions import caption
 from flexspline.results.figures.diagnosis.contribution_parts import parts
 from flexspline.results.figures.diagnosis.contributions import write_contributions

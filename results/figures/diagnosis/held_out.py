@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
@@ -62,7 +63,7 @@ def write_held_out(path: Path, gain: Gain) -> None:
         figure.text(
             0.035,
             0.945,
-            f"Error on {gain.held_out}, not used for fitting",
+            f"Error on {left_out_words(gain.held_out)}, not used for fitting",
             fontsize=12,
             weight="bold",
             va="center",

@@ -8,7 +8,8 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
-from flexspline.results.diagnosis.words import channel_words, figures_text, title_of
+from flexspline.results.diagnosis.channels import channel_words
+from flexspline.results.diagnosis.words import figures_text, title_of
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.style import INK, PALETTE, new_figure, save_png, styled

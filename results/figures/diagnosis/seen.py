@@ -17,17 +17,10 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import ChannelTest
 from flexspline.pipeline.diagnosis.timeless import over_rows
+from flexspline.results.diagnosis.channels import CHANNELS
 
 MOST_DRAWN_POINTS = 4000
 """Drawn in one panel; of more, every k-th is drawn."""
-LABELS = {
-    "torque_Nm": "output torque in N·m",
-    "time_s": "time in s",
-    "cycle": "load cycle",
-    "temperature_C": "temperature in °C",
-    "input_angle_deg": "wave generator angle in °",
-    "unit": "unit under test",
-}
 LONGEST_NAME = 12
 """Letters of a name below an axis; where one is longer, all are numbered instead."""
 
@@ -117,18 +110,20 @@ class SweepPictureData:
     def channels(self) -> list[Channel]:
         """Channels that were recorded and vary."""
         sweep, h = self.explained.prepared.sweep, self.history
-        found = [Channel("torque_Nm", LABELS["torque_Nm"], self.output_Nm)]
+        found = [Channel("torque_Nm", CHANNELS["torque_Nm"].label, self.output_Nm)]
         if sweep.history.time_s is not None and h.time_s is not None:
             found.append(_time(h.time_s))
         if h.cycle.max() > 0:
-            found.append(Channel("cycle", LABELS["cycle"], _own_numbers(sweep)))
+            found.append(Channel("cycle", CHANNELS["cycle"].label, _own_numbers(sweep)))
         if h.temperature_C is not None:
-            found.append(Channel("temperature_C", LABELS["temperature_C"], h.temperature_C))
+            found.append(Channel("temperature_C", CHANNELS["temperature_C"].label, h.temperature_C))
         if h.input_angle_deg is not None:
-            found.append(Channel("input_angle_deg", LABELS["input_angle_deg"], h.input_angle_deg))
+            found.append(
+                Channel("input_angle_deg", CHANNELS["input_angle_deg"].label, h.input_angle_deg)
+            )
         if len(sweep.units) > 1:
             names = plain_names(sweep.units)
-            found.append(Channel("unit", LABELS["unit"], h.unit.astype(float), names))
+            found.append(Channel("unit", CHANNELS["unit"].label, h.unit.astype(float), names))
         return [c for c in found if np.ptp(c.values) > 0]
 
     def channel_name(self, key: str) -> str:
@@ -164,7 +159,7 @@ def _time(seconds: np.ndarray) -> Channel:
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if longest > 3 * size:
             return Channel("time_s", f"time in {unit}", passed / size)
-    return Channel("time_s", LABELS["time_s"], passed)
+    return Channel("time_s", CHANNELS["time_s"].label, passed)
 
 
 def _own_numbers(sweep: Sweep) -> np.ndarray:

@@ -10,7 +10,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.results.diagnosis.words import channel_words, figures_text
+from flexspline.results.diagnosis.channels import channel_words
+from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled

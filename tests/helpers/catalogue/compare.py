@@ -22,6 +22,7 @@ from catalogue.table import (
     twist_rad,
 )
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.gear import LOST_MOTION_SHARE
@@ -90,7 +91,7 @@ def compare(folder: Path, share: float = LOST_MOTION_SHARE) -> CatalogueFinding:
     classes = tuple(dict.fromkeys(r.ratio_class for r in rows))
     sizes = sorted({r.size for r in rows})
     gain = Gain(
-        f"each of {len(sizes)} sizes in turn, all its ratio classes at once",
+        LeftOut("size", each=len(sizes)),
         rms([c.line_pct for c in compared]),
         rms([c.line_pct for c in compared]),
         rms([c.soft_pct for c in compared]),

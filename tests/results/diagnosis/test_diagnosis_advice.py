@@ -7,8 +7,8 @@ from flexspline.pipeline.diagnosis.outcome import NextMeasurement
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.results.diagnosis.advice import SHOWS_STRUCTURE, why
+from flexspline.results.diagnosis.channels import CHANNELS, channel_words
 from flexspline.results.diagnosis.data_used import calibrated_sentences
-from flexspline.results.diagnosis.words import CHANNELS
 
 
 @pytest.mark.parametrize("channel", sorted({*CHANNELS, *SHOWS_STRUCTURE}))
@@ -17,7 +17,7 @@ def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
         NextMeasurement(channel, "find_structure", structure=(UnnamedForm("jumps"),)), "sweep"
     )
     assert said.startswith(
-        f"the structure lies in {CHANNELS[channel]} (jumps with the torque's motion; "
+        f"the structure lies in {channel_words(channel)} (jumps with the torque's motion; "
     )
     assert "_" not in said
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from histories import PREDICTION, joined, sweep
 
+from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
@@ -18,6 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels, refute
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.splits import between_others, whole_levels
+from flexspline.results.diagnosis.channels import left_out_words
 
 NOISE_ARCSEC = 0.5
 CROSSED_OVER = 0.02
@@ -48,10 +50,10 @@ def test_many_cycles_held_out_are_counted_and_not_all_listed() -> None:
     history = sweep(cycles=30, hold=0, rows=1200)
     split = between_others(history, (tuple(float(n) for n in range(1, 31)),))
     assert split is not None
-    assert split.label == "cycles 2, 5, 8, … 29 (10 cycles)"
+    assert left_out_words(split.what) == "cycles 2, 5, 8, … 29 (10 cycles)"
     few = between_others(sweep(cycles=8, hold=0, rows=800), (tuple(range(1, 9)),))
     assert few is not None
-    assert few.label == "cycles 2, 5"
+    assert few.what == LeftOut("cycle", (2.0, 5.0))
 
 
 def levels(amplitudes: tuple[float, ...], seconds: tuple[float, ...]) -> History:
@@ -72,7 +74,10 @@ def levels(amplitudes: tuple[float, ...], seconds: tuple[float, ...]) -> History
 
 def test_each_amplitude_rate_and_temperature_is_held_out_as_a_whole() -> None:
     history = levels((1.0, 0.5, 1.0, 0.25), (1.0, 2.0, 4.0, 1.0))
-    found = {(s.channel, s.label): set(history.cycle[s.rows]) for s in whole_levels(history, True)}
+    found = {
+        (s.what.channel, left_out_words(s.what)): set(history.cycle[s.rows])
+        for s in whole_levels(history, True)
+    }
     # 0.04 N·m a second at full amplitude and a row a second; rates: 0.04, 0.01, 0.01, 0.01
     assert found == {
         ("torque_amplitude", "amplitude 0.5 N·m"): {3},
@@ -95,7 +100,11 @@ def test_a_unit_keeps_the_level_that_is_all_it_has() -> None:
     one = levels((1.0, 0.5), (1.0, 2.0))
     only = levels((0.5,), (2.0,))
     history = joined([one, replace(only, unit=np.ones(len(only), int))])
-    small = next(s for s in whole_levels(history, True) if s.label == "amplitude 1 N·m")
+    small = next(
+        s
+        for s in whole_levels(history, True)
+        if s.what == LeftOut("torque_amplitude", (1.0, 1.0), level=True)
+    )
     assert set(history.unit[small.rows]) == {0}
 
 
@@ -145,17 +154,18 @@ def test_what_is_known_carries_over_to_an_amplitude_not_measured() -> None:
     angle = 10.0 * torque + 30.0 * history.sign - 60.0 * state + rng.normal(0, 0.5, len(torque))
     raced = explained(history, angle)
     gains = gains_at_levels(raced, ("friction_hysteresis",))
-    assert {g.held_out for g in gains} == {"amplitude 1 N·m", "amplitude 2 N·m"}
+    assert {left_out_words(g.held_out) for g in gains} == {"amplitude 1 N·m", "amplitude 2 N·m"}
     for g in gains:  # 300 rows and more: the rms of the noise is good to 4 %, thrice that
         assert g.rmse_after == pytest.approx(0.5, rel=0.15)
         assert g.rmse_before > 4.0  # 6 arcsec beside the line on all but the reversals
 
 
+RATE = LeftOut("torque_rate", (0.1, 0.1), level=True)
+
+
 def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     def level(calibrated: float, after: float, stated: float = 0.0) -> Gain:
-        return Gain(
-            "rate 0.1 N·m/s", 9.0, calibrated, after, 0.5, channel="torque_rate", stated_std=stated
-        )
+        return Gain(RATE, 9.0, calibrated, after, 0.5, stated_std=stated)
 
     assert refuted([]) is None
     assert refuted([level(4.0, 1.0), level(1.0, 1.9)]) is None
@@ -166,5 +176,5 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6), level(1.0, 2.05)])
     assert found is not None
     assert found.channel == "torque_rate"
-    assert found.structure == MissedLevel("rate 0.1 N·m/s", 2.1, 1.0)
+    assert found.structure == MissedLevel(RATE, 2.1, 1.0)
     assert found.limit

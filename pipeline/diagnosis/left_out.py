@@ -1,0 +1,22 @@
+"""What was left out of a fit, to measure its error there, as facts without words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Rows left out together, told by their values of a channel.
+
+    Attributes
+    ----------
+    channel : of a record, or "specimen".
+    values : of those left out; of a whole `level` its least and its largest; none where `each` of so many was
+        left out in turn.
+    """
+
+    channel: str
+    values: tuple[float, ...] = ()
+    level: bool = False
+    each: int = 0
