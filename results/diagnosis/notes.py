@@ -23,6 +23,8 @@ from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, title_of
 from flexspline.results.numbers import grouped
 
+GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
+"""What says which part a specimen is."""
 NOT_SOUGHT = (
     "which input of the gear explains the rest was not sought: that takes one unit, loaded and unloaded at "
     "both signs of torque at three sizes of torque at least"
@@ -134,10 +136,11 @@ def _specimen_notes(analysis: SpecimenAnalysis) -> list[str]:
     if analysis.race.data.std is None:
         noise += ", which the scatter says, as the file states none"
     found = [noise]
-    if analysis.part_guessed_by:
+    if analysis.part_guessed_by is not None:
         part = analysis.part[0]
         found.insert(
-            0, f"the file has no column part: taken as {part}, by {analysis.part_guessed_by}"
+            0,
+            f"the file has no column part: taken as {part}, by {GUESSED_BY[analysis.part_guessed_by]}",
         )
     if YOUNGS_MODULUS not in chosen.named:
         change = plus_minus(100 * chosen.mean[0], 100 * float(chosen.covariance[0, 0] ** 0.5))

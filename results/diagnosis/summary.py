@@ -103,7 +103,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
     match outcome.verdict:
         case "insufficient":
-            return f"Too little data to say anything: {too_little(outcome)}."
+            return f"Too little data to say anything: {_too_little(outcome)}."
         case "consistent":
             noise = "" if points else " and the noise"
             return f"{AGREES[diagnosis.kind]} with the simulation within its stated uncertainty{noise}."
@@ -123,7 +123,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
             return _unknown(outcome, specimens)
 
 
-def too_little(outcome: DiagnosisOutcome) -> str:
+def _too_little(outcome: DiagnosisOutcome) -> str:
     """Why there are too few data; "" where there are enough."""
     return "" if outcome.too_little is None else shortage_words(outcome.too_little)
 

@@ -17,7 +17,7 @@ from flexspline.pipeline.diagnosis.specimens.bench import PARTS, Bench, row_desi
 from flexspline.pipeline.diagnosis.specimens.compliances import compliances, refined
 from flexspline.pipeline.diagnosis.specimens.decide import SpecimenExplanation, decide
 from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit, SpecimenData, fit
-from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.specimens.finding import GuessedBy, SpecimenAnalysis
 from flexspline.pipeline.diagnosis.specimens.next_measurement import next_specimen
 from flexspline.pipeline.diagnosis.specimens.parameters import log_compliance, specimen_parameters
 from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace, race
@@ -118,10 +118,10 @@ def _insufficient(n: int) -> DiagnosisOutcome:
 
 def _parts(
     bench: Bench, designs: Sequence[Design], specimens: Specimens
-) -> tuple[tuple[str, ...], str]:
+) -> tuple[tuple[str, ...], GuessedBy]:
     """The part of each row; where the file does not say, by what it was guessed."""
     if specimens.part_recorded:
-        return specimens.part, ""
+        return specimens.part, None
     owners = {key.split(".")[0] for key in specimens.overrides} & {"flexspline", "shaft"}
     choices = [*owners, "series"] if len(owners) == 1 else ["series", "flexspline", "shaft"]
     off = {}
@@ -131,8 +131,8 @@ def _parts(
     part = choices[0] if len(owners) == 1 else min(off, key=lambda c: off[c])
     if part != "series" and off[part] > PLAINLY and off["series"] < off[part] / 2:
         part = "series"
-    why = "the overridden keys" if len(owners) == 1 and part in owners else "its stiffness"
-    return (part,) * len(designs), why
+    by_keys = len(owners) == 1 and part in owners
+    return (part,) * len(designs), "overridden_keys" if by_keys else "stiffness"
 
 
 def _held_out(data: SpecimenData, chosen: LaplaceFit) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 if TYPE_CHECKING:  # they load the solvers
     from flexspline.pipeline.diagnosis.specimens.evidence import LaplaceFit
     from flexspline.pipeline.diagnosis.specimens.race import SpecimenRace
+
+GuessedBy = Literal["overridden_keys", "stiffness"] | None
+"""What says which part a specimen is, where its file does not."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ class SpecimenAnalysis:
         explanation; `held_out_before` by FE as it is. NaN where nothing was held out.
     race : all fits and the null; chosen : the one that the verdict speaks of.
     with_holes : whether rows were solved with their holes, not scaled from given stiffnesses.
-    part_guessed_by : what says the part, where the file does not; else empty.
+    part_guessed_by : what says the part, where the file does not.
     """
 
     specimen: tuple[str, ...]
@@ -41,4 +44,4 @@ class SpecimenAnalysis:
     race: SpecimenRace
     chosen: LaplaceFit
     with_holes: bool
-    part_guessed_by: str
+    part_guessed_by: GuessedBy

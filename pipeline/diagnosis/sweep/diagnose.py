@@ -20,7 +20,8 @@
 | test it for what sticks | `jumps.py`, `stuck.py`, `travel_scatter.py` |
 | what the causes explain by themselves, and the rest after them | `credit.py` |
 | verdict; physical limits | `../decision.py`; `limits.py` |
-| a torque that comes late, an angle | `backward.py` (`loads.py`, `torque_delay.py`), `late_angle.py` |
+| a torque that comes late | `backward.py` (`loads.py`, `torque_delay.py`) |
+| an angle that comes late | `late_angle.py` (`crossing_forms.py`, `crossing_fit.py`) |
 | error on data held out; the model | `splits.py`, `held_out.py`; `written_model.py` |
 | next measurement | `next_measurement.py`, `../plans.py` |
 """

@@ -233,7 +233,7 @@ def test_missing_part_is_decided_and_said(bench, fe) -> None:
     series = 1 / (fe.flexspline + 1 / bench.K_e)
     _, both = diagnosed(bench, series, part=None)
     assert set(both.part) == {"series"}
-    assert both.part_guessed_by == "its stiffness"
+    assert both.part_guessed_by == "stiffness"
 
 
 def test_unstated_noise_is_found_from_scatter(bench, fe) -> None:
