@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -11,7 +11,6 @@ from flexspline.results.diagnosis.command import register as register_diagnosis
 from flexspline.results.file_names import GEAR, ONE_RECORD, RUN, of_export
 from flexspline.results.job import (
     RESUMES,
-    Job,
     answered,
     begin,
     deliver,
@@ -140,36 +139,13 @@ def backlash(
     """The four-term backlash sum."""
     with answered(design, RESUMES):
         job = begin(design, out, ONE_RECORD)
+        from flexspline.results.backlash import backlash_answer
+
         with kept(job, json):
-            record = _backlash_record(
+            record = backlash_answer(
                 job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
             )
         deliver(job.folder, record, json)
-
-
-def _backlash_record(job: Job, kb: float | None, ke: float | None) -> dict[str, Any]:
-    from flexspline.geometry.sanity import warnings
-    from flexspline.pipeline.backlash import backlash as total
-    from flexspline.pipeline.backlash import series_stiffness
-    from flexspline.pipeline.linear_limit import linear_limit
-    from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
-    from flexspline.results.records import (
-        backlash_record,
-        heading,
-        linear_limit_record,
-        stiffness_record,
-    )
-
-    record = {**heading(job.design), "warnings": list(warnings(job.design))}
-    used = given_pair(kb, ke) or stiffness_pair(job.context, kb, ke)
-    if used.solved is not None:
-        record |= stiffness_record(job.design, used.solved, job.wall_s)
-        warn(job.design, used.solved)
-    K_b, K_e = used.K_b_Nm_per_rad, used.K_e_Nm_per_rad
-    K = record["K_series_Nm_per_rad"] = series_stiffness(K_b, K_e)
-    limit = linear_limit(job.design, K)
-    record["warnings"] += tell_all(limit.passed(job.design))
-    return record | backlash_record(total(job.design, K_b, K_e)) | linear_limit_record(limit)
 
 
 @app.command()
@@ -253,20 +229,11 @@ def init(
 ) -> None:
     """Print a commented design file to start from."""
     with answered():
-        from flexspline.geometry.errors import DesignError
         from flexspline.geometry.load import design_from, tables_from
         from flexspline.geometry.sanity import warnings
-        from flexspline.geometry.sized import sized_template
-        from flexspline.geometry.template import template
+        from flexspline.results.first_design import first_design
 
-        for option, value in (("--ratio", ratio), ("--rated", rated)):
-            if size is None and value is not None:
-                raise DesignError(option, value, "needs a --size, such as 25")
-        text = (
-            template(kind)
-            if size is None
-            else sized_template(kind, size, 100 if ratio is None else ratio, rated)
-        )
+        text = first_design(kind, size, ratio, rated)
         tell_all(warnings(design_from(tables_from(text.encode(), "init"))))
         show(text.removesuffix("\n"))
 
