@@ -15,12 +15,11 @@ from typing import Any
 from flexspline.fea.shortfall import settled_peak
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import ComputationError, DesignError
+from flexspline.geometry.errors import DesignError, FlexsplineError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.mass import masses
-from flexspline.pipeline.backlash import StiffnessValueError, backlash, series_stiffness
-from flexspline.pipeline.bearing_play import BearingPlayDomainError
+from flexspline.pipeline.backlash import backlash, series_stiffness
 from flexspline.pipeline.gear import curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
@@ -34,8 +33,6 @@ STUDY_TORSION_TOLERANCE = 2e-3
 STUDY_LOBE_TOLERANCE = 1e-2
 STUDY_STRESS_TOLERANCE = 1e-2
 """Finer costs more than it tells among designs that differ by percents; bounds are in the row."""
-
-OUR_ERRORS = (DesignError, ComputationError, BearingPlayDomainError, StiffnessValueError)
 
 
 @dataclass(frozen=True)
@@ -75,7 +72,7 @@ def evaluate(task: Task) -> Outcome:
         found = figures_of(design, task.solves, task.holes)
     except DesignError as fault:
         found = Outcome(faults=tuple(each.alone for each in (fault, *fault.others)))
-    except OUR_ERRORS as fault:
+    except FlexsplineError as fault:
         found = Outcome(faults=(str(fault),))
     return replace(found, seconds=time.perf_counter() - began)
 
@@ -112,7 +109,7 @@ def figures_of(
     for name, solve in asked.items():
         try:
             found |= _figures(name, solve())
-        except OUR_ERRORS as fault:
+        except FlexsplineError as fault:
             missing[name] = str(fault)
     if "torsion" in solves:
         if holes is not None and "K_e" not in missing and pierced(design):
@@ -120,12 +117,12 @@ def figures_of(
         if "gear" in solves and "K_e" not in missing:
             try:
                 found |= _gear(design, found["K_e_Nm_per_rad"])
-            except OUR_ERRORS as fault:
+            except FlexsplineError as fault:
                 missing["gear"] = str(fault)
         if not {in_sum, "K_e"} & set(missing):
             try:
                 found |= _sum(design, found)
-            except OUR_ERRORS as fault:
+            except FlexsplineError as fault:
                 missing["backlash_arcsec"] = str(fault)
     mass = masses(design)
     sizes = (

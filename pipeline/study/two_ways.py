@@ -13,13 +13,12 @@ from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twis
 from flexspline.fea.shortfall import settled
 from flexspline.fea.types import Elastic
 from flexspline.geometry.design import Design
-from flexspline.geometry.errors import DesignError
+from flexspline.geometry.errors import DesignError, FlexsplineError
 from flexspline.geometry.keys import lengths, with_values
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.revolved import revolved, torsion
-from flexspline.pipeline.study.evaluate import OUR_ERRORS
 from flexspline.pipeline.study.slope import Slope, Slopes
 
 HELD_STEP = 1e-4
@@ -70,7 +69,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             held, why = None, ""
             try:
                 held = slope_with_field_held(moved, key, p)
-            except OUR_ERRORS as fault:
+            except FlexsplineError as fault:
                 why = str(fault)
             again, error, no_room = _richardson(K, key, p, here)
             if held is None and again is None:
@@ -118,7 +117,7 @@ def _richardson(
     for _ in range(TRIES):
         try:
             wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
-        except OUR_ERRORS as fault:
+        except FlexsplineError as fault:
             share, why = share * NARROWER, str(fault)
             continue
         noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights

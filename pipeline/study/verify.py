@@ -7,6 +7,7 @@ from concurrent.futures import as_completed
 from dataclasses import asdict
 
 from flexspline.geometry.design import Solver
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
@@ -14,7 +15,7 @@ from flexspline.pipeline.load_cases import SOLID_CASES
 from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
-from flexspline.pipeline.study.evaluate import OUR_ERRORS, Outcome, Task, outcome_of
+from flexspline.pipeline.study.evaluate import Outcome, Task, outcome_of
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.pipeline.study.local_workers import WORKER_DIED
 from flexspline.pipeline.study.result import StudyResult
@@ -34,7 +35,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         context = analysis_context(design)
         found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
         total = backlash_of(design, found)
-    except OUR_ERRORS as fault:
+    except FlexsplineError as fault:
         return Outcome(faults=(str(fault),))
     figures = {
         "backlash_arcsec.shaft": total.shaft_arcsec,
