@@ -55,7 +55,7 @@ def printable(
 
 
 def notice(count: int) -> dict[str, Any]:
-    """The block that says so, as `Document.payload` has it."""
+    """The block that says so, as `payload_of` has it."""
     letters = "A letter" if count == 1 else f"{count} different letters"
     said = (
         f"{letters} of names or notes cannot be printed, as no font on this computer has them; "

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import readable
 from flexspline.results.report.document import Document
+from flexspline.results.report.payload import payload_of
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -85,7 +86,7 @@ def page_of(
         _environment()
         .get_template(TEMPLATE)
         .render(
-            d=document.payload(),
+            d=payload_of(document),
             pictures=pictures,
             attached=document.attached,
             views=found,

@@ -12,6 +12,7 @@ from pathlib import Path
 from flexspline.geometry.errors import ComputationError, readable
 from flexspline.results.report.document import Document
 from flexspline.results.report.letters import font_folder, notice, printable
+from flexspline.results.report.payload import payload_of
 
 TEMPLATE = "document.typ"
 
@@ -42,7 +43,7 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
         for i, attachment in enumerate(document.attached):
             (root / f"attached-{i}").write_bytes(attachment.data)
         attached = [{"name": a.safe_name, "about": a.about} for a in document.attached]
-        payload, lacking = printable(document.payload())
+        payload, lacking = printable(payload_of(document))
         if lacking:
             payload["blocks"].insert(0, notice(lacking))
         title = f"{document.running}: {document.name}"  # nothing draws it: its letters stay

@@ -7,6 +7,7 @@ from typing import Any
 
 from flexspline.results.atomic import write_bytes
 from flexspline.results.report.content import ReportContent
+from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import ReportError, pdf_of
 from flexspline.results.report.sections import run_document
 
@@ -25,4 +26,4 @@ def write_report(path: Path, content: ReportContent) -> None:
 
 def payload(content: ReportContent) -> dict[str, Any]:
     """The content as JSON values: finished text in the order in which the templates set it."""
-    return run_document(content).payload()
+    return payload_of(run_document(content))

@@ -15,6 +15,7 @@ from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
 from flexspline.pipeline.study.scatter import Scatter, scatter_of
 from flexspline.pipeline.study.study import StudyError
 from flexspline.pipeline.study.tolerance import ScatteredInput, saltelli
+from flexspline.results.report.payload import payload_of
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
@@ -45,7 +46,7 @@ def test_a_known_function_through_a_whole_study(tmp_path: Path) -> None:
     (scatter,) = result.scatter
     found = scatter.indices
     assert found is not None
-    assert "follows no single dimension" not in str(study_document(result, ()).payload())
+    assert "follows no single dimension" not in str(payload_of(study_document(result, ())))
     at = {x.key: i for i, x in enumerate(scatter.inputs)}
     v = np.array([1 / 3, 4 / 45, 1 / 9])
     for key, first, total in (
@@ -187,7 +188,7 @@ def test_a_study_whose_designs_all_fail_keeps_its_rows(tmp_path: Path) -> None:
     assert result.scatter == ()
     assert "only 0 of" in result.unscattered
     assert result.unscattered in words(result, {**summary(result), "files": []})
-    text = str(study_document(result, ()).payload())
+    text = str(payload_of(study_document(result, ())))
     assert result.unscattered in text
     assert "follows no single dimension" not in text
     assert "design 0: nothing could be built" in text

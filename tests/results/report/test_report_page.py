@@ -10,6 +10,7 @@ from page_text import letters, pdf_letters, read_page, spans, strings
 
 from flexspline.results.report.document import Document, Heading, Paragraph
 from flexspline.results.report.page import page_of, png
+from flexspline.results.report.payload import payload_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.spans import ref
 from flexspline.results.report.write import payload, write_report
@@ -139,4 +140,4 @@ def test_same_content_gives_the_same_bytes(tmp_path):
 def test_a_reference_to_nothing_is_a_bug():
     broken = Document("t", "r", "n", "v", (Heading("One"), Paragraph(ref("nowhere"))))
     with pytest.raises(KeyError, match="nowhere"):
-        broken.payload()
+        payload_of(broken)

@@ -16,6 +16,7 @@ from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.run import trial_store_of
 from flexspline.pipeline.study.source import study_name
 from flexspline.pipeline.study.start import start_outcome
+from flexspline.results.report.payload import payload_of
 from flexspline.results.study.best_design import best_warnings, write_best_design
 from flexspline.results.study.notes import notes
 from flexspline.results.study.record import summary, words
@@ -125,7 +126,7 @@ def test_the_first_design_stands_beside_the_best() -> None:
     lines = words(result, record | {"files": []}).splitlines()
     assert re.match(r"  start: ring thickness 0\.55.mm: K_b = 5.?500", lines[1])
     assert lines[2].startswith("  design 0: ")
-    table = str(study_document(result, ()).payload())
+    table = str(payload_of(study_document(result, ())))
     assert "'start'" in table
     assert "'0.55'" in table
     assert "start: no K" not in table

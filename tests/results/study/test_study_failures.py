@@ -7,6 +7,7 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.report.payload import payload_of
 from flexspline.results.study.failures import TOLD, causes, failure_lines
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
@@ -66,7 +67,7 @@ def test_report_terminal_and_json_say_the_same() -> None:
     (cause,) = record["causes"]
     assert (cause["cause"], cause["designs"], cause["example"]["design"]) == (FILLET, 2, 0)
     assert f"2 × {FILLET}: {said}" in words(result, record | {"files": []})
-    assert said in str(study_document(result, ()).payload())
+    assert said in str(payload_of(study_document(result, ())))
 
 
 def test_many_causes_are_cut_and_counted() -> None:

@@ -13,6 +13,7 @@ from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.verified import Check, Verified
+from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
@@ -74,7 +75,7 @@ def test_a_start_that_nothing_beats_is_said(K_start: float, stress: float, said:
     """The stiffest allowed design has 30 000 N·m/rad; a start above 310 MPa is not allowed."""
     result = result_of(STUDY.replace("300.0", "310.0"))
     began = replace(result, start=Outcome({K: K_start, STRESS: stress, TOTAL: 85.0}))
-    text = str(study_document(began, ()).payload())
+    text = str(payload_of(study_document(began, ())))
     assert ("No design is better than the start" in text) is said
     assert bool(unbeaten_start(began)) is said
 
@@ -168,7 +169,7 @@ def test_an_alarm_says_what_may_be_behind_it(check: Check, said: str) -> None:
     assert said in disagreement(check)
     result = replace(result_of(), verified=(Verified(0, (check,)),))
     document = study_document(result, ())
-    assert said in str(document.payload())
+    assert said in str(payload_of(document))
     assert pdf_of(document, {}).startswith(b"%PDF")
 
 
@@ -240,4 +241,4 @@ def test_a_peak_at_the_excluded_border_is_marked_in_study_table_and_notes() -> N
     (line,) = [n for n in notes(said) if "at excluded border" in n]
     assert "in 4 of 10 designs" in line
     assert not any("at excluded border" in n for n in notes(result))  # of a study begun before
-    assert "†" in str(study_document(said, ()).payload())
+    assert "†" in str(payload_of(study_document(said, ())))
