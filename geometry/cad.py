@@ -10,7 +10,7 @@ from flexspline.geometry.errors import GeometryError
 from flexspline.geometry.kernel import load_kernel
 from flexspline.geometry.outline import Meridian, Segment
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 if TYPE_CHECKING:
     import cadquery as cq

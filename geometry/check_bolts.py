@@ -8,7 +8,8 @@ from math import asin, ceil, pi, sin
 from flexspline.geometry.bounds import GAP_mm, above, below, lengths
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.fields import SMALLEST_MM
-from flexspline.geometry.shapes import Flexspline, Shaft
+from flexspline.geometry.shaft_shape import Shaft
+from flexspline.geometry.shapes import Flexspline
 
 
 def bolt_faults(

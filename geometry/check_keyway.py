@@ -7,7 +7,7 @@ from math import sqrt
 
 from flexspline.geometry.bounds import GAP_mm, below, lengths
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.shapes import Keyway, Shaft
+from flexspline.geometry.shaft_shape import Keyway, Shaft
 
 
 def keyway_faults(s: Shaft, key: Keyway, floor: float) -> Iterator[DesignError]:

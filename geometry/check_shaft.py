@@ -23,7 +23,7 @@ from flexspline.geometry.check_keyway import keyway_faults
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import SMALLEST_MM
 from flexspline.geometry.ranges import LENGTH_mm
-from flexspline.geometry.shapes import Shaft, ShaftSegment
+from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
 STEP_mm = 2 * SMALLEST_MM
 """Of a diameter: the CAD kernel sees half of it."""

@@ -26,7 +26,8 @@ from flexspline.geometry.fields import (
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
-from flexspline.geometry.shapes import Flexspline, Shaft
+from flexspline.geometry.shaft_shape import Shaft
+from flexspline.geometry.shapes import Flexspline
 from flexspline.geometry.wave_generator import WaveGenerator
 
 

@@ -7,7 +7,7 @@ from math import pi
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 GRAMS_PER_MM3 = 1e-6
 """Of 1 kg/m³."""

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from flexspline.geometry.outline import SAME, Meridian, Point, Segment, distance
-from flexspline.geometry.shapes import Cup, Flexspline, Hat, Shaft
+from flexspline.geometry.shaft_shape import Shaft
+from flexspline.geometry.shapes import Cup, Flexspline, Hat
 
 
 @dataclass(frozen=True)

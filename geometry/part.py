@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.material import Material
 from flexspline.geometry.meridian import meridian_of
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part_name import PartName
-from flexspline.geometry.shapes import BoltCircle, Flexspline, Shaft, Slot
+from flexspline.geometry.shaft_shape import Shaft, Slot
+from flexspline.geometry.shapes import Flexspline
 
 NO_HOLES: dict[str, Any] = {
     "bolt_count": 0,

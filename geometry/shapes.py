@@ -1,47 +1,14 @@
-"""The shapes of the parts as the design file states them: cup or hat, and shaft."""
+"""The kinds of flexspline as the design file states them: cup and hat."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, cos, pi, sin, sqrt
 from typing import ClassVar, Literal, get_args
 
 from pydantic import Field
 
-from flexspline.geometry.fields import BoltCount, DesignTable, Length, LengthOrZero
-
-
-@dataclass(frozen=True)
-class BoltCircle:
-    """Equal holes on a circle, the first at angle 0; lengths in mm."""
-
-    count: int
-    radius: float
-    hole_radius: float
-
-    @property
-    def centres(self) -> list[tuple[float, float]]:
-        """(x, y) of every hole's axis [mm]."""
-        angles = (2 * pi * k / self.count for k in range(self.count))
-        return [(self.radius * cos(a), self.radius * sin(a)) for a in angles]
-
-
-class _Bolted(DesignTable):
-    bolt_count: BoltCount = Field(
-        default=0, description="number of bolt holes, the first at angle 0; 0: none"
-    )
-    bolt_circle_diameter_mm: Length | None = Field(
-        default=None, description="mm, through the holes' axes"
-    )
-    bolt_hole_diameter_mm: Length | None = Field(default=None, description="mm, of each hole")
-
-    @property
-    def bolts(self) -> BoltCircle | None:
-        """The holes; None where there are none."""
-        circle, hole = self.bolt_circle_diameter_mm, self.bolt_hole_diameter_mm
-        if not self.bolt_count or circle is None or hole is None:
-            return None
-        return BoltCircle(self.bolt_count, circle / 2, hole / 2)
+from flexspline.geometry.bolts import Bolted
+from flexspline.geometry.fields import Length, LengthOrZero
 
 
 @dataclass(frozen=True)
@@ -55,7 +22,7 @@ class Land:
     thickness: str
 
 
-class _Flexspline(_Bolted):
+class _Flexspline(Bolted):
     land: ClassVar[Land]
     inward: ClassVar[bool]
     """Whether the closed end lies inside the tube."""
@@ -166,70 +133,3 @@ KINDS: tuple[str, ...] = tuple(
     get_args(c.model_fields["kind"].annotation)[0] for c in get_args(Flexspline)
 )
 """What `flexspline.kind` may be."""
-
-
-class ShaftSegment(DesignTable):
-    """One cylinder of the shaft; the first is the flange on the flexspline."""
-
-    length_mm: Length = Field(description="mm, along the axis")
-    outer_diameter_mm: Length = Field(description="mm, outside")
-    inner_diameter_mm: LengthOrZero = Field(default=0.0, description="mm, of the bore; 0: solid")
-
-
-class Keyway(DesignTable):
-    """A square-ended slot from the free end, centred at angle 0."""
-
-    width_mm: Length = Field(description="mm, across the slot")
-    depth_mm: Length = Field(description="mm, flat floor below the last segment's outer radius")
-    length_mm: Length = Field(description="mm, from the free end")
-
-
-@dataclass(frozen=True)
-class Slot:
-    """A keyway's place in the shaft: x from `floor` outwards, z from `start` to the free end [mm].
-
-    `floor` is a plane at right angles to x; the sides are at y = ±`half_width`.
-    """
-
-    floor: float
-    half_width: float
-    start: float
-    length: float
-
-    def section_mm2(self, radius: float) -> float:
-        """Area that the slot takes from a disc of this radius [mm]."""
-        if radius <= self.floor:
-            return 0.0
-        reach = min(self.half_width, sqrt(radius**2 - self.floor**2))
-        cap = reach * sqrt(radius**2 - reach**2) + radius**2 * asin(reach / radius)
-        return cap - 2 * reach * self.floor
-
-
-class Shaft(_Bolted):
-    """The output shaft: segments stacked from the flange to the free end."""
-
-    fillet_mm: LengthOrZero = Field(
-        default=0.0, description="mm, radius at every inside corner where the outer diameter steps"
-    )
-    grip_length_mm: Length = Field(description="mm, at the free end: where the output is held")
-    segment: tuple[ShaftSegment, ...] = Field(min_length=1, max_length=50, strict=False)
-    keyway: Keyway | None = Field(default=None, description="optional slot from the free end")
-
-    @property
-    def length(self) -> float:
-        """Total length [mm]."""
-        return sum(s.length_mm for s in self.segment)
-
-    @property
-    def hole_depth(self) -> float:
-        """z at which the bolt holes end [mm]: with the first segment."""
-        return self.segment[0].length_mm
-
-    @property
-    def slot(self) -> Slot | None:
-        """Where the keyway is; None where there is none."""
-        key = self.keyway
-        if key is None:
-            return None
-        floor = self.segment[-1].outer_diameter_mm / 2 - key.depth_mm
-        return Slot(floor, key.width_mm / 2, self.length - key.length_mm, key.length_mm)

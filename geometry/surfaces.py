@@ -11,7 +11,7 @@ import numpy as np
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.outline import Segment
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 SYMMETRY_START = "symmetry_start"
 SYMMETRY_END = "symmetry_end"

@@ -16,12 +16,12 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import ellipse_stress
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.types import SolidField, StressPeak
+from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.meridian import with_narrow_seat
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import BoltCircle
 from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.enclosed_part import may_answer
 from flexspline.pipeline.parts import PartModel

@@ -24,7 +24,7 @@ from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
 from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tooth import flank
 from flexspline.geometry.wave_generator import FlexibleBearing, flexible_bearing
 from flexspline.geometry.whole_gear import require_whole_gear

@@ -22,7 +22,7 @@ from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.parts import LAYERED_COARSER, PartModel
 

@@ -7,7 +7,7 @@ from math import hypot
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.sizing import Grading, refuse_beyond
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tagged import TaggedSurface, tagged_surface
 
 CHORD_PER_ENVELOPE = 1.5

@@ -9,7 +9,7 @@ from math import sqrt
 import numpy as np
 
 from flexspline.geometry.outline import SAME
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from flexspline.fea.solid.plan import PlanMesh, triangulated
 from flexspline.fea.solid.plan_curves import Arc, Curve, Line, hole_arcs
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 RING_STEP = np.radians(20)
 """Largest edge about the axis: parabolas of 20° lose 2e-5 of a circle's area."""

@@ -8,8 +8,8 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from flexspline.geometry.bolts import BoltCircle
 from flexspline.geometry.outline import SAME
-from flexspline.geometry.shapes import BoltCircle
 
 SMALLEST_PIECE = 1e-6
 """Of a line's range: crossings nearer than this to each other are one."""

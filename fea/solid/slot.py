@@ -17,7 +17,7 @@ import numpy as np
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.geometry.outline import SAME, Meridian, Segment
-from flexspline.geometry.shapes import Slot
+from flexspline.geometry.shaft_shape import Slot
 
 LEAST_STEPS = 2
 """About the axis, from the slot's middle to its side."""

@@ -7,7 +7,7 @@ from math import hypot
 from flexspline.fea.solid.slot import Block
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 LEAST_RIM = 0.1
 """Of the slot's depth: less material between the floor's corner and the outer wall is left to the mesher,

@@ -6,7 +6,7 @@ from flexspline.fea.solid.column import HoledColumn, column_of
 from flexspline.fea.solid.slot import Block
 from flexspline.fea.solid.slot_place import block_of
 from flexspline.geometry.part import Part
-from flexspline.geometry.shapes import Shaft
+from flexspline.geometry.shaft_shape import Shaft
 
 
 def can_be_swept(part: Part) -> bool:

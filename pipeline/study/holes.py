@@ -17,7 +17,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.keys import HOLES
-from flexspline.geometry.shapes import ShaftSegment
+from flexspline.geometry.shaft_shape import ShaftSegment
 from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.part_stiffness import part_stiffness

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from flexspline.geometry.meridian import cup_meridian, hat_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian, Segment
-from flexspline.geometry.shapes import Cup, Hat, Shaft, ShaftSegment
+from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
+from flexspline.geometry.shapes import Cup, Hat
 
 
 def outline(*corners: tuple[float, float, str | None]) -> Meridian:

@@ -18,7 +18,7 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.meridian import cup_meridian, shaft_meridian
 from flexspline.geometry.outline import Meridian
-from flexspline.geometry.shapes import Shaft, ShaftSegment
+from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
 STEEL = Elastic(200e3, 0.3)
 ROUNDING = 1e-9
