@@ -31,11 +31,12 @@ def slopes_of(name: str) -> tuple[Slope, ...]:
     return sensitivities(load_design(EXAMPLES / f"{name}.toml"), lambda line: None)
 
 
-@pytest.mark.parametrize("name", [pytest.param("keyed-shaft", marks=pytest.mark.long), "hat-25"])
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["keyed-shaft", "hat-25"])
 def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     """K is proportional to the cube of all lengths together, so Σ p·dK/dp = 3K (Euler).
 
-    The third example is asked by the command (`tests/results/study/test_study_command.py`).
+    The cup is asked by the command, in the default suite (`tests/results/study/test_study_command.py`).
     """
     slopes = slopes_of(name)
     assert [(s.key, s.why) for s in slopes if s.agree is not True] == []
@@ -46,7 +47,7 @@ def test_both_ways_meet_and_scaling_holds(name: str) -> None:
 
 
 def test_the_windup_falls_where_the_stiffness_rises() -> None:
-    slopes = slopes_of("hat-25")
+    slopes = slopes_of("xb1-40")
     for s in slopes:
         assert s.best * s.backlash_arcsec_per_mm <= 0
     wall = next(s for s in slopes if s.key == "flexspline.wall_thickness_mm")
