@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -62,6 +63,12 @@ class GaussianEvidence:
     @property
     def terms(self) -> tuple[Regressor, ...]:
         return self.columns.terms
+
+    @cached_property
+    def positive_columns(self) -> np.ndarray:
+        """(P,) whether a column's amplitude may not be negative."""
+        widths = [t.at.stop - t.at.start for t in self.terms]
+        return np.repeat(np.array([t.positive for t in self.terms], bool), widths)
 
 
 def gaussian_evidence(

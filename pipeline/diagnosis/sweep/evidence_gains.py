@@ -1,15 +1,41 @@
-"""What each of many regressors would add to the evidence of a set, by one batch of small linear solves."""
+"""What each of many regressors would add to the evidence of many sets, by batches of small linear solves."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
 
 _NONE = np.empty(0, int)
+
+
+@dataclass(frozen=True)
+class ColumnSets:
+    """B sets with the same number s of columns, of the P of a record's evidence.
+
+    Attributes
+    ----------
+    cross (B, s, P) : rows of the Gram matrix. pull (B, s, P) : posterior covariance times these.
+    mean (B, s) : amplitudes. held (B, s) : whether one may not be negative.
+    """
+
+    cross: np.ndarray
+    pull: np.ndarray
+    mean: np.ndarray
+    held: np.ndarray
+
+    @staticmethod
+    def of(evidence: GaussianEvidence, sets: Sequence[Sequence[int]]) -> ColumnSets:
+        """Of sets of terms."""
+        at = np.array([column_indices(evidence, terms) for terms in sets])
+        matrix = evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1])
+        inverse = np.linalg.inv(matrix)
+        cross = evidence.gram[at]
+        mean = (inverse @ evidence.right[at][:, :, None])[:, :, 0]
+        return ColumnSets(cross, inverse @ cross, mean, evidence.positive_columns[at])
 
 
 @dataclass(frozen=True)
@@ -18,81 +44,106 @@ class RegressorGroup:
 
     Attributes
     ----------
-    members : (m,) their numbers. at : (m, k) their columns. own : (m, k, k) their blocks of the
-        evidence's matrix, prior included. log_share, unnamed, positive : (m,).
-    of_owner : of each owner, its places among the m. against : of each member that does not stand beside
-        every other owner, its place and those owners.
+    at : (m, k) their columns. own : (m, k, k) their blocks of the evidence's matrix, prior included.
+    positive : (m,).
+    """
+
+    at: np.ndarray
+    own: np.ndarray
+    positive: np.ndarray
+
+    @staticmethod
+    def of(evidence: GaussianEvidence, members: Sequence[int]) -> RegressorGroup:
+        terms = [evidence.terms[i] for i in members]
+        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
+        own = evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1])
+        return RegressorGroup(at, own, np.array([t.positive for t in terms]))
+
+    def gains(self, evidence: GaussianEvidence, sets: ColumnSets) -> tuple[np.ndarray, np.ndarray]:
+        """Evidence (B, m) that each member adds to each set, and whether all signs stay physical."""
+        c, p = sets.cross[:, :, self.at], sets.pull[:, :, self.at]  # (B, s, m, k)
+        matrix = self.own - np.einsum("bsmk,bsml->bmkl", c, p)
+        right = evidence.right[self.at] - np.einsum("bsmk,bs->bmk", c, sets.mean)
+        _, logdet = np.linalg.slogdet(matrix)
+        amplitude = np.linalg.solve(matrix, right[..., None])[..., 0]
+        gain = (right * amplitude).sum(axis=2) / 2 - logdet / 2
+        moved = sets.mean[:, :, None] - np.einsum("bsmk,bmk->bsm", p, amplitude)
+        valid = ~self.positive | (amplitude >= 0).all(axis=2)
+        return gain, valid & ((moved >= 0) | ~sets.held[:, :, None]).all(axis=1)
+
+
+@dataclass(frozen=True)
+class Regressors:
+    """All M regressors that may join a set: first those of the first group, there owner by owner.
+
+    Attributes
+    ----------
+    members : (M,) their numbers. groups : by number of columns. block : (M,) which owner's of which group.
+    log_share, unnamed : (M,). of_owner : of each owner, its places among the M. against : of each member
+    that does not stand beside every other owner, its place and those owners.
     """
 
     members: np.ndarray
-    at: np.ndarray
-    own: np.ndarray
+    groups: tuple[RegressorGroup, ...]
+    block: np.ndarray
     log_share: np.ndarray
     unnamed: np.ndarray
-    positive: np.ndarray
     of_owner: dict[str, np.ndarray]
     against: list[tuple[int, frozenset[str]]]
 
     @staticmethod
-    def of(evidence: GaussianEvidence, members: list[int]) -> RegressorGroup:
+    def of(evidence: GaussianEvidence, allowed: Sequence[int]) -> Regressors:
+        """Of the terms with these numbers."""
+        blocks: dict[tuple[int, str], list[int]] = {}
+        widths = dict.fromkeys(width_of(evidence, i) for i in allowed)
+        for width in widths:
+            for i in allowed:
+                if width_of(evidence, i) == width:
+                    blocks.setdefault((width, evidence.terms[i].owner), []).append(i)
+        members = [i for block in blocks.values() for i in block]
         terms = [evidence.terms[i] for i in members]
-        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
-        owners = [t.owner for t in terms]
-        return RegressorGroup(
-            np.array(members),
-            at,
-            evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]),
+        owners = np.array([t.owner for t in terms])
+        return Regressors(
+            np.array(members, int),
+            tuple(
+                RegressorGroup.of(evidence, [i for i in members if width_of(evidence, i) == width])
+                for width in widths
+            ),
+            np.repeat(np.arange(len(blocks)), [len(block) for block in blocks.values()]),
             np.array([t.log_share for t in terms]),
-            np.array([t.cause is None for t in terms]),
-            np.array([t.positive for t in terms]),
-            {o: np.flatnonzero([x == o for x in owners]) for o in dict.fromkeys(owners)},
+            np.array([t.cause is None for t in terms], bool),
+            {o: np.flatnonzero(owners == o) for o in dict.fromkeys(owners.tolist())},
             [(j, t.against) for j, t in enumerate(terms) if t.against],
         )
 
-    def barred(self, present: set[str], shut: frozenset[str]) -> np.ndarray:
-        """(m,) members that do not stand beside the causes present, or are shut out by a term there."""
+    def gains(self, evidence: GaussianEvidence, sets: ColumnSets) -> tuple[np.ndarray, np.ndarray]:
+        """Evidence (B, M) that each member adds to each set, and whether all signs stay physical."""
+        found = [group.gains(evidence, sets) for group in self.groups]
+        gain, valid = zip(*found, strict=True)
+        return np.concatenate(gain, axis=1), np.concatenate(valid, axis=1)
+
+    def barred(self, present: Collection[str], shut: Collection[str]) -> np.ndarray:
+        """(M,) members that do not stand beside the causes present, or are shut out by a term there."""
         out = self.owned_by(shut)
         for j, against in self.against:
             out[j] |= not against.isdisjoint(present)
         return out
 
     def owned_by(self, owners: Collection[str]) -> np.ndarray:
-        """(m,) members of these owners."""
+        """(M,) members of these owners."""
         out = np.zeros(len(self.members), bool)
         for o in owners:
             out[self.of_owner.get(o, _NONE)] = True
         return out
 
     def best_of_owners(self, score: np.ndarray, most: int) -> np.ndarray:
-        """Places of each owner's members with the highest scores (m,), at most so many of one owner."""
-        places = list(self.of_owner.values())
-        owner = np.repeat(np.arange(len(places)), [len(mine) for mine in places])
-        order = np.concatenate(places)
-        order = order[np.lexsort((-score[order], owner))]
-        rank = np.arange(len(owner)) - np.searchsorted(owner, owner)
+        """Places of the members with the highest scores (M,), at most so many of one owner's in a group."""
+        order = np.lexsort((-score, self.block))
+        rank = np.arange(len(order)) - np.searchsorted(self.block, self.block)
         return order[rank < most]
 
-    def gains(
-        self,
-        evidence: GaussianEvidence,
-        cross: np.ndarray,
-        pull: np.ndarray,
-        mean: np.ndarray,
-        held: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Evidence (m,) that each member adds to a set, and whether all signs stay as physics has them.
 
-        Of the set's s columns: `cross` (s, P) their rows of the Gram matrix, `pull` (s, P) the posterior
-        covariance times these, `mean` (s,) their amplitudes, `held` (s,) whether one may not be negative.
-        """
-        c, p = cross[:, self.at], pull[:, self.at]  # (s, m, k)
-        matrix = self.own - np.einsum("smk,sml->mkl", c, p)
-        right = evidence.right[self.at] - np.einsum("smk,s->mk", c, mean)
-        _, logdet = np.linalg.slogdet(matrix)
-        amplitude = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
-        gain = (right * amplitude).sum(axis=1) / 2 - logdet / 2
-        valid = ~self.positive | (amplitude >= 0).all(axis=1)
-        if held.any():
-            moved = mean[held, None] - np.einsum("smk,mk->sm", p[held], amplitude)
-            valid &= (moved >= 0).all(axis=0)
-        return gain, valid
+def width_of(evidence: GaussianEvidence, term: int) -> int:
+    """Columns of a term."""
+    at = evidence.terms[term].at
+    return int(at.stop - at.start)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
-from flexspline.pipeline.diagnosis.sweep.evidence_gains import RegressorGroup
+from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, Regressors, width_of
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
@@ -59,11 +59,8 @@ class Search:
     """Every candidate."""
 
     def __post_init__(self) -> None:
-        sizes: dict[int, list[int]] = {}
-        for i, term in enumerate(self.evidence.terms):
-            if self.allowed(term):
-                sizes.setdefault(term.at.stop - term.at.start, []).append(i)
-        self._groups = [RegressorGroup.of(self.evidence, members) for members in sizes.values()]
+        allowed = [i for i, term in enumerate(self.evidence.terms) if self.allowed(term)]
+        self._joining = Regressors.of(self.evidence, allowed)
         self._seen: set[frozenset[int]] = set()
         self._owner = [t.owner for t in self.evidence.terms]
 
@@ -74,11 +71,7 @@ class Search:
             self._remember(c)
         top = max(c.score for c in beam)
         while beam:
-            grown: list[Candidate] = []
-            for c in beam:
-                if len(c.terms) < most:
-                    grown += self._grown(c)
-            beam = self._chosen(grown)
+            beam = self._chosen(self._grown([c for c in beam if len(c.terms) < most]))
             if not beam or beam[0].score < top + WORTH:
                 break
             top = beam[0].score
@@ -139,33 +132,13 @@ class Search:
         if owners not in self.best or self.best[owners].score < c.score:
             self.best[owners] = c
 
-    def _grown(self, c: Candidate) -> list[Candidate]:
-        """Best sets with one term more: the best few of each owner."""
-        evidence = self.evidence
-        at = column_indices(evidence, c.terms)
-        inverse = np.linalg.inv(evidence.gram[np.ix_(at, at)] + np.eye(len(at)))
-        mean = inverse @ evidence.right[at]
-        held = np.array(
-            [evidence.terms[i].positive for i in c.terms for _ in range(_width(evidence.terms[i]))],
-            bool,
-        )
-        cross = evidence.gram[at]
-        pull = inverse @ cross
+    def _grown(self, beam: Sequence[Candidate]) -> list[Candidate]:
+        """Sets with one term more: of each set the best few of each owner."""
         found: list[Candidate] = []
-        present = self.named_apart | {
-            evidence.terms[i].owner for i in c.terms if evidence.terms[i].cause
-        }
-        shut = frozenset[str]().union(*(evidence.terms[i].against for i in c.terms))
-        for group in self._groups:
-            gain, valid = group.gains(evidence, cross, pull, mean, held)
-            prior = group.log_share - np.where(
-                group.unnamed, NUISANCE_COST,
-                np.where(group.owned_by(present), ELEMENT_COST, NAMED_COST),
-            )  # fmt: skip
-            barred = group.barred(present, shut)
-            score = np.where(valid & ~barred, gain + prior, -np.inf)
-            for j in group.best_of_owners(score, len(group.members) if not c.terms else 2).tolist():
-                term = int(group.members[j])
+        for c, (gain, score) in zip(beam, self._scored(beam), strict=True):
+            most = 2 if c.terms else len(score)
+            for j in self._joining.best_of_owners(score, most).tolist():
+                term = int(self._joining.members[j])
                 if np.isfinite(score[j]) and term not in c.terms:
                     key = frozenset((*c.terms, term))
                     if key not in self._seen:
@@ -176,6 +149,28 @@ class Search:
         for f in found:
             self._remember(f)
         return found
+
+    def _scored(self, beam: Sequence[Candidate]) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Of each set, what every term that may join would add (M,) to its evidence and to its score."""
+        evidence, joining = self.evidence, self._joining
+        alike: dict[int, list[int]] = {}
+        for i, c in enumerate(beam):
+            alike.setdefault(sum(width_of(evidence, term) for term in c.terms), []).append(i)
+        out = [(np.empty(0), np.empty(0))] * len(beam)
+        for places in alike.values() if len(joining.members) else ():
+            sets = ColumnSets.of(evidence, [beam[i].terms for i in places])
+            for i, gain, valid in zip(places, *joining.gains(evidence, sets), strict=True):
+                out[i] = gain, np.where(valid, gain + self._joining_prior(beam[i]), -np.inf)
+        return out
+
+    def _joining_prior(self, c: Candidate) -> np.ndarray:
+        """Log prior (M,) of each term that may join a set; −∞ of those that may not stand beside it."""
+        joining, own = self._joining, [self.evidence.terms[i] for i in c.terms]
+        present = self.named_apart | {term.owner for term in own if term.cause}
+        shut = frozenset[str]().union(*(term.against for term in own))
+        named = np.where(joining.owned_by(present), ELEMENT_COST, NAMED_COST)
+        prior = joining.log_share - np.where(joining.unnamed, NUISANCE_COST, named)
+        return np.where(joining.barred(present, shut), -np.inf, prior)
 
     def _chosen(self, grown: list[Candidate]) -> list[Candidate]:
         kept: list[Candidate] = []
@@ -189,10 +184,6 @@ class Search:
             if len(kept) == BEAM:
                 break
         return kept
-
-
-def _width(term: Regressor) -> int:
-    return int(term.at.stop - term.at.start)
 
 
 def owned_by(owners: Collection[str]) -> Callable[[Regressor], bool]:
