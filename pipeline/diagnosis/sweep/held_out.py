@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.calibrated import calibrated_residual, less_zero
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
@@ -104,13 +105,13 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     floor = explained.identified.fit.residual_as_read()[test]  # of these rows, not of all
     return Gain(
         split.what,
-        rmse_before=_rms(left["before"]),
-        rmse_calibrated=_rms(left["calibrated"]),
-        rmse_after=_rms(left["after"]),
-        noise_floor=_rms(floor),
+        rmse_before=rms(left["before"]),
+        rmse_calibrated=rms(left["calibrated"]),
+        rmse_after=rms(left["after"]),
+        noise_floor=rms(floor),
         held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
         left=left,
-        stated_std=_rms(fit.stated_std()[test]),
+        stated_std=rms(fit.stated_std()[test]),
     )
 
 
@@ -122,7 +123,3 @@ def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:
 
     now = with_tuned_shapes(learnt, named)
     return fit_regressors(now, Search(now, named).run().terms)
-
-
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(values**2)))

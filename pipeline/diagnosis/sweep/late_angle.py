@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import LateAngle
 from flexspline.pipeline.diagnosis.sweep.crossing_fit import CrossedRecord, CrossingFit, likeliest
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import (
@@ -155,8 +156,8 @@ def _sized(searched: _Searched) -> LateAngle:
     time = float(weight @ times / weight.sum())
     spread = weight @ (times - time) ** 2 / weight.sum() + np.diff(times).max() ** 2 / 12
     missed = forms[int(nats.argmax())].form(0.0) - crossed.history.sign
-    rms = crossed.gap_arcsec / 2 * float(np.sqrt(np.mean(missed**2)))
-    return LateAngle(tried.kind, time, float(np.sqrt(spread)), rms)
+    size_arcsec = crossed.gap_arcsec / 2 * rms(missed)
+    return LateAngle(tried.kind, time, float(np.sqrt(spread)), size_arcsec)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 MISFIT = 2.0
@@ -51,7 +52,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
         for other in found:
             if other != cause:
                 error = slopes[other][~mine] @ moved
-                found[other] = float(np.hypot(found[other], np.sqrt(np.mean(error**2))))
+                found[other] = float(np.hypot(found[other], rms(error)))
     return found
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 
@@ -20,4 +21,4 @@ def rms_together(fit: SweepFit, owners: Sequence[str]) -> float:
     added = sum((fit.added(o) for o in owners), np.zeros(len(kept)))[kept]
     for u in np.unique(unit[kept]):
         added[unit[kept] == u] -= added[unit[kept] == u].mean()
-    return float(np.sqrt(np.mean(added**2)))
+    return rms(added)

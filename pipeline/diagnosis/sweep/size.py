@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SHARE
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD, rms
 
 MOST_ROWS = 20_000
 """A size needs no more; every n-th row of longer records is taken."""
@@ -98,7 +98,7 @@ def sweep_size(
         compliance=c / prediction.compliance,
         compliance_std=float(np.sqrt(cov[0, 0])) / prediction.compliance,
         elastic_arcsec=abs(c) * extent,
-        residual_arcsec=float(np.sqrt(np.mean(residual**2))),
+        residual_arcsec=rms(residual),
         simulated_arcsec=simulated,
         simulated_gap_arcsec=float(along[1]) * prediction.gap_arcsec,
         span_arcsec=span,

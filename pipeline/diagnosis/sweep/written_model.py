@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.model.doubt import MOST_PARAMETERS, Doubt
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead
@@ -42,7 +43,7 @@ def written_model(
         fit = _refitted(evidence, kept) or fit
     model = model_of(fit, sweep, list(named), explained.offset_Nm)
     noise = explained.identified.fit.residual_as_read()[explained.prepared.kept]
-    floor = float(np.sqrt(np.mean(noise**2)))
+    floor = rms(noise)
     of_row = max(floor, gain.rmse_after) if gain else floor
     if (averaging := explained.prepared.sweep.averaging) is not None:  # so far it is of means
         of_row = float(np.sqrt(of_row**2 + averaging.variance_within(model.compliance)))
