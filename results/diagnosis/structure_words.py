@@ -20,7 +20,7 @@ from flexspline.pipeline.diagnosis.structure import (
     UnnamedForm,
 )
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import BOTH, DELAY, FILTER
-from flexspline.pipeline.diagnosis.sweep.slip import OUTER
+from flexspline.pipeline.diagnosis.sweep.slip import LOADED_SHARE
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.words import title_of
 
@@ -98,9 +98,10 @@ def words_of(structure: Structure, channel: str) -> str:
             return f"a trace like {title_of(structure.cause)}"
         case Slip():
             return (
-                f"the output slips: each time torque passes {OUTER:.0%} of its largest value and comes back, "
-                f"the angle has gone on by {structure.way_arcsec:.0f} arcsec, {structure.times:.0f} times "
-                "what springs there; a lock, a clamp or a friction joint gives way"
+                f"the output slips: each time torque passes {LOADED_SHARE:.0%} of its largest value and "
+                f"comes back, the angle has gone on by {structure.way_arcsec:.0f} arcsec, "
+                f"{structure.times:.0f} times what springs there; a lock, a clamp or a friction joint "
+                "gives way"
             )
         case FarSlope():
             return slope_words(structure)

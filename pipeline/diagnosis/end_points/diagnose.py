@@ -1,7 +1,7 @@
 """End points and a prediction in, a verdict out.
 
 Rules, with their numbers:
-- No unit beyond the envelope (`finding.SIGNIFICANT`), and no hypothesis NAMING_NATS better than the
+- No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis NAMING_NATS better than the
   simulation within its uncertainty: `consistent`.
 - Otherwise the likeliest cause is listed with every rival within the limits of docs/contract.md: 4 nats of
   evidence or 6 of penalised likelihood. Any rival left, or evidence below NAMING_NATS: `ambiguous`;

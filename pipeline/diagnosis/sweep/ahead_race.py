@@ -31,13 +31,13 @@ from flexspline.pipeline.diagnosis.sweep.prepare import (
 )
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, FoundAhead, run_race
 from flexspline.pipeline.diagnosis.sweep.torque_offset import (
-    UNSEEN,
+    UNSEEN_SIGMAS,
     Crossing,
     between_rows,
     crossing,
 )
 
-BESIDE: Mapping[str, Mapping[str, float]] = {
+PRESUMED_TERMS: Mapping[str, Mapping[str, float]] = {
     RATE: {"exponent": 1.0},
     HARDENING: {"law": LAWS["tanh"], "held": 0},
 }
@@ -45,11 +45,11 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
 linear lags, and a soft wind-up at several scales."""
 NEVER = {"": 0.0}
 """Parameters that no shape has."""
-ROUNDS = 3
+AHEAD_RACES = 3
 """Races at most, each with the friction that the last one's terms make the best."""
-ROUNDS_OF_BOTH = 6
+RACES_OF_BOTH = 6
 """The same beside a shifted reading, whose place and the friction's move each other."""
-SETTLED_SHARE, SETTLED_LOG = 0.003, 0.3
+AHEAD_SETTLED_SHARE, SETTLED_LOG = 0.003, 0.3
 """Friction found again within this of the largest torque, and its stiffness ratio within this of its log, is
 the last: neither moves what counts."""
 AHEAD_NATS = 9.0
@@ -58,10 +58,10 @@ SURE_NATS = 30.0
 """Nats of the step's place by which it needs no race without it to be sure, where it leaves nothing without
 a name: of 220 made-up records without
 such friction (`tests/hidden`, seed 90817) one has more than 12, a pair with a shifted reading: 13."""
-BETWEEN_ROWS, PASSED_OVER = 0.5, 3
+PLACE_BETWEEN_ROWS, PASSED_OVER = 0.5, 3
 """Of the torque between the rows next to a crossing: its place is not known better. The third nearest on
 either side count: rows that noise or a jump has moved are passed over."""
-FAR = 3.0
+FAR_PLACE_DEVIATIONS = 3.0
 """Deviations of the crossing's place, from which what the loop's shape says is not taken: the deviation is
 half of what no row tells apart."""
 GUESS_LOG = 0.2
@@ -99,7 +99,7 @@ def _seen(found: ExplainedSweep) -> bool:
     """Whether the friction stands out of the torque's noise, in which rows lie on either side anyhow."""
     ahead = found.prepared.ahead
     assert ahead is not None
-    return ahead.amplitudes[0] > UNSEEN * torque_noise_Nm(found.prepared.rig.history)
+    return ahead.amplitudes[0] > UNSEEN_SIGMAS * torque_noise_Nm(found.prepared.rig.history)
 
 
 def _raced_with(
@@ -111,7 +111,7 @@ def _raced_with(
     if abs(float(np.log(element.amplitudes[0] / guess.amplitudes[0]))) > GUESS_LOG:
         element = replace(element, amplitudes=guess.amplitudes)
     seen: Crossing | None = None
-    for _ in range(ROUNDS_OF_BOTH if offset else ROUNDS):
+    for _ in range(RACES_OF_BOTH if offset else AHEAD_RACES):
         explained = run_race(prepare(plain.sweep, plain.prediction, offset, element))
         now = explained.prepared
         identified = explained.identified
@@ -126,7 +126,7 @@ def _raced_with(
             shifted = 0.0
         moved = abs(found.element.amplitudes[0] - element.amplitudes[0])
         bent = abs(float(np.log(found.element.shape[AHEAD] / element.shape[AHEAD])))
-        settled = SETTLED_SHARE * plain.rig.torque_Nm
+        settled = AHEAD_SETTLED_SHARE * plain.rig.torque_Nm
         if moved < settled and bent < SETTLED_LOG and abs(shifted - offset) < settled:
             break
         element, offset = found.element, shifted
@@ -139,7 +139,7 @@ def _held_at(found: TunedAhead, seen: Crossing) -> TunedAhead:
     Friction of another kind bends the loop as this does; the step of the gap is this one's alone.
     """
     friction = found.element.amplitudes[0]
-    if abs(friction - seen.offset_Nm) < FAR * seen.std_Nm or seen.offset_Nm <= 0:
+    if abs(friction - seen.offset_Nm) < FAR_PLACE_DEVIATIONS * seen.std_Nm or seen.offset_Nm <= 0:
         return found
     return TunedAhead(replace(found.element, amplitudes=(seen.offset_Nm,)), seen.std_Nm)
 
@@ -154,7 +154,7 @@ def _alone(prepared: PreparedSweep) -> TunedAhead:
     free = [
         t
         for t in columns.terms
-        if t.owner in LINEAR or BESIDE.get(t.owner, NEVER).items() <= dict(t.shape).items()
+        if t.owner in LINEAR or PRESUMED_TERMS.get(t.owner, NEVER).items() <= dict(t.shape).items()
     ]
     few = replace(
         columns,
@@ -181,7 +181,7 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     )
     if found is None:
         return None
-    between = BETWEEN_ROWS * between_rows(along, found.offset_Nm, PASSED_OVER)
+    between = PLACE_BETWEEN_ROWS * between_rows(along, found.offset_Nm, PASSED_OVER)
     return replace(found, std_Nm=max(found.std_Nm, between))
 
 

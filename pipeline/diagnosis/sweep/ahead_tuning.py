@@ -22,18 +22,18 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_hist
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, base_columns
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing
 
-STEPS = 8
+AHEAD_STEPS = 8
 """At most; from a guess within 1 % of the largest torque, four are usual."""
-LONGEST = (0.25, 1.2)
+LONGEST_LOG_STEPS = (0.25, 1.2)
 """Of a step, in the logarithms of friction torque and stiffness ratio."""
-DIFFERENCE = (0.01, 0.1)
+LOG_DIFFERENCES = (0.01, 0.1)
 """Of the logarithms, for slopes."""
 STIFFNESS_RATIO, RATIO_STD = 30.0, 1.5
 """Of a bearing before it slips against the gear: seals 3, rolling bearings 300, by judgement; the prior of
 its log."""
-SHARES = (1.0, 0.35, 0.1)
+AHEAD_STEP_SHARES = (1.0, 0.35, 0.1)
 """Of a step: whole, and less where that loses."""
-ENOUGH = 0.05
+AHEAD_ENOUGH_NATS = 0.05
 """Nats: a step that gains less is the last."""
 
 
@@ -66,24 +66,24 @@ def tuned_ahead(
     point = np.log([start.amplitudes[0], start.shape[AHEAD]])
     trial = _Trial(prepared, evidence, tuple(terms), seen)
     now = trial.at(point)
-    for _ in range(STEPS):
+    for _ in range(AHEAD_STEPS):
         slopes = np.column_stack([
             (trial.left(point + d * np.eye(2)[k], now.mean) - now.left) / d
-            for k, d in enumerate(DIFFERENCE)
+            for k, d in enumerate(LOG_DIFFERENCES)
         ])  # fmt: skip
         step, covariance = trial.step(now, slopes, point)
         if not np.isfinite(step).all():
             break
         gained = 0.0
-        for share in SHARES:
-            moved = point + share * np.clip(step, np.negative(LONGEST), LONGEST)
+        for share in AHEAD_STEP_SHARES:
+            moved = point + share * np.clip(step, np.negative(LONGEST_LOG_STEPS), LONGEST_LOG_STEPS)
             then = trial.at(moved)
             if then.value > now.value:
                 gained = then.value - now.value
                 point, now = moved, then
                 break
         std = float(np.sqrt(covariance[0, 0]) * np.exp(point[0]))
-        if gained < ENOUGH:
+        if gained < AHEAD_ENOUGH_NATS:
             break
     return TunedAhead(trial.element(point), std)
 

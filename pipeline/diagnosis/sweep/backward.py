@@ -27,14 +27,14 @@ from flexspline.pipeline.diagnosis.sweep.torque_delay import torque_delay_s
 
 FEWEST_LOOPS = 2
 """What happens once may be a jolt."""
-ALIKE, CONTRARY = 0.9, 2.0
+BACKWARD_SHARE, LOAD_DEVIATIONS = 0.9, 2.0
 """Of the loads that must not run forwards, by so many standard deviations each: noise may turn a few."""
-SURE = 4.0
+BACKWARD_DEVIATIONS = 4.0
 """Standard deviations below none, on either side of the gap, as a drift widens a loop on one side and narrows
 it on the other. By chance one record in a billion has that."""
 FEWEST_ALIKE, LUCK = 4, 0.05
 """Differences between loads that are alike of which a noise is told, and the chance that it is larger."""
-QUICK = 1.25
+QUICK_RATIO = 1.25
 """Times a load's own rate that the quickest must not exceed, where the quickest are looked at alone."""
 WITHIN_LOADS = (
     THERMAL, WEAR, DRIFT, "?temperature_C", KINEMATIC, POSITION,
@@ -74,7 +74,7 @@ def backward_loop(
     found, quickest = _backward(loads, angle_arcsec, noise), None
     if found is None and loads.rates is not None:
         quickest = float(loads.rates.max())
-        found = _backward(loads.only(loads.rates * QUICK > quickest), angle_arcsec, noise)
+        found = _backward(loads.only(loads.rates * QUICK_RATIO > quickest), angle_arcsec, noise)
     if found is None:
         return None
     unrecorded = tuple(channel for channel in WOULD_SHOW if getattr(history, channel) is None)
@@ -121,10 +121,10 @@ def _backward(loads: Loads, angle_arcsec: np.ndarray, noise: Noise) -> tuple[flo
     width = loads.widths(angle_arcsec)
     # of the difference of two means over half of the rows each
     variance = 4 * noise.slow_power / loads.counts
-    if np.mean(width < CONTRARY * np.sqrt(variance)) < ALIKE:
+    if np.mean(width < LOAD_DEVIATIONS * np.sqrt(variance)) < BACKWARD_SHARE:
         return None
     for own in (above, ~above):
-        if width[own].mean() + SURE * np.sqrt(variance[own].sum()) / own.sum() > 0:
+        if width[own].mean() + BACKWARD_DEVIATIONS * np.sqrt(variance[own].sum()) / own.sum() > 0:
             return None
     mean = -float(width.mean())
     return (mean, loops) if mean >= noise.std_arcsec else None

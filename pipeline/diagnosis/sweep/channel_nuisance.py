@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.sweep.basis_functions import (
 )
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
-STEPS = 25
+TIME_STEPS = 25
 """Places of a step in time, evenly over a unit's rows."""
 TELLING = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
@@ -65,7 +65,7 @@ def waves_and_steps(rig: Rig) -> Made:
     for k in WAVES:
         yield "time_s", UnnamedForm("wave"), wave(t, k)
     for rows in rig.history.unit_slices:
-        for place in np.linspace(0, 1, STEPS + 2)[1:-1]:
+        for place in np.linspace(0, 1, TIME_STEPS + 2)[1:-1]:
             yield from step_from(rig, int(rows[int(place * len(rows))]))
 
 

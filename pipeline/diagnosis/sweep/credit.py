@@ -14,7 +14,7 @@ from math import sqrt
 from flexspline.pipeline.diagnosis.sweep.evidence import posterior_of
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 
-TINY = 1e-9
+LEAST_CHI_SQUARE = 1e-9
 """χ²: causes that explain less explain nothing."""
 
 
@@ -31,4 +31,4 @@ def unnamed_share(identified: Identification, told: Collection[str]) -> float:
     none, named, whole = (
         posterior_of(evidence, terms).misfit(evidence) for terms in ((), causes, best)
     )
-    return sqrt(max(named - whole, 0.0) / max(none - named, TINY))
+    return sqrt(max(named - whole, 0.0) / max(none - named, LEAST_CHI_SQUARE))

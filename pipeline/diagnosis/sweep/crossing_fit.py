@@ -17,8 +17,8 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
     MOST_FIRST_ROWS,
-    ROBUST,
-    SINGULAR,
+    ROBUST_DEVIATIONS,
+    SINGULAR_SHARE,
     looped_functions,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import LEAST_WIDTH
@@ -93,14 +93,16 @@ class CrossedRecord:
         for _ in range(WEIGHINGS):
             weighted = basis * weight[:, None]
             found = np.linalg.lstsq(
-                weighted.T @ weighted, weighted.T @ (angle * weight), rcond=SINGULAR
+                weighted.T @ weighted, weighted.T @ (angle * weight), rcond=SINGULAR_SHARE
             )[0]
             off = np.abs(angle - basis @ found) / deviation
-            weight = 1 / deviation / np.sqrt(np.maximum(1, off / ROBUST))
+            weight = 1 / deviation / np.sqrt(np.maximum(1, off / ROBUST_DEVIATIONS))
         if found[0] < LEAST_STEP * self.gap_arcsec:
             return CrossingFit(tried, -np.inf, np.inf)
         # a row that lies anywhere costs what a spike does
-        huber = np.where(off < ROBUST, off**2, 2 * ROBUST * off - ROBUST**2)
+        huber = np.where(
+            off < ROBUST_DEVIATIONS, off**2, 2 * ROBUST_DEVIATIONS * off - ROBUST_DEVIATIONS**2
+        )
         cost = np.minimum(huber, 2 * SPIKE_NATS) / 2 + np.log(deviation)
         left = SIGMA_PER_MAD * float(np.median(off)) * self.noise_arcsec
         return CrossingFit(tried, -float(cost.sum()), left)

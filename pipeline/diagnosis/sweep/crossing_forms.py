@@ -17,14 +17,14 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
-from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST
+from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST_FRICTION
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_STEPS
 from flexspline.pipeline.diagnosis.sweep.torque_delay import torque_read_at
-from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH
 
 FILTER, DELAY, BOTH = "filter", "delay", "both"
 """Kinds of a late angle: through a filter, by a delay, or both readings through one filter."""
-SHORTEST, LONGEST, TIMES = 0.002, 0.4, 32
+SHORTEST_SHARE, LONGEST_SHARE, TIMES = 0.002, 0.4, 32
 """Times tried, as shares of a ramp, each 1.19 times the one before: the best one is refined."""
 FRICTIONS = 45
 """Frictions tried, 1 % of the largest torque apart: the best one is refined."""
@@ -48,7 +48,7 @@ class Tried:
 
 def at_a_place(history: History) -> list[Tried]:
     """Crossed at one torque in both senses: a shifted reading, or none."""
-    places = np.linspace(-REACH, REACH, FIRST_STEPS) * _largest(history)
+    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * _largest(history)
     return [Tried("offset", p, _sharp(history.torque_Nm - p)) for p in places.tolist()]
 
 
@@ -57,7 +57,7 @@ def behind_friction(
 ) -> list[Tried]:
     """Crossed where friction ahead of the teeth lets the torque pass; beside a shifted reading."""
     if frictions_Nm is None:
-        frictions_Nm = np.linspace(0, LARGEST, FRICTIONS + 1)[1:] * _largest(history)
+        frictions_Nm = np.linspace(0, LARGEST_FRICTION, FRICTIONS + 1)[1:] * _largest(history)
     torque = steadied(history, deadband_Nm(history))
     carried = stops(history, torque, frictions_Nm, np.zeros(len(frictions_Nm)))
     return [
@@ -72,7 +72,7 @@ def of_time(history: History, kind: str) -> Iterator[Tried]:
     Of "twist" the step is where it should be; the torque reading of "torque" is late.
     """
     ramp = ramp_s(history)
-    times = ramp * np.geomspace(SHORTEST, LONGEST, TIMES) if ramp > 0 else np.empty(0)
+    times = ramp * np.geomspace(SHORTEST_SHARE, LONGEST_SHARE, TIMES) if ramp > 0 else np.empty(0)
     yield from (late(history, kind, time) for time in times.tolist())
 
 

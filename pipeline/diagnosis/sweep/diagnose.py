@@ -61,17 +61,21 @@ from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRowsError, prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.repeated_misfit import repeated_misfit
-from flexspline.pipeline.diagnosis.sweep.residual_tests import SURE, ChannelTest, channel_tests
+from flexspline.pipeline.diagnosis.sweep.residual_tests import (
+    UNKNOWN_P_VALUE,
+    ChannelTest,
+    channel_tests,
+)
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
 from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
-STILL = 0.1
+CONSTANT_SHARE = 0.1
 """Torque that varies by less than this share of its largest value is constant."""
 FEWEST_TORQUES = 4
 """One more than zero, stiffness and gap."""
-FEWEST_HOLDS = 3
+FEWEST_CREEP_HOLDS = 3
 """Up, back, and once more: what grows in one hold only may be drift."""
 
 
@@ -123,7 +127,7 @@ def diagnose_sweep(
         unexplained_of(identified, tests, jumps, again, told),
         named_rms=named_rms,
         unnamed_rms=max(unnamed_rms, unnamed_share(identified, told) * named_rms),
-        structure=any(t.p_value < SURE for t in tests),
+        structure=any(t.p_value < UNKNOWN_P_VALUE for t in tests),
     )
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
@@ -166,7 +170,7 @@ def _misread(
 def _too_little(sweep: Sweep) -> Shortage | None:
     torque = sweep.history.torque_Nm
     largest = float(np.abs(torque).max())
-    if largest == 0 or np.ptp(torque) < STILL * largest:
+    if largest == 0 or np.ptp(torque) < CONSTANT_SHARE * largest:
         return ConstantTorque()
     different = len(np.unique(np.round(torque / largest, 2)))
     if different < FEWEST_TORQUES and not _is_creep_test(sweep):
@@ -176,7 +180,7 @@ def _too_little(sweep: Sweep) -> Shortage | None:
 
 def _is_creep_test(sweep: Sweep) -> bool:
     """Whether torque is stepped and held: few torques then show what goes on while they are held."""
-    return len(holds(sweep.history)) >= FEWEST_HOLDS
+    return len(holds(sweep.history)) >= FEWEST_CREEP_HOLDS
 
 
 def _insufficient(shortage: Shortage) -> DiagnosisOutcome:

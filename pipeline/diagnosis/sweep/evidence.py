@@ -12,11 +12,11 @@ from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, Regressor
 
-MOST_ROWS = 4000
+MOST_WHITENED_ROWS = 4000
 """Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
 
 
-AT_ONCE = 64
+COLUMNS_AT_ONCE = 64
 """Columns whitened together: 3 MB of 6000 rows."""
 
 
@@ -51,7 +51,7 @@ class GaussianEvidence:
     def prepared(self, values: np.ndarray) -> np.ndarray:
         """(n, k) further columns of the record, whitened like all others."""
         stretches = stretches_of(self.columns.rig.history, self.kept)
-        block = max(1, int(self.kept.sum()) // MOST_ROWS)
+        block = max(1, int(self.kept.sum()) // MOST_WHITENED_ROWS)
         return _summed(self.noise.whitened(values[self.kept].astype(float), stretches), block)
 
     def base_with(self, blocks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -84,11 +84,11 @@ def gaussian_evidence(
     base = bare.prepared(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
     wide = [
-        bare.prepared(columns.all[:, i : i + AT_ONCE])
-        for i in range(0, columns.all.shape[1], AT_ONCE)
+        bare.prepared(columns.all[:, i : i + COLUMNS_AT_ONCE])
+        for i in range(0, columns.all.shape[1], COLUMNS_AT_ONCE)
     ]
     x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
-    block = max(1, int(kept.sum()) // MOST_ROWS)
+    block = max(1, int(kept.sum()) // MOST_WHITENED_ROWS)
     base_gram = base.T @ base + np.diag(columns.base_prior**-2)
     base_right = base.T @ y
     cross = base.T @ x

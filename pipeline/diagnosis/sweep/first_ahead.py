@@ -19,17 +19,17 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     nats_over,
     step_misfit,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, both_ways
 
-LARGEST = 0.45
+LARGEST_FRICTION = 0.45
 """Friction tried, of the largest torque: with more the teeth carry hardly more than the bearing."""
-COARSE, FINE = 16, 9
+COARSE_PLACES, FINE_PLACES = 16, 9
 """Places tried: 2.8 % of the largest torque apart, less than the band's whole width (7 %), then between."""
 BOTH_NATS = 6.0
 """Of the friction alone over none, from which a shifted reading beside it is tried: each hides the other."""
 OFFSETS = 33
 """Places of a shifted reading tried against it: 2.2 % of the largest torque apart, less than the band."""
-OFFSET_NATS = 3.0
+NEAR_OFFSET_NATS = 3.0
 """Over the best of them, odds of 20 to 1: a race with either decides what is as near as that."""
 
 
@@ -56,16 +56,16 @@ def first_ahead(
     if not both_ways(history.torque_Nm):
         return None
     torque = steadied(history, deadband_Nm(history))
-    coarse = np.linspace(0, LARGEST, COARSE + 1)[1:] * largest
-    carried = stops(history, torque, coarse, np.zeros(COARSE))
+    coarse = np.linspace(0, LARGEST_FRICTION, COARSE_PLACES + 1)[1:] * largest
+    carried = stops(history, torque, coarse, np.zeros(COARSE_PLACES))
     smooth = looped_functions(history)
 
     def misfit(carried_Nm: np.ndarray | float, least: float = LEAST_STEP) -> float:
         beyond = history.torque_Nm - carried_Nm
         return step_misfit(beyond, smooth, angle_arcsec, gap_arcsec, band_Nm, least)
 
-    places = np.linspace(-REACH, REACH, OFFSETS) * largest
-    table = [misfit(carried[:, k]) for k in range(COARSE)]
+    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSETS) * largest
+    table = [misfit(carried[:, k]) for k in range(COARSE_PLACES)]
     best = int(np.argmin(table))
     if not np.isfinite(table[best]) or table[best] <= 0:
         return None
@@ -73,9 +73,9 @@ def first_ahead(
 
     def finer(best: int, coarsest: float, offset: float) -> tuple[float, float]:
         """The friction near one of the coarse places, and its misfit."""
-        fine = coarse[best] + coarse[0] * np.linspace(-1, 1, FINE + 2)[1:-1]
-        near = stops(history, torque, fine, np.zeros(FINE))
-        again = [misfit(near[:, k] + offset) for k in range(FINE)]
+        fine = coarse[best] + coarse[0] * np.linspace(-1, 1, FINE_PLACES + 2)[1:-1]
+        near = stops(history, torque, fine, np.zeros(FINE_PLACES))
+        again = [misfit(near[:, k] + offset) for k in range(FINE_PLACES)]
         k = int(np.argmin(again))
         return (fine[k], again[k]) if again[k] <= coarsest else (coarse[best], coarsest)
 
@@ -91,7 +91,7 @@ def first_ahead(
 
     def rubbed(place: int) -> tuple[int, float]:
         """The best friction beside a shifted reading, and its misfit."""
-        found = [misfit(carried[:, k] + places[place]) for k in range(COARSE)]
+        found = [misfit(carried[:, k] + places[place]) for k in range(COARSE_PLACES)]
         return int(np.argmin(found)), min(found)
 
     shifted, of_offset = placed(0.0)
@@ -109,6 +109,6 @@ def first_ahead(
         nats = nats_over(min(least, of_offset), joint, rows)
         return AheadGuess(float(friction), nats, offset)
     over_offset = nats_over(of_offset, least, rows)
-    if nats < FIRST_NATS or over_offset < OFFSET_NATS:
+    if nats < FIRST_NATS or over_offset < NEAR_OFFSET_NATS:
         return None
     return AheadGuess(float(friction), min(nats, over_offset))

@@ -18,7 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     stiffness_of_positions,
     zeros_of_cycles,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH, SEEN, both_ways
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH, SEEN_RATIO, both_ways
 
 FIRST_STEPS = 81
 """Places tried: odd, so that 0 is one; 0.9 % of the largest torque apart, a quarter of the band (3.5 %)."""
@@ -46,7 +46,7 @@ def first_offset(
         [*zeros, positions, x, np.abs(x), x**2, x**3, direction, direction * x**2]
     )
     heights = changing_heights(history)
-    places = np.linspace(-REACH, REACH, FIRST_STEPS) * largest
+    places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * largest
 
     def misfit(place: float) -> float:
         beyond = history.torque_Nm - place
@@ -58,7 +58,7 @@ def first_offset(
     if not np.isfinite(table[best]) or table[best] <= 0:
         return 0.0
     left_arcsec = np.sqrt(table[best] / rows_judged(len(x)))
-    if gap_arcsec < SEEN * left_arcsec:
+    if gap_arcsec < SEEN_RATIO * left_arcsec:
         return 0.0
     nats = nats_over(at_zero, table[best], len(x))
     if abs(places[best]) < band_Nm / 2 or nats < FIRST_NATS:

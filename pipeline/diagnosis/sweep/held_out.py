@@ -20,15 +20,15 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 from flexspline.pipeline.diagnosis.sweep.splits import Split, between_others, whole_levels
 
-MOST_ROWS = 24_000
+MOST_HELD_OUT_ROWS = 24_000
 """Rows that all levels together may take, each with a search of its own: 1.5 ms of a processor a row."""
-FEWEST_ROWS = 12
+FEWEST_RMS_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 
-REFUTED = 2.0
+REFUTED_RATIO = 2.0
 """Times the error without the causes, at a whole level that was held out, from which they explain nothing:
 half of a true effect would still make it smaller."""
-SURE = 3.0
+REFUTING_DEVIATIONS = 3.0
 """Deviations that the prediction states, within which an error refutes nothing: what was held out may be what
 tells the sizes."""
 
@@ -45,7 +45,8 @@ def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple
     prepared = explained.prepared
     timed = prepared.sweep.history.time_s is not None
     splits = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
-    splits = splits[-(MOST_ROWS // len(prepared.kept)) :] if len(prepared.kept) <= MOST_ROWS else []
+    most = MOST_HELD_OUT_ROWS // len(prepared.kept)
+    splits = splits[-most:] if most else []
     gains = (_gain(explained, causes, split) for split in splits)
     return tuple(g for g in gains if g is not None)
 
@@ -73,7 +74,10 @@ def refuted(levels: Iterable[Gain]) -> Unexplained | None:
 
 
 def _does_harm(gain: Gain) -> bool:
-    return _times_worse(gain) >= REFUTED and gain.rmse_after > SURE * gain.stated_std
+    return (
+        _times_worse(gain) >= REFUTED_RATIO
+        and gain.rmse_after > REFUTING_DEVIATIONS * gain.stated_std
+    )
 
 
 def _times_worse(gain: Gain) -> float:
@@ -92,7 +96,7 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > prepared.band_Nm)
     test &= ~turning(history)  # what a row there shows is a matter of sampling
     test &= ~settling(history)  # nor is known what friction remembers from before the record
-    if train.sum() < FEWEST_ROWS or test.sum() < FEWEST_ROWS:
+    if train.sum() < FEWEST_RMS_ROWS or test.sum() < FEWEST_RMS_ROWS:
         return None
     columns = prepared.columns.untuned.of(causes)
     learnt = gaussian_evidence(columns, prepared.target, train, prepared.noise)

@@ -11,16 +11,17 @@ from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 
-BLOCKS = (1, 2, 4, 8)
+JUMP_BLOCK_ROWS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
 FINEST_ARCSEC = 1e-4
 """Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
-ROUNDED = 12.0
+ROUNDING_RATIO = 12.0
 """A step's square over the variance of what is rounded to it."""
-FEWEST = 20
-"""Steps: of so few large ones the test reaches 4.5 deviations at the most; `SIGNIFICANT` asks for 4.1."""
+FEWEST_JUMP_STEPS = 20
+"""Steps: of so few large ones the test reaches 4.5 deviations at the most, and `STRUCTURE_P_VALUE` asks for
+4.1."""
 
 
 @dataclass(frozen=True)
@@ -49,13 +50,13 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     history, kept = prepared.rig.history, prepared.kept
     left, motion = fit.residual()[kept], direction_of_loading(history)[kept]
     pieces = stretches_of(history, kept)
-    found = [_skewness(left, motion, pieces, rows) for rows in BLOCKS]
-    p_value = min(1.0, len(BLOCKS) * float(ndtr(-max(found))))
-    if p_value > SIGNIFICANT:
+    found = [_skewness(left, motion, pieces, rows) for rows in JUMP_BLOCK_ROWS]
+    p_value = min(1.0, len(JUMP_BLOCK_ROWS) * float(ndtr(-max(found))))
+    if p_value > STRUCTURE_P_VALUE:
         return None
     saw_tooth = float(np.sqrt(max(float(np.var(left)) - prepared.noise.white, 0.0)))
     step = encoder_step(prepared.sweep.angle_arcsec)
-    if saw_tooth**2 < ROUNDED * undithered(prepared.noise.white, step):
+    if saw_tooth**2 < ROUNDING_RATIO * undithered(prepared.noise.white, step):
         return None
     return Jumps(p_value, saw_tooth)
 
@@ -69,7 +70,7 @@ def undithered(variance: float, step: float) -> float:
     """
     if step <= 0:
         return 0.0
-    rounding = step**2 / ROUNDED
+    rounding = step**2 / ROUNDING_RATIO
     noise = max(variance - rounding, 0.0)
     return rounding * float(np.exp(-4 * np.pi**2 * noise / step**2))
 
@@ -93,7 +94,7 @@ def _skewness(left: np.ndarray, motion: np.ndarray, pieces: list[slice], rows: i
         same = steady[1:] & steady[:-1] & (way[1:] == way[:-1])
         steps.append((np.diff(means) * way[1:])[same & (way[1:] != 0)])
     along = np.concatenate(steps) if steps else np.empty(0)
-    if len(along) < FEWEST:
+    if len(along) < FEWEST_JUMP_STEPS:
         return 0.0
     along = along - along.mean()
     skew = along**3 - 3 * float((along**2).mean()) * along

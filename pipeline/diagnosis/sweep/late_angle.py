@@ -36,14 +36,14 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.step_place import DEPENDENT
 from flexspline.pipeline.diagnosis.sweep.torque_offset import both_ways
 
-COARSE = 3
+COARSE_EVERY = 3
 """Of the forms, every third is tried at first: where no late angle is the best of these, none is. Else those
 beside the best of each kind are tried too."""
 COARSE_ROWS = 1000
 """Rows looked at meanwhile: enough to tell forms that lie three steps apart."""
-FINE = 9
+FINE_TIMES = 9
 """Times tried between two neighbours of the first search."""
-KINDS = (FILTER, DELAY, BOTH)
+LATE_KINDS = (FILTER, DELAY, BOTH)
 IMITATED = (
     HARDENING, FRICTION, RATE, CREEP, SERIES,
     "?direction", "?torque_rate", "?torque_Nm", "?angle_arcsec", "?time_s",
@@ -92,10 +92,10 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     history = crossed.history
     known = [at_a_place(history), behind_friction(history)]
     known += [list(of_time(history, kind)) for kind in OTHERS]
-    by_time = [list(of_time(history, kind)) for kind in KINDS]
+    by_time = [list(of_time(history, kind)) for kind in LATE_KINDS]
     coarse = replace(crossed, most_rows=COARSE_ROWS)
-    others = [coarse.best(tried[::COARSE]) for tried in known]
-    owns = [coarse.best(tried[::COARSE]) for tried in by_time]
+    others = [coarse.best(tried[::COARSE_EVERY]) for tried in known]
+    owns = [coarse.best(tried[::COARSE_EVERY]) for tried in by_time]
     own = max(owns, key=likeliest)
     best = max((own, *others), key=likeliest)
     # local polynomials take the gap's step for noise: what the best form leaves is less
@@ -114,7 +114,7 @@ def _searched(crossed: CrossedRecord) -> _Searched:
 def _beside(tried: list[Tried], best: CrossingFit) -> list[Tried]:
     """The best of the forms that were tried at first, and those up to its neighbours."""
     at = next(i for i, one in enumerate(tried) if one is best.tried)
-    return tried[max(0, at - COARSE + 1) : at + COARSE]
+    return tried[max(0, at - COARSE_EVERY + 1) : at + COARSE_EVERY]
 
 
 def _left_by(fit: CrossingFit) -> float:
@@ -135,11 +135,11 @@ def _rubbed(crossed: CrossedRecord, friction: CrossingFit) -> list[CrossingFit]:
     apart = float(np.abs(history.torque_Nm).max()) / 100
 
     def near(offset_Nm: float) -> CrossingFit:
-        fine = np.maximum(coarse + apart * np.linspace(-1, 1, 4 * FINE + 1), apart / 100)
+        fine = np.maximum(coarse + apart * np.linspace(-1, 1, 4 * FINE_TIMES + 1), apart / 100)
         return crossed.best(behind_friction(history, fine, offset_Nm))
 
     alone = near(0.0)
-    places = apart * np.linspace(-10, 10, 4 * FINE + 1)
+    places = apart * np.linspace(-10, 10, 4 * FINE_TIMES + 1)
     own = np.array([alone.tried.value])
     beside = [behind_friction(history, own, p)[0] for p in places.tolist()]
     shifted = int(np.argmax([crossed.of(one).log_likelihood for one in beside]))
@@ -149,7 +149,7 @@ def _rubbed(crossed: CrossedRecord, friction: CrossingFit) -> list[CrossingFit]:
 def _sized(searched: _Searched) -> LateAngle:
     """Time and deviation by how likely each of some neighbouring times is."""
     crossed, tried = searched.crossed, searched.own.tried
-    times = np.geomspace(tried.value / 1.2, tried.value * 1.2, FINE)
+    times = np.geomspace(tried.value / 1.2, tried.value * 1.2, FINE_TIMES)
     forms = [late(crossed.history, tried.kind, time) for time in times.tolist()]
     nats = np.array([crossed.of(one).log_likelihood for one in forms]) / DEPENDENT
     weight = np.exp(nats - nats.max())

@@ -8,7 +8,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
-MISFIT = 2.0
+SHAPE_MISFIT = 2.0
 """Rms that the best shape leaves of a law, over the doubt of its size: 1.4 of a rate's, 2 of a creep's."""
 
 
@@ -47,7 +47,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
             continue
         taken = inverse @ (model.T @ tried)
         left = np.linalg.norm(tried - model @ taken, axis=0)
-        doubt = MISFIT * known_causes()[cause].shape_doubt * size
+        doubt = SHAPE_MISFIT * known_causes()[cause].shape_doubt * size
         moved = (taken * scale[:, None])[~mine] * np.minimum(1.0, doubt / np.maximum(left, 1e-12))
         for other in found:
             if other != cause:

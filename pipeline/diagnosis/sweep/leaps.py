@@ -10,9 +10,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.shortage import Leaps
 
-FAR = 10.0
+LEAP_RATIO = 10.0
 """Times the median move between two rows: of normal noise one move in 70 billion goes so far."""
-FEWEST = 3
+FEWEST_LEAPS = 3
 """Leaps, all with the torque: one may be a touch of the rig; spikes go there and back."""
 
 
@@ -25,8 +25,8 @@ def leaps_of(history: History, angle_arcsec: np.ndarray) -> Leaps | None:
         torques.append(history.torque_Nm[rows[1:]])
     move, torque = np.concatenate(moves), np.concatenate(torques)
     usual = float(np.median(np.abs(move))) if len(move) else 0.0
-    far = np.abs(move) > FAR * usual
-    if usual == 0 or far.sum() < FEWEST or (move[far] < 0).any():
+    far = np.abs(move) > LEAP_RATIO * usual
+    if usual == 0 or far.sum() < FEWEST_LEAPS or (move[far] < 0).any():
         return None
     size, at = move[far], torque[far]
     return Leaps(

@@ -15,9 +15,9 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.size import simulated_twist_arcsec, sweep_size
 from flexspline.pipeline.diagnosis.sweep.slip import slip_of
 
-MOST = 10.0
+MOST_SLOPE_RATIO = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
-SURE = 3.0
+NEGATIVE_GAP_DEVIATIONS = 3.0
 """Standard deviations below 0 at which a gap is negative: one in 740."""
 
 
@@ -33,10 +33,10 @@ def broken_limit(
     if slip is not None:
         return Unexplained("torque_Nm", slip.way_arcsec, 0.0, slip)
     size = sweep_size(prepared.rig.history, prepared.sweep.angle_arcsec, prepared.prediction)
-    if size is not None and slope_beyond(size, MOST):
+    if size is not None and slope_beyond(size, MOST_SLOPE_RATIO):
         return Unexplained("torque_Nm", size.residual_arcsec, 0.0, far_slope(size, sweep))
     gap, std = _gap(fit, causes, prepared.prediction)
-    if gap + SURE * std < 0:
+    if gap + NEGATIVE_GAP_DEVIATIONS * std < 0:
         return Unexplained("torque_Nm", abs(gap) / 2, 0.0, NegativeGap(gap, std))
     return None
 

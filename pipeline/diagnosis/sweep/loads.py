@@ -10,9 +10,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.sweep.rate_blind import cycle_rates
 
-FEWEST_ROWS = 8
+FEWEST_LOAD_ROWS = 8
 """Of a load, on one side of the gap: four each way."""
-OPEN = 0.1
+OPEN_SHARE = 0.1
 """Of the way up: a load whose way down differs by more has not ended."""
 ONE_SIZE = 0.05
 """Relative difference up to which loads have one amplitude, or one rate."""
@@ -85,7 +85,7 @@ class Loads:
 
 def _returns(history: History, rows: np.ndarray) -> bool:
     step = np.diff(history.torque_Nm[rows])
-    return len(rows) >= FEWEST_ROWS and abs(step.sum()) < OPEN / 2 * np.abs(step).sum()
+    return len(rows) >= FEWEST_LOAD_ROWS and abs(step.sum()) < OPEN_SHARE / 2 * np.abs(step).sum()
 
 
 def _width(torque_Nm: np.ndarray, angle_arcsec: np.ndarray) -> float:

@@ -25,7 +25,7 @@ SHAPE_NATS = 3.0
 the gear's."""
 FEWEST_WEIGHT_LOGS = 6.0
 """Sets that count by less than e^−6 = 0.25 % are left out."""
-OPEN, NARROWED = 0.8, 0.5
+SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
 NEAR_ZERO = 0.15
@@ -83,7 +83,7 @@ def _stands_for_springs(identified: Identification) -> bool:
     beside = fit.calibration.compliance
     assert alone is not None
     assert beside is not None
-    return alone.std < NARROWED * stated and beside.std > OPEN * stated
+    return alone.std < SLOPE_NARROWED_SHARE * stated and beside.std > SLOPE_OPEN_SHARE * stated
 
 
 def _probability(nats: float) -> float:

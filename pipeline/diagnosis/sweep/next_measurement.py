@@ -21,7 +21,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.splits import rate_range
 
-ROWS = 64
+PLANNED_CYCLE_ROWS = 64
 """Of one triangular cycle."""
 DEFAULT_RAMP_S = 30.0
 """Time of a ramp where the record has none."""
@@ -121,8 +121,9 @@ def _rates_beyond(history: History, ramp_s: float) -> tuple[float, float, bool]:
 
 def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, np.ndarray]:
     """Torque [N·m] and time [s] of 0 → +A → (hold) → −A → (hold) → 0."""
-    quarter = np.arange(1, ROWS // 4 + 1) / (ROWS // 4)
-    up, down = amplitude * quarter, amplitude * (1 - 2 * np.arange(1, ROWS // 2 + 1) / (ROWS // 2))
+    quarter = np.arange(1, PLANNED_CYCLE_ROWS // 4 + 1) / (PLANNED_CYCLE_ROWS // 4)
+    half = np.arange(1, PLANNED_CYCLE_ROWS // 2 + 1) / (PLANNED_CYCLE_ROWS // 2)
+    up, down = amplitude * quarter, amplitude * (1 - 2 * half)
     parts = [(up, ramp), (down, 2 * ramp), (-amplitude * (1 - quarter), ramp)]
     torque, time, now = [], [], 0.0
     for i, (values, length) in enumerate(parts):
@@ -131,7 +132,7 @@ def _triangle(amplitude: float, ramp: float, hold: float) -> tuple[np.ndarray, n
         time.append(at)
         now = at[-1]
         if hold > 0 and i < 2:
-            n = ROWS // 4
+            n = PLANNED_CYCLE_ROWS // 4
             torque.append(np.full(n, values[-1]))
             time.append(now + hold * np.arange(1, n + 1) / n)
             now += hold

@@ -42,7 +42,7 @@ from flexspline.pipeline.diagnosis.sweep.torque_nuisance import (
     softening,
 )
 
-SPREAD, SLIGHT_SPREAD = 0.15, 0.015
+NUISANCE_SPREAD, SLIGHT_SPREAD = 0.15, 0.015
 """Prior sizes of an amplitude, as shares of the predicted angle. Of many zeros each costs the log of its
 prior over what is known of it: at the usual size twenty would hide a scatter of a third of the noise."""
 NEW_SHARE = 0.25
@@ -65,7 +65,7 @@ class NuisanceTerm:
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _NuisanceKind:
     """How nuisance terms of one kind are made, and what the race must know of them.
 
     `less`: of what the columns come less, as calibration and causes can be that; None: as they are.
@@ -75,7 +75,7 @@ class _Kind:
     less: Callable[[Rig], np.ndarray] | None = None
     positive: bool = False
     against: frozenset[str] = frozenset()
-    spread: float = SPREAD
+    spread: float = NUISANCE_SPREAD
 
 
 def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
@@ -83,7 +83,9 @@ def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
 
     `step` : the row from which a jump of the zero is likeliest. Columns have unit rms in the rows that count.
     """
-    kinds = KINDS if step is None else (*KINDS, _Kind(partial(step_from, row=step), less=_of_lags))
+    kinds: tuple[_NuisanceKind, ...] = NUISANCE_KINDS
+    if step is not None:
+        kinds = (*kinds, _NuisanceKind(partial(step_from, row=step), less=_of_lags))
     counted = ~settling(rig.history)
     taken = {kind.less: kind.less(rig) for kind in kinds if kind.less is not None}
     share = counted / counted.sum()
@@ -140,20 +142,20 @@ def _of_lags(rig: Rig) -> np.ndarray:
     return np.column_stack([zeros, h.torque_Nm, h.sign, lagging_torque(h)])
 
 
-KINDS = (
-    _Kind(over_torque, less=_of_torque),
-    _Kind(softening, positive=True, against=frozenset({HARDENING})),
-    _Kind(over_angle, less=_of_torque),
-    _Kind(over_direction, less=_of_lags),
-    _Kind(leading, positive=True, against=frozenset({FRICTION, RATE})),
-    _Kind(over_time, less=_of_lags, against=frozenset({DRIFT})),
-    _Kind(changing_stiffness),
-    _Kind(waves_and_steps, less=_of_lags),
-    _Kind(over_cycle),
-    _Kind(over_temperature),
-    _Kind(over_position),
-    _Kind(zeros_apart, spread=SLIGHT_SPREAD),
-    _Kind(over_unit),
-    _Kind(giving_way),
-    _Kind(ringing, less=_of_lags),
+NUISANCE_KINDS = (
+    _NuisanceKind(over_torque, less=_of_torque),
+    _NuisanceKind(softening, positive=True, against=frozenset({HARDENING})),
+    _NuisanceKind(over_angle, less=_of_torque),
+    _NuisanceKind(over_direction, less=_of_lags),
+    _NuisanceKind(leading, positive=True, against=frozenset({FRICTION, RATE})),
+    _NuisanceKind(over_time, less=_of_lags, against=frozenset({DRIFT})),
+    _NuisanceKind(changing_stiffness),
+    _NuisanceKind(waves_and_steps, less=_of_lags),
+    _NuisanceKind(over_cycle),
+    _NuisanceKind(over_temperature),
+    _NuisanceKind(over_position),
+    _NuisanceKind(zeros_apart, spread=SLIGHT_SPREAD),
+    _NuisanceKind(over_unit),
+    _NuisanceKind(giving_way),
+    _NuisanceKind(ringing, less=_of_lags),
 )

@@ -19,7 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing
 OFFSET_ROUNDS = 4
 """Races at most, each with the offset that the last one found; doubled, no verdict of 12 made-up
 records changes (`tests/hidden`, seed 77, every third of 34)."""
-SETTLED_STDS, SETTLED_SHARE = 0.5, 0.001
+SETTLED_STDS, OFFSET_SETTLED_SHARE = 0.5, 0.001
 """An offset found again within this of its standard deviations, or of the largest torque, is the last."""
 BESIDE_STEP = 0.01
 """Of the largest torque: nearer to a step of the gap no row judges where the step is."""
@@ -74,7 +74,7 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> ExplainedSweep | None
         if seen is None or not _counts(seen, prepared):
             return None
         if abs(seen.offset_Nm - offset_Nm) < max(
-            SETTLED_STDS * seen.std_Nm, SETTLED_SHARE * prepared.rig.torque_Nm
+            SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.torque_Nm
         ):
             return explained
         offset_Nm = seen.offset_Nm

@@ -27,7 +27,7 @@ DRIVEN = (
 OF_TORQUE_NOISE = 0.7
 """Of what the torque's noise is in the angle: the noise drives a memory too, and leaves a trace of it up to
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
-TOGETHER = 3.0
+TOGETHER_RATIO = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
 UNNAMED_TOGETHER = 2.0
 """The same of two nuisance terms: three quarters of their power is then gone. Nothing says that either is
@@ -73,13 +73,13 @@ def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
     """
     parts = np.array([fit.added(o)[fit.evidence.kept] for o in owners])
     parts -= parts.mean(axis=1, keepdims=True)
-    if (parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum():
+    if (parts**2).sum() > TOGETHER_RATIO**2 * (parts.sum(axis=0) ** 2).sum():
         return True
     products = parts @ parts.T
     own = np.add.outer(np.diag(products), np.diag(products))
     nuisance = np.array([o.startswith("?") for o in owners])
     pairs = np.triu(np.logical_or.outer(nuisance, nuisance), 1)
-    most = np.where(np.logical_and.outer(nuisance, nuisance), UNNAMED_TOGETHER, TOGETHER)
+    most = np.where(np.logical_and.outer(nuisance, nuisance), UNNAMED_TOGETHER, TOGETHER_RATIO)
     return bool((pairs & (own > most**2 * (own + 2 * products))).any())
 
 
@@ -92,4 +92,4 @@ def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool
         if evidence.terms[i].owner == owner
     ])  # fmt: skip
     parts -= parts.mean(axis=1, keepdims=True)
-    return bool((parts**2).sum() > TOGETHER**2 * (parts.sum(axis=0) ** 2).sum())
+    return bool((parts**2).sum() > TOGETHER_RATIO**2 * (parts.sum(axis=0) ** 2).sum())

@@ -37,7 +37,7 @@ from flexspline.pipeline.diagnosis.sweep.shape_tuning import tuned
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing, crossing
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes, unit_amplitudes
 
-TUNINGS, KINDS = 3, 3
+TUNINGS, TUNED_KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
@@ -185,7 +185,7 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
         assert term.cause is not None
         kind = tuple(v for k, v in sorted(term.shape.items()) if k not in term.cause.tunable)
         mine = kinds.setdefault(term.owner, {})
-        if len(mine) < KINDS:
+        if len(mine) < TUNED_KINDS:
             mine.setdefault(kind, c)
     found |= {c.terms for mine in kinds.values() for c in mine.values()}
     return sorted(found - {best.terms})

@@ -154,7 +154,7 @@ def _nuisance_regressor(
 NARROW = 2
 """Rows on each side over which the torque is taken as a parabola; `USUAL_ROWS` and `widest` beside it."""
 NOISE_COLUMNS = 3
-"""Of the torque's noise: what parabolas over `NARROW`, `USUAL` and `widest` rows take off."""
+"""Of the torque's noise: what parabolas over `NARROW`, `USUAL_ROWS` and `widest` rows take off."""
 
 
 def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:

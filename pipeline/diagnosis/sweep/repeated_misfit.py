@@ -16,16 +16,16 @@ from flexspline.pipeline.diagnosis.sweep.jumps import encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     STEADY_SIGMAS,
-    SURE,
+    UNKNOWN_P_VALUE,
     ChannelTest,
     Residual,
 )
 
-WIDTHS = (0.01, 0.02, 0.05)
-"""Of the largest torque: a place is so wide; the first that gives no more than `MOST_PLACES`."""
-MOST_PLACES = 120
+PLACE_WIDTHS = (0.01, 0.02, 0.05)
+"""Of the largest torque: a place is so wide; the first that gives no more than `MOST_TORQUE_PLACES`."""
+MOST_TORQUE_PLACES = 120
 """Fifty steps of torque on two branches, and some more."""
-FEWEST_CYCLES = 3
+FEWEST_RETURNS = 3
 """In which torque comes to a place: of two cycles one may be the odd one."""
 
 
@@ -41,7 +41,7 @@ def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | Non
     found = Residual.of(prepared, fit).tested("torque_Nm", codes)
     rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
-    if found.p_value > SURE or found.rms_arcsec < max(rounding**0.5, of_torque):
+    if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding**0.5, of_torque):
         return None
     return found
 
@@ -51,13 +51,13 @@ def _places(prepared: PreparedSweep) -> np.ndarray | None:
     history = prepared.rig.history
     torque = steadied(history, STEADY_SIGMAS * torque_noise_Nm(history))
     up = direction_of_loading(history) > 0
-    for width in WIDTHS:
+    for width in PLACE_WIDTHS:
         step = np.round(torque / (width * prepared.rig.torque_Nm)).astype(int)
         _, place = np.unique(2 * step + up, return_inverse=True)
         visits = np.unique(
             np.column_stack([place, history.unit, history.cycle])[prepared.kept], axis=0
         )
-        often = np.bincount(visits[:, 0], minlength=place.max() + 1) >= FEWEST_CYCLES
-        if 1 <= often.sum() <= MOST_PLACES:
+        often = np.bincount(visits[:, 0], minlength=place.max() + 1) >= FEWEST_RETURNS
+        if 1 <= often.sum() <= MOST_TORQUE_PLACES:
             return np.where(often[place], np.cumsum(often)[place], 0)
     return None

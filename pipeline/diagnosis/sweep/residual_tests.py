@@ -13,20 +13,20 @@ from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
-RANK = 1e-3
+RANK_SHARE = 1e-3
 """Of the largest singular value: bins that the model's terms can be count for nothing."""
-BINS = 12
+CHANNEL_BINS = 12
 """Of a channel: 8 or 20 change no verdict of 12 made-up records (`tests/hidden`, seed 77,
 every third of 34)."""
 FEWEST_PER_BIN = 5
 """Usual least count of a bin in a χ² test (Cochran, Biometrics 10, 417 (1954))."""
-APART = 4.0
+APART_TORQUES = 4.0
 """Largest torques by which the two directions of loading are moved apart: each spans two."""
 STEADY_SIGMAS = 3.0
 """Deviations of the torque's noise within which bins of torque do not follow the reading."""
-SIGNIFICANT = 1e-4
+STRUCTURE_P_VALUE = 1e-4
 """p-value below which a channel's structure is said; eight channels are tested."""
-SURE = 1e-8
+UNKNOWN_P_VALUE = 1e-8
 """p-value of a channel's structure that, with nothing named, makes the verdict `unknown`."""
 
 
@@ -81,7 +81,7 @@ class Residual:
         bins = self.evidence.prepared((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
         bins -= self.model @ (self.model.T @ bins)
         basis, size, _ = np.linalg.svd(bins, full_matrices=False)
-        own = basis[:, size > RANK * size.max()]
+        own = basis[:, size > RANK_SHARE * size.max()]
         statistic = float(((own.T @ self.left) ** 2).sum())
         freedom = own.shape[1]
         share = max(0.0, statistic - freedom) / max(1.0, float(self.left @ self.left))
@@ -136,7 +136,7 @@ def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
     torque = steadied(h, STEADY_SIGMAS * torque_noise_Nm(h))
     found: dict[str, np.ndarray] = {
         "torque_Nm": torque,
-        "direction": torque + APART * prepared.rig.torque_Nm * side,
+        "direction": torque + APART_TORQUES * prepared.rig.torque_Nm * side,
         "cycle": h.cycle.astype(float),
     }
     if prepared.sweep.history.time_s is not None and h.time_s is not None:
@@ -153,8 +153,8 @@ def _channels(prepared: PreparedSweep) -> dict[str, np.ndarray]:
 def _bins(values: np.ndarray) -> np.ndarray:
     """(n,) bin of each value: levels where they are few, else equal counts."""
     levels = np.unique(values)
-    if len(levels) <= BINS:
+    if len(levels) <= CHANNEL_BINS:
         return np.searchsorted(levels, values)
-    count = int(min(BINS, max(2, len(values) // FEWEST_PER_BIN)))
+    count = int(min(CHANNEL_BINS, max(2, len(values) // FEWEST_PER_BIN)))
     edges = np.unique(np.quantile(values, np.linspace(0, 1, count + 1)[1:-1]))
     return np.searchsorted(edges, values, side="right")

@@ -23,9 +23,9 @@ MOST_LOADS = 40
 DAMPED = ((0.05, 1.12), (0.12, 1.3))
 """Damping ratio, and ratio of neighbouring periods: a ring of damping ζ lasts 1/(2πζ) periods, within which
 neighbours so near drift apart by less than a sixth of a turn."""
-FEWEST_ROWS = 3.0
+FEWEST_PERIOD_ROWS = 3.0
 """Of a period: of fewer, rows do not follow it."""
-LONGEST, LONGEST_HELD = 0.5, 1.0
+LONGEST_PERIOD, LONGEST_HELD_PERIOD = 0.5, 1.0
 """Of a ramp, of a hold: what swings more slowly does not ring in it."""
 FINEST_PART = 0.1
 """Of the rows: so many are sampled finely enough for the shortest period tried. Of cycles at several rates
@@ -123,8 +123,8 @@ def ringing(rig: Rig) -> Made:
             [np.quantile(np.diff(history.time_s[r]), FINEST_PART) for r in history.unit_slices]
         )
     )
-    shortest = FEWEST_ROWS * max(spacing, 1e-12)
-    longest = max(LONGEST * ramp, LONGEST_HELD * hold_s(history))
+    shortest = FEWEST_PERIOD_ROWS * max(spacing, 1e-12)
+    longest = max(LONGEST_PERIOD * ramp, LONGEST_HELD_PERIOD * hold_s(history))
     for damping, ratio in DAMPED:
         if longest <= shortest:
             break

@@ -23,7 +23,7 @@ BEAM, PER_OWNERS, PER_SINGLE = 18, 3, 8
 verdict of 34 made-up records (`tests/hidden`, seed 77)."""
 MOST_TERMS = 8
 """Of a set. Doubled, it changes no verdict of 12 of them (every third): none needs so many."""
-WORTH = 0.5
+WORTH_NATS = 0.5
 """Nats that a larger set must gain for the search to go on."""
 
 
@@ -72,7 +72,7 @@ class Search:
         top = max(c.score for c in beam)
         while beam:
             beam = self._chosen(self._grown([c for c in beam if len(c.terms) < most]))
-            if not beam or beam[0].score < top + WORTH:
+            if not beam or beam[0].score < top + WORTH_NATS:
                 break
             top = beam[0].score
         return self.top
@@ -86,7 +86,7 @@ class Search:
             best = self.top
             owners = sorted(self._owners(best))
             starts = [[i for i in best.terms if self._owner[i] != o] for o in owners]
-            if not starts or self.run(starts).score < best.score + WORTH:
+            if not starts or self.run(starts).score < best.score + WORTH_NATS:
                 return self.top
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.shape_tuning import (
-    DIFFERENCE,
+    LOG_DIFFERENCE,
     columns_with_shapes,
     tunable,
 )
@@ -42,7 +42,7 @@ def _shape_slopes(fit: SweepFit, keys: list[tuple[int, str]]) -> dict[str, np.nd
     slopes = {c: np.zeros(len(keys)) for c in at_fit}
     for i, (j, key) in enumerate(keys):
         for c, value in _moved(fit, j, key).magnitudes().items():
-            slopes[c][i] = (value - at_fit[c]) / DIFFERENCE
+            slopes[c][i] = (value - at_fit[c]) / LOG_DIFFERENCE
     return slopes
 
 
@@ -51,7 +51,7 @@ def _moved(fit: SweepFit, j: int, key: str) -> SweepFit:
     evidence, posterior = fit.evidence, fit.posterior
     term = fit.regressors[j]
     assert term.cause is not None
-    shape = {**term.shape, key: term.shape[key] * float(np.exp(DIFFERENCE))}
+    shape = {**term.shape, key: term.shape[key] * float(np.exp(LOG_DIFFERENCE))}
     rig = evidence.columns.rig
     terms = list(evidence.terms)
     terms[posterior.terms[j]] = replace(term, shape=shape)

@@ -11,18 +11,18 @@ from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
-STEPS = 4
-"""Gauss-Newton steps at most: together they change a parameter by up to a factor e² (LONGEST). Doubled, they
-change no verdict of 12 made-up records (`tests/hidden`, seed 77, every third of 34)."""
+TUNING_STEPS = 4
+"""Gauss-Newton steps at most: together they change a parameter by up to a factor e² (LONGEST_LOG_STEP).
+Doubled, they change no verdict of 12 made-up records (`tests/hidden`, seed 77, every third of 34)."""
 STEP_STD = 0.4
 """Prior standard deviation of the log of a shape parameter, about where a step starts."""
-LONGEST = 0.5
+LONGEST_LOG_STEP = 0.5
 """Largest change of the log of a parameter in a step; shapes of a grid are less than two such apart."""
-DIFFERENCE = 0.03
+LOG_DIFFERENCE = 0.03
 """Of the log of a parameter, for slopes."""
-SHARES = (1.0, 0.35)
+STEP_SHARES = (1.0, 0.35)
 """Of a step: whole, and where that loses evidence, a third of it."""
-ENOUGH = 0.05
+ENOUGH_NATS = 0.05
 """Nats: a step that gains less is the last."""
 
 
@@ -40,13 +40,13 @@ def tuned(evidence: GaussianEvidence, chosen: Sequence[int]) -> Tuned:
     shapes = [dict(t.shape) for t in terms]
     blocks = [evidence.x[:, t.at] for t in terms]
     first = value = _value(evidence, blocks)
-    for _ in range(STEPS):
+    for _ in range(TUNING_STEPS):
         keys = tunable(terms, shapes)
         if not keys:
             break
         step = _step(evidence, terms, shapes, blocks, keys)
         moved = False
-        for share in SHARES:
+        for share in STEP_SHARES:
             new = [dict(s) for s in shapes]
             for (j, k), change in zip(keys, step, strict=True):
                 new[j][k] *= float(np.exp(share * change))
@@ -60,7 +60,7 @@ def tuned(evidence: GaussianEvidence, chosen: Sequence[int]) -> Tuned:
                 gained = found - value
                 shapes, blocks, value, moved = new, trial, found, True
                 break
-        if not moved or gained < ENOUGH:
+        if not moved or gained < ENOUGH_NATS:
             break
     return Tuned(tuple(zip(terms, shapes, strict=True)), value - first)
 
@@ -106,7 +106,7 @@ def _step(
     amplitude = np.linalg.solve(x.T @ x + np.diag(prior), x.T @ evidence.y)[b:]
     whole, prior = columns_with_shapes(evidence, terms, shapes, blocks, keys, amplitude)
     found = np.linalg.solve(whole.T @ whole + np.diag(prior), whole.T @ evidence.y)
-    return np.clip(found[-len(keys) :], -LONGEST, LONGEST)
+    return np.clip(found[-len(keys) :], -LONGEST_LOG_STEP, LONGEST_LOG_STEP)
 
 
 def columns_with_shapes(
@@ -120,8 +120,8 @@ def columns_with_shapes(
     ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
     slopes = []
     for j, key in keys:
-        nearby = {**shapes[j], key: shapes[j][key] * np.exp(DIFFERENCE)}
-        change = (_block(evidence, terms[j], nearby) - blocks[j]) / DIFFERENCE
+        nearby = {**shapes[j], key: shapes[j][key] * np.exp(LOG_DIFFERENCE)}
+        change = (_block(evidence, terms[j], nearby) - blocks[j]) / LOG_DIFFERENCE
         slopes.append(change @ amplitude[ends[j] : ends[j + 1]])
     prior = [evidence.columns.base_prior**-2, np.ones(ends[-1]), np.full(len(keys), STEP_STD**-2)]
     return np.column_stack([evidence.base, *blocks, *slopes]), np.concatenate(prior)

@@ -12,15 +12,15 @@ from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD, rms
 
-MOST_ROWS = 20_000
+MOST_SIZE_ROWS = 20_000
 """A size needs no more; every n-th row of longer records is taken."""
-FEWEST = 8
+FEWEST_SIZE_ROWS = 8
 """Rows beyond the crossing: half of them for zero, drift, slope and gap."""
-SURE = 4.0
+RATIO_DEVIATIONS = 4.0
 """Standard deviations that a ratio must lie beyond a limit: one in 30 000."""
 LARGEST_CORRELATION = 0.99
 """Of neighbouring residuals: a slow effect counts as no more than 200 rows of one reading each."""
-OUTER = 1.0
+SPIKE_PERCENT = 1.0
 """Percent of the rows at either end that may be spikes."""
 
 
@@ -50,13 +50,16 @@ class SweepSize:
     @property
     def chord_range(self) -> tuple[float, float]:
         """Least and largest ratio of chords that the record allows."""
-        return self.chord - SURE * self.chord_std, self.chord + SURE * self.chord_std
+        return (
+            self.chord - RATIO_DEVIATIONS * self.chord_std,
+            self.chord + RATIO_DEVIATIONS * self.chord_std,
+        )
 
     @property
     def compliance_range(self) -> tuple[float, float]:
         """The same of slopes."""
         std = self.compliance_std
-        return self.compliance - SURE * std, self.compliance + SURE * std
+        return self.compliance - RATIO_DEVIATIONS * std, self.compliance + RATIO_DEVIATIONS * std
 
 
 def sweep_size(
@@ -69,14 +72,14 @@ def sweep_size(
     slope from gap, and within a hold torque varies by its reading's noise, over which angle has no slope. A
     drift in step with the torque leaves c a large deviation, and no size.
     """
-    step = -(-len(history) // MOST_ROWS)
+    step = -(-len(history) // MOST_SIZE_ROWS)
     h, angle = history.rows(np.arange(0, len(history), step)), angle_arcsec[::step]
     largest = float(np.abs(h.torque_Nm).max())
     far = (
         np.abs(h.torque_Nm) > BAND_SHARE * largest
     )  # beyond the crossing, whose rows may be on either side
     span = max(
-        float(np.subtract(*np.percentile(angle[rows], [100 - OUTER, OUTER])))
+        float(np.subtract(*np.percentile(angle[rows], [100 - SPIKE_PERCENT, SPIKE_PERCENT])))
         for rows in h.unit_slices
     )
     h, angle = h.rows(far), angle[far]
@@ -122,7 +125,7 @@ def _line(
         columns[rows] -= own @ np.linalg.lstsq(own, columns[rows], rcond=None)[0]
     x, y = columns[:, :2], columns[:, 2]
     size = np.sqrt((x**2).sum(axis=0))
-    if len(y) < FEWEST or size[0] <= 1e-9 * np.abs(h.torque_Nm).max():
+    if len(y) < FEWEST_SIZE_ROWS or size[0] <= 1e-9 * np.abs(h.torque_Nm).max():
         return None
     used = [0, 1] if size[1] > 1e-9 * np.sqrt(len(y)) else [0]
     inverse = np.linalg.pinv(x[:, used].T @ x[:, used])

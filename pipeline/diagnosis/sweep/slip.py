@@ -13,14 +13,14 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.structure import Slip
 
-OUTER = 0.6
+LOADED_SHARE = 0.6
 """Of the largest torque: beyond it the gear is loaded, below it the gap is crossed."""
 MOST_TIMES = 5.0
-"""Of the twist between `OUTER` and the largest torque: a friction loop as wide as half the whole twist has
-1.25, one as wide as all of it 2.5."""
-BACK = -1.0
+"""Of the twist between `LOADED_SHARE` and the largest torque: a friction loop as wide as half the whole twist
+has 1.25, one as wide as all of it 2.5."""
+BACK_RATIO = -1.0
 """Of the same: an angle that goes on under torque one way and comes back under the other is a drift."""
-FEWEST_ROWS = 3
+FEWEST_SLIP_ROWS = 3
 """Of a load: of fewer nothing is seen."""
 
 
@@ -31,20 +31,20 @@ def slip_of(history: History, angle_arcsec: np.ndarray) -> Slip | None:
     chords: list[float] = []
     for rows in history.unit_slices:
         torque, angle = history.torque_Nm[rows], angle_arcsec[rows]
-        side = np.where(np.abs(torque) > OUTER * largest, np.sign(torque), 0).astype(int)
+        side = np.where(np.abs(torque) > LOADED_SHARE * largest, np.sign(torque), 0).astype(int)
         edges = np.flatnonzero(np.diff(np.r_[0, side, 0]))
         loads = [(int(i), int(j)) for i, j in pairwise(edges) if side[i]]
         for i, j in loads[:-1] if loads and loads[-1][1] == len(rows) else loads:
-            if j - i >= FEWEST_ROWS and i > 0:
+            if j - i >= FEWEST_SLIP_ROWS and i > 0:
                 ways[side[i]].append(float(side[i] * (angle[j] - angle[i - 1])))
         for (_, end), (begin, _) in pairwise(loads):
             if side[end - 1] != side[begin]:
                 chords.append(abs(float(angle[begin] - angle[end - 1])))
     if not chords or not all(ways.values()):
         return None
-    springs = (1 - OUTER) / (2 * OUTER) * float(np.median(chords))
+    springs = (1 - LOADED_SHARE) / (2 * LOADED_SHARE) * float(np.median(chords))
     up, down = (float(np.median(way)) for way in ways.values())
     times = max(up, down) / max(springs, 1e-12)
-    if times < MOST_TIMES or min(up, down) < BACK * springs:
+    if times < MOST_TIMES or min(up, down) < BACK_RATIO * springs:
         return None
     return Slip(max(up, down), times)

@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _ChannelKind:
     """A channel of which a record may have several levels, and what parts two of them.
 
     `step` : in the channel's unit, or in the logarithm of its value (`by_ratio`).
@@ -25,11 +25,11 @@ class _Kind:
     by_ratio: bool = False
 
 
-AMPLITUDE = _Kind("torque_amplitude", log(1.2), by_ratio=True)
+AMPLITUDE_LEVELS = _ChannelKind("torque_amplitude", log(1.2), by_ratio=True)
 """1.2: the turns of smaller loops are then clear of the larger ones' (two rows at each are never used)."""
-RATE = _Kind("torque_rate", log(1.5), by_ratio=True)
+RATE_LEVELS = _ChannelKind("torque_rate", log(1.5), by_ratio=True)
 """1.5: what lags in proportion to the rate then differs by half."""
-TEMPERATURE = _Kind("temperature_C", 4.0)
+TEMPERATURE_LEVELS = _ChannelKind("temperature_C", 4.0)
 """4 K: what an ordinary room, ±2 K, does not do by itself."""
 
 
@@ -103,18 +103,18 @@ def whole_levels(history: History, timed: bool) -> list[Split]:
 
 def _values(
     history: History, cycles: list[np.ndarray], timed: bool
-) -> Iterator[tuple[_Kind, np.ndarray]]:
+) -> Iterator[tuple[_ChannelKind, np.ndarray]]:
     """The value of each cycle in each channel that may have levels."""
     torque, temperature = history.torque_Nm, history.temperature_C
     peaks = np.array([np.abs(torque[rows]).max() for rows in cycles])
     if (peaks > 0).all():
-        yield AMPLITUDE, peaks
+        yield AMPLITUDE_LEVELS, peaks
     if timed:
         rates = np.array([cycle_rate(history, rows) for rows in cycles])
         if (rates > 0).all():
-            yield RATE, rates
+            yield RATE_LEVELS, rates
     if temperature is not None:
-        yield TEMPERATURE, np.array([temperature[rows].mean() for rows in cycles])
+        yield TEMPERATURE_LEVELS, np.array([temperature[rows].mean() for rows in cycles])
 
 
 def rate_range(history: History) -> tuple[float, float]:

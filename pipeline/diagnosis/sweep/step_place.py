@@ -25,13 +25,13 @@ LEAST_STEP = 0.15
 """Of the gap as simulated: a smaller step is not the gap."""
 DEPENDENT = 4.0
 """Neighbouring rows that count as one: a smooth function misses them alike."""
-SINGULAR = 1e-12
+SINGULAR_SHARE = 1e-12
 """Of the normal equations' largest eigenvalue: functions that are one but for 1e-6 share their coefficient.
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
-ROBUST = 4.0
+ROBUST_DEVIATIONS = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
 
-BESIDE = (0.04, 0.12, 0.3)
+TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
 """Thresholds of ordinary friction that may act at every place tried: only the step decides."""
 
 
@@ -39,7 +39,7 @@ def looped_functions(history: History) -> np.ndarray:
     """(n, k) zeros, a stiffness of each position, smooth functions of torque, friction elements, lags."""
     largest = float(np.abs(history.torque_Nm).max())
     x = history.torque_Nm / largest
-    limits = np.array(BESIDE) * largest
+    limits = np.array(TRIED_THRESHOLDS) * largest
     torque = steadied(history, deadband_Nm(history))
     beside = stops(history, torque, limits, np.zeros(len(limits))) / limits
     zeros, positions = zeros_of_cycles(history), stiffness_of_positions(history)
@@ -117,11 +117,11 @@ def step_misfit(
     for _ in range(2):
         weighted = basis * weight[:, None]
         found = np.linalg.lstsq(
-            weighted.T @ weighted, weighted.T @ (angle_arcsec[rows] * weight), rcond=SINGULAR
+            weighted.T @ weighted, weighted.T @ (angle_arcsec[rows] * weight), rcond=SINGULAR_SHARE
         )[0]
         left = angle_arcsec[rows] - basis @ found
         scale = SIGMA_PER_MAD * np.median(np.abs(left)) + 1e-9
-        weight = 1 / np.maximum(1, np.abs(left) / (ROBUST * scale))
+        weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
     if found[-1] < least * gap_arcsec:
         return np.inf
     return float(np.mean(np.minimum(np.abs(left), 2 * gap_arcsec) ** 2)) * len(rows)

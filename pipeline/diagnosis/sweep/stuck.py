@@ -12,19 +12,19 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
-BLOCKS = (1, 2, 4, 8, 16)
+STUCK_BLOCK_ROWS = (1, 2, 4, 8, 16)
 """Rows whose means are compared from block to block: a saw-tooth may be longer than a row."""
 FEWEST_STEPS = 10
 """Of either kind: a variance of ten is known to within a half."""
-PARTS = 4
+HOLD_PARTS = 4
 """Of a hold, whose means say how well the hold's own is known."""
-FEWEST_HOLDS = 4
+FEWEST_STUCK_HOLDS = 4
 """Three degrees of freedom of where they lie."""
-LIKELY = 1e-2
+EITHER_P_VALUE = 1e-2
 """p-value of either test: noise slower than a hold passes the one and vibration the other, so that both must
 speak."""
-SURE = 1e-5
-"""Product of both p-values: with `LIKELY` for each, by chance in one record of 30 000."""
+BOTH_P_VALUE = 1e-5
+"""Product of both p-values: with `EITHER_P_VALUE` for each, by chance in one record of 30 000."""
 CORRELATED = 1.5
 """Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
 
@@ -43,8 +43,8 @@ def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     """
     history, kept = prepared.rig.history, prepared.kept
     still = [rows[kept[rows]] for rows in resting(history)]
-    still = [rows for rows in still if len(rows) >= PARTS]
-    if len(still) < FEWEST_HOLDS:
+    still = [rows for rows in still if len(rows) >= HOLD_PARTS]
+    if len(still) < FEWEST_STUCK_HOLDS:
         return None
     left, step = fit.residual(), encoder_step(prepared.sweep.angle_arcsec)
     of_torque = (fit.measured_rig().compliance * torque_noise_Nm(history)) ** 2
@@ -53,7 +53,11 @@ def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     for number, rows in enumerate(still):
         hold[rows] = number
     p_motion = _moves_more(left[kept], hold[kept], stretches_of(history, kept), step, of_torque)
-    if variance <= 0 or max(p_motion, p_frozen) > LIKELY or p_frozen * p_motion > SURE:
+    if (
+        variance <= 0
+        or max(p_motion, p_frozen) > EITHER_P_VALUE
+        or p_frozen * p_motion > BOTH_P_VALUE
+    ):
         return None
     within = float(np.mean([left[rows].var(ddof=1) for rows in still]))
     moving = float(left[kept & (hold < 0)].var()) - within
@@ -66,16 +70,16 @@ def _frozen(
     """p-value that the holds' means differ as their parts do, and the variance beyond that [arcsec²]."""
     means, within, spread = [], [], []
     for rows in still:
-        count = len(rows) // PARTS
-        parts = left[rows[: count * PARTS]].reshape(PARTS, count).mean(axis=1)
+        count = len(rows) // HOLD_PARTS
+        parts = left[rows[: count * HOLD_PARTS]].reshape(HOLD_PARTS, count).mean(axis=1)
         means.append(parts.mean())
-        within.append(parts.var(ddof=1) / PARTS + of_torque / len(rows))
+        within.append(parts.var(ddof=1) / HOLD_PARTS + of_torque / len(rows))
         spread.append(left[rows].var(ddof=1))
     doubt = float(np.mean(within)) + undithered(float(np.mean(spread)), step)
     between = float(np.var(means, ddof=1))
     if doubt <= 0:
         return 1.0, 0.0
-    freedom = len(means) - 1, (PARTS - 1) * len(means)
+    freedom = len(means) - 1, (HOLD_PARTS - 1) * len(means)
     return float(fdtrc(*freedom, between / doubt)), between - doubt
 
 
@@ -84,7 +88,7 @@ def _moves_more(
 ) -> float:
     """p-value that steps between blocks are no larger in motion, of the length that shows it best."""
     found = []
-    for rows in BLOCKS:
+    for rows in STUCK_BLOCK_ROWS:
         rest, motion = _steps(left, hold, pieces, rows)
         if min(len(rest), len(motion)) < FEWEST_STEPS:
             continue

@@ -7,7 +7,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
 
-FEWEST = 3
+FEWEST_STEP_ROWS = 3
 """Rows on either side of a step: fewer are spikes."""
 LEAST_NEW = 1e-6
 """Of a step's own square: one of which less is new beside the smooth functions is one of them."""
@@ -34,13 +34,13 @@ def sudden_step(history: History, angle_arcsec: np.ndarray, kept: np.ndarray) ->
     best, place = 0.0, None
     for unit in np.unique(history.unit[rows]):
         own = np.flatnonzero(history.unit[rows] == unit)
-        if len(own) < 2 * FEWEST:
+        if len(own) < 2 * FEWEST_STEP_ROWS:
             continue
         count = np.arange(len(own), 0, -1.0)
         product = np.cumsum(left[own][::-1])[::-1]
         common = np.cumsum(basis[own][::-1], axis=0)[::-1]
         new = np.maximum(count - (common**2).sum(axis=1), LEAST_NEW * count)
-        gain = (product**2 / new)[FEWEST : len(own) - FEWEST + 1]
+        gain = (product**2 / new)[FEWEST_STEP_ROWS : len(own) - FEWEST_STEP_ROWS + 1]
         if len(gain) and gain.max() > best:
-            best, place = float(gain.max()), int(rows[own[FEWEST + int(gain.argmax())]])
+            best, place = float(gain.max()), int(rows[own[FEWEST_STEP_ROWS + int(gain.argmax())]])
     return place

@@ -12,14 +12,14 @@ from flexspline.pipeline.diagnosis.sweep.loads import Loads
 
 DIFFERENT = 0.3
 """Of the loads' differences in width that a delay may leave: it then makes nine tenths of their power."""
-FILTER = 0.1
+FILTER_MISS = 0.1
 """Of a filter's time constant, by which the delay that makes its loops alike may miss it: 0.45 of 0.5 s in
 sweeps that hold at their ends."""
-LONGEST, TRIED = 0.25, 51
+LONGEST_DELAY, TRIED = 0.25, 51
 """Of the quickest load, half of a ramp: a reading later than that is of another way; and the delays tried,
 the best of them refined."""
 
-FAR = 10.0
+OTHER_LOADS_RATIO = 10.0
 """Times as different as they are, where a delay leaves other loads than there were."""
 
 
@@ -37,7 +37,7 @@ def torque_delay_s(
     if rates is None:
         return None
     assert history.time_s is not None
-    longest = LONGEST * min(float(np.ptp(history.time_s[rows])) for rows in loads.rows)
+    longest = LONGEST_DELAY * min(float(np.ptp(history.time_s[rows])) for rows in loads.rows)
 
     def widths(delay_s: float) -> np.ndarray:
         early = replace(history, torque_Nm=torque_read_at(history, delay_s))
@@ -47,7 +47,7 @@ def torque_delay_s(
 
     def unlike(delay_s: float) -> float:
         found = widths(delay_s)
-        return float((found if len(found) == len(was) else FAR * was).std())
+        return float((found if len(found) == len(was) else OTHER_LOADS_RATIO * was).std())
 
     tried = np.linspace(0.0, longest, TRIED)
     best = int(np.argmin([unlike(one) for one in tried]))
@@ -61,7 +61,9 @@ def torque_delay_s(
     # how much of a width's difference goes with the rate for each second
     per_s = float((was - left) @ (rates - rates.mean())) / delay
     unsure = left.std(ddof=2) * rates.std() * len(left) ** 0.5 / abs(per_s)
-    return (delay, delay * hypot(float(unsure) / delay, FILTER)) if unsure < delay / 2 else None
+    if unsure >= delay / 2:
+        return None
+    return delay, delay * hypot(float(unsure) / delay, FILTER_MISS)
 
 
 def torque_read_at(history: History, later_s: float) -> np.ndarray:

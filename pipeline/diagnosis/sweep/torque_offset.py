@@ -13,29 +13,29 @@ from scipy.special import erf
 
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
-REACH = 0.35
+OFFSET_REACH = 0.35
 """Offsets searched, as a share of the largest torque."""
-INSIDE = 0.9
-"""Of REACH: offsets tried, so that rows lie on both sides of each."""
-STEPS = 141
+INSIDE_SHARE = 0.9
+"""Of OFFSET_REACH: offsets tried, so that rows lie on both sides of each."""
+OFFSET_STEPS = 141
 """Odd, so that one of the offsets tried is 0; the best is refined between its neighbours."""
-WIDTHS = (0.5, 1.0, 2.0, 4.0)
+CROSSING_WIDTHS = (0.5, 1.0, 2.0, 4.0)
 """Width of the crossing, in units of the torque noise."""
-MISFIT = 1.5
+MISFIT_RATIO = 1.5
 """Times the scatter beside the gap: noise is at least this, where the model misses more than noise."""
-UNSEEN = 3.0
+UNSEEN_SIGMAS = 3.0
 """Standard deviations of the torque noise: an offset within is none."""
 EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 """Share of the largest torque that must be passed both ways, by so many rows each."""
 UNSURE = 0.7
 """Of the variance (gap/2)²(1 − side²) of a row that lies on either side. Between 0.4 and 1 it hardly matters:
 of 60 made-up crossings (gap 72 arcsec, rows 0.033 N·m apart) the offset's error has an rms of 2.2 to 2.3 of
-the likelihood's deviation, which is too small where rows are as sparse as that: BETWEEN_ROWS."""
-BETWEEN_ROWS = 0.29
+the likelihood's deviation, which is too small where rows are as sparse as that: UNIFORM_DEVIATION."""
+UNIFORM_DEVIATION = 0.29
 """Of the torque between the two rows next to a crossing, the deviation of a place anywhere between: 1/√12."""
-SEEN = 2.0
+SEEN_RATIO = 2.0
 """Times one reading's noise that a gap must be to show where it is crossed: less drowns in it."""
-WITHIN = 0.25
+WITHIN_GAP = 0.25
 """Of the gap, from its middle: a row there lies in the gap, which is then crossed at its torque."""
 FAR_BEHIND = 4.5
 """Nats: an offset three deviations from the best one is so much less likely."""
@@ -78,20 +78,20 @@ def crossing(
     Returns None where the gap is too small to see, or no rows lie near zero.
     """
     largest = float(np.abs(torque_Nm).max())
-    if gap_arcsec < SEEN * noise_arcsec or largest == 0:
+    if gap_arcsec < SEEN_RATIO * noise_arcsec or largest == 0:
         return None
     if not both_ways(torque_Nm):
         return None
-    near = np.abs(torque_Nm) < REACH * largest
+    near = np.abs(torque_Nm) < OFFSET_REACH * largest
     if not near.any():
         return None
     torque, left = torque_Nm[near], left_arcsec[near]
     # what the model misses near zero is not evidence of an offset
     beside = np.abs(np.abs(left) - gap_arcsec / 2)
-    noise_arcsec = max(noise_arcsec, MISFIT * SIGMA_PER_MAD * float(np.median(beside)))
+    noise_arcsec = max(noise_arcsec, MISFIT_RATIO * SIGMA_PER_MAD * float(np.median(beside)))
     floor = max(torque_noise_Nm, LEAST_WIDTH * largest)
-    even = np.linspace(-REACH, REACH, STEPS) * largest * INSIDE
-    inside = torque[np.abs(left) < WITHIN * gap_arcsec]
+    even = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSET_STEPS) * largest * INSIDE_SHARE
+    inside = torque[np.abs(left) < WITHIN_GAP * gap_arcsec]
     offsets = np.union1d(even, np.round(inside / floor) * floor)
 
     def likelihood(places: np.ndarray, width: float) -> np.ndarray:
@@ -100,18 +100,20 @@ def crossing(
             [_log_likelihood(o, width, torque, left, gap_arcsec, noise_arcsec) for o in places]
         )
 
-    table = np.array([likelihood(offsets, w * floor) for w in WIDTHS])
+    table = np.array([likelihood(offsets, w * floor) for w in CROSSING_WIDTHS])
     w, k = divmod(int(table.argmax()), len(offsets))
-    width = WIDTHS[w] * floor
+    width = CROSSING_WIDTHS[w] * floor
     fine = _between(offsets, table[w], k, width)
     along = likelihood(fine, width)
     # an offset within the torque's noise is none
-    unseen = max(UNSEEN * torque_noise_Nm, even[1] - even[0]) * np.linspace(-1, 1, UNSEEN_STEPS)
-    none = max(likelihood(unseen, x * floor).max() for x in WIDTHS)
+    unseen = max(UNSEEN_SIGMAS * torque_noise_Nm, even[1] - even[0]) * np.linspace(
+        -1, 1, UNSEEN_STEPS
+    )
+    none = max(likelihood(unseen, x * floor).max() for x in CROSSING_WIDTHS)
     weight = np.exp(along - along.max()) * np.gradient(fine)
     mean = float(weight @ fine / weight.sum())
     spread = float(weight @ (fine - mean) ** 2 / weight.sum())
-    between = BETWEEN_ROWS * between_rows(torque_Nm, mean)
+    between = UNIFORM_DEVIATION * between_rows(torque_Nm, mean)
     return Crossing(mean, max(float(np.sqrt(spread)), between), float(along.max() - none))
 
 
@@ -124,7 +126,7 @@ def _between(offsets: np.ndarray, nats: np.ndarray, best: int, width: float) -> 
     lower, upper = np.flatnonzero(behind[:best]), np.flatnonzero(behind[best:])
     low = offsets[lower[-1]] if len(lower) else offsets[0]
     high = offsets[best + upper[0]] if len(upper) else offsets[-1]
-    at_row = offsets[best] + width * np.linspace(-UNSEEN, UNSEEN, AT_ROW)
+    at_row = offsets[best] + width * np.linspace(-UNSEEN_SIGMAS, UNSEEN_SIGMAS, AT_ROW)
     return np.union1d(np.linspace(low, high, FINE_STEPS), at_row.clip(low, high))
 
 

@@ -12,13 +12,13 @@ from flexspline.pipeline.diagnosis.measurement.torque_jitter import still
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import (
-    ROUNDED,
+    ROUNDING_RATIO,
     Jumps,
     encoder_step,
     undithered,
 )
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
-from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 
 REACHES = (0.015, 0.04, 0.1)
 """Shares of the largest torque within which what sticks is forgotten: a factor of 2.6 apart, within which
@@ -27,9 +27,9 @@ FARTHEST = 16
 """Rows between the two of a pair at the most: more of a hold's say the same again."""
 TIME_DEGREE = 3
 """Of the polynomial in the time between two rows that noise of any colour is taken for."""
-SINGULAR = 1e-9
+SINGULAR_RATIO = 1e-9
 """Of the largest singular value: rows evenly in time have one time between them."""
-FEWEST = 8
+FEWEST_PAIRS = 8
 """Pairs so many rows apart: twice the polynomial's coefficients."""
 
 
@@ -58,7 +58,7 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     deviations, variance = max(found)
     p_value = min(1.0, len(REACHES) * float(ndtr(-deviations)))
     rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
-    if p_value > SIGNIFICANT or variance < ROUNDED * rounding:
+    if p_value > STRUCTURE_P_VALUE or variance < ROUNDING_RATIO * rounding:
         return None
     return Jumps(p_value, float(np.sqrt(variance)))
 
@@ -86,14 +86,14 @@ def _slope(
     """σ² [arcsec²] in its standard deviations, and by itself; the way in reaches ℓ."""
     weights, total = np.zeros((FARTHEST, len(left))), 0.0
     for k, first in enumerate(pairs):
-        if len(first) < FEWEST:
+        if len(first) < FEWEST_PAIRS:
             continue
         second = first + k + 1
         alike = np.exp(way[first] - way[second])
         passed = time[second] - time[first]
         passed = passed / max(float(passed.mean()), 1e-12) - 1
         of_time = np.vander(passed, TIME_DEGREE + 1)
-        alike -= of_time @ np.linalg.lstsq(of_time, alike, rcond=SINGULAR)[0]
+        alike -= of_time @ np.linalg.lstsq(of_time, alike, rcond=SINGULAR_RATIO)[0]
         total += float(alike @ (left[first] * left[second]))
         weights[k, first] = alike
     power = float((weights**2).sum())

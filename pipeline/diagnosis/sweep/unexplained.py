@@ -8,7 +8,7 @@ from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
-from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT, ChannelTest
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
 
 NUISANCE_P = 1e-6
 """Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
@@ -43,6 +43,6 @@ def unexplained_of(
         found.append(Unexplained(again.channel, again.rms_arcsec, again.p_value, COMES_BACK))
     said = {u.channel for u in found}
     for t in sorted(tests, key=lambda t: t.p_value):
-        if t.p_value < SIGNIFICANT and t.channel not in said:
+        if t.p_value < STRUCTURE_P_VALUE and t.channel not in said:
             found.append(Unexplained(t.channel, t.rms_arcsec, t.p_value, REMAINDER))
     return tuple(found)

@@ -12,7 +12,7 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.residual_tests import SIGNIFICANT
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.figures.diagnosis.captions import caption
 from flexspline.results.figures.diagnosis.contribution_parts import parts
@@ -104,7 +104,7 @@ def _told(shown: SweepPictureData) -> dict[str, str]:
     """Of each channel, whether structure is left in it."""
     return {
         t.channel: f"structure left, {t.rms_arcsec:.2g}″"
-        if t.p_value < SIGNIFICANT
+        if t.p_value < STRUCTURE_P_VALUE
         else "no structure left"
         for t in shown.tests
     }

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.leakage import MISFIT, effect_size, leaked
+from flexspline.pipeline.diagnosis.sweep.leakage import SHAPE_MISFIT, effect_size, leaked
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
 
 FRICTION, SPRING, GAP = "friction_hysteresis", "series_compliance", "clearance_offset"
@@ -69,7 +69,7 @@ def test_it_is_what_the_fit_of_a_law_between_two_shapes_is_off_by(prepared: Prep
     rows = np.vstack([model, priors])
     taken = np.linalg.lstsq(rows, np.r_[other, np.zeros(len(priors))], rcond=None)[0]
     left = float(np.linalg.norm(other - model @ taken))
-    share = min(1.0, MISFIT * known_causes()[FRICTION].shape_doubt * size / left)
+    share = min(1.0, SHAPE_MISFIT * known_causes()[FRICTION].shape_doubt * size / left)
     # the same share of the other shape in the record itself, fitted again
     column = evidence.columns.all[:, 1] * evidence.scale[1]
     moved = column * share * size / np.linalg.norm(evidence.x[:, 1])

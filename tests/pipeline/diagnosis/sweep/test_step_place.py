@@ -10,15 +10,15 @@ from histories import LARGEST, sweep
 
 from flexspline.pipeline.diagnosis.causes.micro_slip import POWER, micro_slips
 from flexspline.pipeline.diagnosis.causes.operators import stops
-from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE, FINE, first_ahead
-from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST as MOST_FRICTION
+from flexspline.pipeline.diagnosis.sweep.first_ahead import COARSE_PLACES, FINE_PLACES, first_ahead
+from flexspline.pipeline.diagnosis.sweep.first_ahead import LARGEST_FRICTION as MOST_FRICTION
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_STEPS, first_offset
 from flexspline.pipeline.diagnosis.sweep.step_place import (
     changing_heights,
     step_misfit,
     zeros_of_cycles,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import REACH
+from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH
 
 WHOLE = sweep(cycles=7, rows=200, hold=0)
 HISTORY = replace(WHOLE, torque_Nm=WHOLE.torque_Nm * (1 - 0.3 * (WHOLE.cycle % 3)))
@@ -40,7 +40,7 @@ def angle(torque_Nm: np.ndarray) -> np.ndarray:
 def test_a_shifted_reading_is_seen_though_stiffness_differs_between_cycles(offset: float) -> None:
     read = replace(HISTORY, torque_Nm=HISTORY.torque_Nm + offset * LARGEST)
     found = first_offset(read, angle(HISTORY.torque_Nm), GAP, BAND)
-    spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
+    spacing = 2 * OFFSET_REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
     # places tried are so far apart, and rows as far as 2 N·m in 50
     assert found == pytest.approx(offset * LARGEST, abs=spacing + LARGEST / 50)
 
@@ -61,7 +61,7 @@ def test_friction_ahead_is_seen_though_stiffness_differs_between_cycles() -> Non
     carried = stops(HISTORY, HISTORY.torque_Nm, np.array([friction]), np.zeros(1))[:, 0]
     found = first_ahead(HISTORY, angle(HISTORY.torque_Nm - carried), GAP, BAND)
     assert found is not None
-    fine = MOST_FRICTION * LARGEST / COARSE / (FINE + 1)
+    fine = MOST_FRICTION * LARGEST / COARSE_PLACES / (FINE_PLACES + 1)
     assert found.friction_Nm == pytest.approx(friction, abs=fine + LARGEST / 50)
 
 
@@ -72,7 +72,7 @@ def test_a_shifted_reading_is_seen_though_the_zero_drifts() -> None:
     drift = 40 * GAP * HISTORY.time_s / HISTORY.time_s[-1]
     read = replace(HISTORY, torque_Nm=HISTORY.torque_Nm + offset)
     found = first_offset(read, angle(HISTORY.torque_Nm) + drift, GAP, BAND)
-    spacing = 2 * REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
+    spacing = 2 * OFFSET_REACH * np.abs(read.torque_Nm).max() / (FIRST_STEPS - 1)
     assert found == pytest.approx(offset, abs=spacing + LARGEST / 50)
 
 
