@@ -94,22 +94,19 @@ class Regressors:
     @staticmethod
     def of(evidence: GaussianEvidence, allowed: Sequence[int]) -> Regressors:
         """Of the terms with these numbers."""
-        blocks: dict[tuple[int, str], list[int]] = {}
-        widths = dict.fromkeys(width_of(evidence, i) for i in allowed)
-        for width in widths:
-            for i in allowed:
-                if width_of(evidence, i) == width:
-                    blocks.setdefault((width, evidence.terms[i].owner), []).append(i)
-        members = [i for block in blocks.values() for i in block]
+        blocks: dict[int, dict[str, list[int]]] = {}
+        for i in allowed:
+            of_width = blocks.setdefault(width_of(evidence, i), {})
+            of_width.setdefault(evidence.terms[i].owner, []).append(i)
+        groups = [[i for block in of_width.values() for i in block] for of_width in blocks.values()]
+        sizes = [len(block) for of_width in blocks.values() for block in of_width.values()]
+        members = [i for group in groups for i in group]
         terms = [evidence.terms[i] for i in members]
         owners = np.array([t.owner for t in terms])
         return Regressors(
             np.array(members, int),
-            tuple(
-                RegressorGroup.of(evidence, [i for i in members if width_of(evidence, i) == width])
-                for width in widths
-            ),
-            np.repeat(np.arange(len(blocks)), [len(block) for block in blocks.values()]),
+            tuple(RegressorGroup.of(evidence, group) for group in groups),
+            np.repeat(np.arange(len(sizes)), sizes),
             np.array([t.log_share for t in terms]),
             np.array([t.cause is None for t in terms], bool),
             {o: np.flatnonzero(owners == o) for o in dict.fromkeys(owners.tolist())},
