@@ -18,8 +18,8 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     LEAST_STEP,
     MOST_FIRST_ROWS,
     ROBUST_DEVIATIONS,
-    SINGULAR_SHARE,
     looped_functions,
+    weighted_fit,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_offset import LEAST_WIDTH
 
@@ -91,10 +91,7 @@ class CrossedRecord:
         basis, angle = np.column_stack(columns), self.angle_arcsec[self.rows]
         weight = 1 / deviation
         for _ in range(WEIGHINGS):
-            weighted = basis * weight[:, None]
-            found = np.linalg.lstsq(
-                weighted.T @ weighted, weighted.T @ (angle * weight), rcond=SINGULAR_SHARE
-            )[0]
+            found = weighted_fit(basis, angle, weight)
             off = np.abs(angle - basis @ found) / deviation
             weight = 1 / deviation / np.sqrt(np.maximum(1, off / ROBUST_DEVIATIONS))
         if found[0] < LEAST_STEP * self.gap_arcsec:
