@@ -33,9 +33,9 @@ LIMITS = {
     5: (0.08, 0.5),
 }
 """Of the parameter, by law."""
-MOST_ALONE, MOST_SECOND = 0.6, 0.9
-"""When refined: below the first stays the parameter of a law without a second knee; up to the second, of the
-largest torque, goes a second knee: beyond it too few rows show the stiffness that it ends in."""
+MOST_SECOND = 0.9
+"""Of the largest torque, of a second knee when refined: beyond it too few rows show the stiffness that it
+ends in."""
 CHORDS = ((0.05, 0.20), (0.80, 1.00))
 """Between which shares of the largest torque docs/contract.md takes chord stiffness."""
 
@@ -87,9 +87,11 @@ class StiffnessHardening(Cause):
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""
         low, high = LIMITS[int(shape["law"])]
-        second, share = shape.get("second", MOST_ALONE), shape.get("share", 0.5)
-        apart = shape["parameter"] < second <= MOST_SECOND and 0 < share < 1
-        return low <= shape["parameter"] <= high and apart
+        if not low <= shape["parameter"] <= high:
+            return False
+        if "second" not in shape:
+            return True
+        return shape["parameter"] < shape["second"] <= MOST_SECOND and 0 < shape["share"] < 1
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
