@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import ThermalClearance
 from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import over_temperature
 
 CUP = Path(__file__).parents[4] / "examples" / "xb1-40.toml"
@@ -96,7 +97,9 @@ def test_a_gear_off_at_the_start_comes_back(way: str, side: float, stages: int) 
 def test_gap_and_temperature_alone_are_no_curve() -> None:
     """A gap linear in temperature leaves nothing in the term for one that is not."""
     rig = Rig(PREDICTION, sweep())
-    curved = next(c for _, what, c in over_temperature(rig) if "not linear" in what)[:, 0]
+    curved = next(c for _, what, c in over_temperature(rig) if what == UnnamedForm("bent_gap"))[
+        :, 0
+    ]
     side, warmth = sweep().sign, sweep().temperature_C - 20.0
     assert abs(curved @ side) < 1e-9 * len(side)
     assert abs(curved @ (warmth * side)) < 1e-6 * len(side)
