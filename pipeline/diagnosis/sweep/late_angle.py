@@ -90,24 +90,20 @@ def _found(explained: ExplainedSweep | None) -> dict[str, np.ndarray]:
 def _searched(crossed: CrossedRecord) -> _Searched:
     """The likeliest late angle and the likeliest other form."""
     history = crossed.history
-    known = [at_a_place(history), behind_friction(history)]
-    known += [list(of_time(history, kind)) for kind in OTHERS]
-    by_time = [list(of_time(history, kind)) for kind in LATE_KINDS]
+    by_time = [list(of_time(history, kind)) for kind in (*LATE_KINDS, *OTHERS)]
+    forms = [*by_time, at_a_place(history), behind_friction(history)]
     coarse = replace(crossed, most_rows=COARSE_ROWS)
-    others = [coarse.best(tried[::COARSE_EVERY]) for tried in known]
-    owns = [coarse.best(tried[::COARSE_EVERY]) for tried in by_time]
-    own = max(owns, key=likeliest)
-    best = max((own, *others), key=likeliest)
+    fits = [coarse.best(tried[::COARSE_EVERY]) for tried in forms]
+    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
     # local polynomials take the gap's step for noise: what the best form leaves is less
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     if best is own:
-        others = [crossed.best(_beside(*pair)) for pair in zip(known, others, strict=True)]
-        owns = [crossed.best(_beside(*pair)) for pair in zip(by_time, owns, strict=True)]
-        own = max(owns, key=likeliest)
-        crossed = replace(crossed, noise_arcsec=_left_by(max((own, *others), key=likeliest)))
-        if max(others, key=likeliest).log_likelihood < own.log_likelihood:
-            others += _rubbed(crossed, others[1])
-    own, *others = (crossed.of(fit.tried) for fit in (own, *others))
+        fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
+        best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+        crossed = replace(crossed, noise_arcsec=_left_by(best))
+        if best is own:
+            fits += _rubbed(crossed, friction=fits[-1])
+    own, *others = (crossed.of(fit.tried) for fit in (own, *fits[len(LATE_KINDS) :]))
     return _Searched(crossed, own, max(others, key=likeliest))
 
 
