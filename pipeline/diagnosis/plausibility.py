@@ -131,7 +131,7 @@ def suspects(size: SweepSize, sweep: Sweep) -> tuple[UnitSuspect, ...]:
             if abs(chord) < np.log(LIKELY_RATIO):
                 off = max(off, abs(chord))
                 found.append((off, UnitSuspect(torque.head, unit, symbol(torque.unit))))
-    found += [(0.0, UnitSuspect(h.head, h.other, h.unit)) for h in unit_hints(size, sweep)]
+    found += [(0.0, hint) for hint in unit_hints(size, sweep)]
     best = min((off for off, _ in found), default=0.0)
     likely = (one for off, one in sorted(found) if off <= best + np.log(AS_LIKELY_RATIO))
     return tuple(dict.fromkeys(likely))

@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.measurement.units import (
 )
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
+from flexspline.pipeline.diagnosis.structure import UnitSuspect
 from flexspline.pipeline.diagnosis.sweep.size import SweepSize, sweep_size
 
 NEAR_FACTOR = 0.05
@@ -34,15 +35,6 @@ TORQUES: Factors = {
     unit: TORQUE[unit] for unit in (*TORQUE_UNITS, "in_lbf", "ft_lbf", "kgf_m", "kgf_cm", "in_ozf")
 }
 ANGLES: Factors = {unit: ANGLE[unit] for unit in ANGLE_UNITS}
-
-
-@dataclass(frozen=True)
-class UnitHint:
-    """The slope differs by just the ratio of two units: the column's, and another one."""
-
-    head: str
-    unit: str
-    other: str
 
 
 @dataclass(frozen=True)
@@ -79,7 +71,7 @@ class SlopeHint:
     """
 
     slope: SlopeRatio
-    units: tuple[UnitHint, ...] = ()
+    units: tuple[UnitSuspect, ...] = ()
 
 
 def slope_hint(
@@ -108,7 +100,7 @@ def slope_hint(
 
 def unit_hints(
     size: SweepSize, sweep: Sweep, slope: SlopeRatio | None = None
-) -> tuple[UnitHint, ...]:
+) -> tuple[UnitSuspect, ...]:
     """Units in which the slope would be as simulated, within `NEAR_FACTOR` and its own range.
 
     None of a slope that is known roughly and may be a fault's.
@@ -116,7 +108,7 @@ def unit_hints(
     slope = slope or _line_slope(size)
     if slope.ratio <= 0 or not (slope.sharp or slope.far):
         return ()
-    found: list[UnitHint] = []
+    found: list[UnitSuspect] = []
     torque, angle = (sweep.read_as.column(name) for name in ("torque", "angle"))
     if torque is not None:
         found += _hints(torque, TORQUES, slope, 1)
@@ -135,10 +127,12 @@ def _line_slope(size: SweepSize) -> SlopeRatio:
     return SlopeRatio(size.compliance, *size.compliance_range)
 
 
-def _hints(column: ReadColumn, factors: Factors, slope: SlopeRatio, power: int) -> list[UnitHint]:
+def _hints(
+    column: ReadColumn, factors: Factors, slope: SlopeRatio, power: int
+) -> list[UnitSuspect]:
     """Units but the column's own; the slope goes with their factor to the `power`."""
     return [
-        UnitHint(column.head, symbol(column.unit), symbol(unit))
+        UnitSuspect(column.head, symbol(unit), symbol(column.unit))
         for unit, factor in factors.items()
         if slope.spans((factor / column.factor) ** power)
         and abs(log(factor / column.factor)) > NEAR_FACTOR
