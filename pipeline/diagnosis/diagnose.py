@@ -110,26 +110,48 @@ def diagnose_file(
     chain: Chain | None = None,
     given: tuple[str, ...] = (),
 ) -> Diagnosis:
-    """Read a measurement and diagnose it.
+    """Read a measurement and diagnose it, as `diagnose_measurement` does.
 
-    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
-    they came from FE: specimens are then solved like the design; without it, given stiffnesses are
-    scaled from specimen to specimen by the hole-free model. `counts_per_turn` of the encoder, where a
-    column is in counts. A torque sweep is compared with the curve of the whole gear's `chain`, where there
-    is one, in place of the straight line. `given`: the stiffnesses that a person stated, such as `--Kb 31.3`.
+    `counts_per_turn` of the encoder, where a column is in counts.
 
     Raises
     ------
-    MeasurementError : the file cannot be accepted, or is no sweep, which `chain` needs.
+    MeasurementError : the file cannot be accepted.
+    EquilibriumError, BearingPlayDomainError : as of `diagnose_measurement`.
+    """
+    measurement = read_measurement(csv, counts_per_turn)
+    return diagnose_measurement(design, measurement, K_b, K_e, K_error, context, chain, given)
+
+
+def diagnose_measurement(
+    design: Design,
+    measurement: Sweep | EndPoints | Specimens,
+    K_b: float,
+    K_e: float,
+    K_error: float = 0.0,
+    context: AnalysisContext | None = None,
+    chain: Chain | None = None,
+    given: tuple[str, ...] = (),
+) -> Diagnosis:
+    """Diagnose a measurement.
+
+    Stiffnesses in N·m/rad; `K_error` is the solver's relative error of them in series. `context`, where
+    they came from FE: specimens are then solved like the design; without it, given stiffnesses are
+    scaled from specimen to specimen by the hole-free model. A torque sweep is compared with the curve of
+    the whole gear's `chain`, where there is one, in place of the straight line. `given`: the stiffnesses
+    that a person stated, such as `--Kb 31.3`.
+
+    Raises
+    ------
+    MeasurementError : its size cannot be the design's, or it is no sweep, which `chain` needs.
     EquilibriumError : the gear has no equilibrium at the sweep's largest torque.
     BearingPlayDomainError : bearing play beyond c_max (involute model).
     """
-    measurement = read_measurement(csv, counts_per_turn)
     prediction = prediction_of(design, K_b, K_e, K_error)
     if chain is not None:
         if not isinstance(measurement, Sweep):
             raise MeasurementError(
-                csv, None, "is no torque sweep; only that is held against the gear"
+                measurement.path, None, "is no torque sweep; only that is held against the gear"
             )
         largest = float(np.abs(measurement.history.torque_Nm).max())
         if largest > 0:

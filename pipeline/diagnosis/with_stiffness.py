@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_measurement
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffness_pair import StiffnessPair, given_pair, stiffness_pair
@@ -46,7 +46,7 @@ def diagnose_with_stiffness(
         from flexspline.pipeline.diagnosis.whole_gear.against import refuse_given
 
         refuse_given(*given)
-    read_measurement(csv, counts_per_turn)  # a bad file is refused before the long work
+    measurement = read_measurement(csv, counts_per_turn)  # refused before the long work, if bad
     stated = tuple(f"{name}{K:g}" for name, K in zip(names, given, strict=True) if K is not None)
     used = given_pair(*given) or stiffness_pair(context(), *given)
     chain = None
@@ -55,8 +55,8 @@ def diagnose_with_stiffness(
 
         chain = chain_of(context())
     with (progress or Progress()).stage("diagnosis"):
-        found = diagnose_file(
-            design, csv, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
-            None if stated else context(), counts_per_turn, chain, stated,
+        found = diagnose_measurement(
+            design, measurement, used.K_b_Nm_per_rad, used.K_e_Nm_per_rad, used.error,
+            None if stated else context(), chain, stated,
         )  # fmt: skip
     return found, used
