@@ -15,14 +15,13 @@ if TYPE_CHECKING:
     from flexspline.geometry.load import load_design
     from flexspline.pipeline.face import (
         backlash,
-        diagnose,
         gear,
-        predict,
         sensitivity,
         stiffness,
         stress,
         study,
     )
+    from flexspline.pipeline.measured import diagnose, predict
 
     __version__: str
 
@@ -31,9 +30,9 @@ _PLACE = {
     "FlexsplineError": "geometry.errors",
     "load_design": "geometry.load",
     "backlash": "pipeline.face",
-    "diagnose": "pipeline.face",
+    "diagnose": "pipeline.measured",
     "gear": "pipeline.face",
-    "predict": "pipeline.face",
+    "predict": "pipeline.measured",
     "sensitivity": "pipeline.face",
     "stiffness": "pipeline.face",
     "stress": "pipeline.face",

@@ -1,27 +1,24 @@
-"""What `import flexspline` offers: the commands as functions.
+"""What `import flexspline` offers of a design: the commands as functions (of measured files: `measured.py`).
 
 Results are kept in the same cache as the commands'. Nothing is printed. What a function needs is imported
-in it: to name one loads nothing heavy, and `predict`, or a backlash of given stiffnesses, loads no solver.
+in it: to name one loads nothing heavy, and a backlash of given stiffnesses loads no solver.
 """
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.part_name import PART_NAMES, PartName
+from flexspline.pipeline.no_design import require_design
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase
 
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField, Stiffness
     from flexspline.geometry.design import Design
     from flexspline.pipeline.backlash import Backlash
-    from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-    from flexspline.pipeline.diagnosis.model.predict import Predicted
     from flexspline.pipeline.gear import GearCurve
-    from flexspline.pipeline.parts import AnalysisContext
     from flexspline.pipeline.stress_limits import StressCase
     from flexspline.pipeline.study.result import StudyResult
     from flexspline.pipeline.study.slope import Slope
@@ -63,7 +60,6 @@ def stiffness(
     """
     from flexspline.pipeline.analysis import analysis_context
     from flexspline.pipeline.load_cases import rim_stiffness
-    from flexspline.pipeline.no_design import require_design
     from flexspline.pipeline.part_stiffness import part_stiffness
 
     require_design(design)
@@ -104,7 +100,6 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     """
     from flexspline.pipeline.analysis import analysis_context, torque_field
     from flexspline.pipeline.ellipse_peak import ellipse_field
-    from flexspline.pipeline.no_design import require_design
     from flexspline.pipeline.stress_limits import STRESS_CASES
 
     require_design(design)
@@ -112,7 +107,7 @@ def stress(design: Design, case: StressCase = "wave_generator") -> SolidField:
     if case == "wave_generator":
         return ellipse_field(context.part("flexspline"))
     if case not in STRESS_CASES:
-        raise DesignError("case", case, "must be wave_generator, flexspline_torque or shaft_torque")
+        raise DesignError("case", case, f"must be one of {', '.join(STRESS_CASES)}")
     return torque_field(context.part("shaft" if case == "shaft_torque" else "flexspline"))
 
 
@@ -138,7 +133,6 @@ def backlash(design: Design, K_b: float | None = None, K_e: float | None = None)
     True
     """
     from flexspline.pipeline.backlash import backlash as sum_of_terms
-    from flexspline.pipeline.no_design import require_design
     from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
 
     require_design(design)
@@ -174,7 +168,6 @@ def gear(design: Design) -> GearCurve:
     """
     from flexspline.pipeline.analysis import analysis_context
     from flexspline.pipeline.gear import gear_curve
-    from flexspline.pipeline.no_design import require_design
 
     require_design(design)
     return gear_curve(analysis_context(design))
@@ -196,7 +189,6 @@ def sensitivity(design: Design) -> tuple[Slope, ...]:
     >>> slopes["flexspline.wall_thickness_mm"].elasticity > 0
     True
     """
-    from flexspline.pipeline.no_design import require_design
     from flexspline.pipeline.study.sensitivity import sensitivities
 
     require_design(design)
@@ -229,95 +221,3 @@ def study(path: Path | str, out: Path | str | None = None) -> StudyResult:
     folder = Path(out) if out is not None else default_folder(path)
     store = trial_store_of(asked, folder)
     return whole_study(asked, store, lambda progress: None, lambda line: None)
-
-
-def diagnose(
-    design: Design,
-    path: Path | str,
-    K_b: float | None = None,
-    K_e: float | None = None,
-    *,
-    counts_per_turn: float | None = None,
-    against: Literal["sum", "gear"] = "sum",
-) -> Diagnosis:
-    """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
-
-    Parameters
-    ----------
-    counts_per_turn : of the encoder, where the file's angle is in counts.
-    against : the straight line of the backlash sum, or the curve of the whole gear (`gear`), without K.
-
-    Returns
-    -------
-    Diagnosis : `verdict`, `causes`, and `model`, which predicts other histories.
-
-    Raises
-    ------
-    DesignError
-    MeasurementError : the file cannot be accepted.
-    ComputationError : a stiffness that is needed was not found.
-
-    Examples
-    --------
-    The example's record was made with friction and a gap that shrinks as the gear warms up
-    (examples/measured/make_sweep.py):
-
-    >>> from flexspline import diagnose, load_design
-    >>> design = load_design("examples/xb1-40.toml")
-    >>> found = diagnose(design, "examples/measured/xb1-40-sweep.csv", K_b=31377, K_e=43275)
-    >>> found.verdict, sorted(cause.id for cause in found.causes)
-    ('named', ['friction_hysteresis', 'thermal_clearance'])
-    >>> cold, warm = (found.model.angle_arcsec([1.0, -1.0], temperature_C=[T, T]) for T in (20, 40))
-    >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
-    True
-    """
-    from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
-    from flexspline.pipeline.no_design import require_design
-
-    @cache
-    def context() -> AnalysisContext:
-        from flexspline.pipeline.analysis import analysis_context
-
-        return analysis_context(design)
-
-    require_design(design)
-    found, _ = diagnose_with_stiffness(
-        design,
-        Path(path),
-        (K_b, K_e),
-        ("K_b = ", "K_e = "),
-        context,
-        counts_per_turn,
-        gear=against == "gear",
-    )
-    return found
-
-
-def predict(
-    model: Path | str, path: Path | str, *, counts_per_turn: float | None = None
-) -> Predicted:
-    """The angle for each row of a measured file, by an `extended_model.toml` that `diagnose` wrote.
-
-    Parameters
-    ----------
-    counts_per_turn : of the encoder, where the file's wave-generator angle is in counts.
-
-    Raises
-    ------
-    ModelFileError, MeasurementError
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from flexspline import FlexsplineError, predict
-    >>> try:
-    ...     predict("no-such-model.toml", "examples/measured/xb1-40-sweep.csv")
-    ... except FlexsplineError as fault:
-    ...     print(fault)
-    no-such-model.toml: no such file
-    """
-    from flexspline.pipeline.diagnosis.model.model_file import read_model_file
-    from flexspline.pipeline.diagnosis.model.predict import predict_file
-
-    return predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexspline.geometry.design import Design
 from flexspline.geometry.errors import FlexsplineError, short
 
 
@@ -36,5 +35,7 @@ def require_design(given: object) -> None:
     ...     print(fault)
     design: "cup.toml" is a name; load the design first: flexspline.load_design("cup.toml")
     """
+    from flexspline.geometry.design import Design  # loads pydantic
+
     if not isinstance(given, Design):
         raise NoDesignError(given)

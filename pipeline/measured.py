@@ -1,0 +1,106 @@
+"""What `import flexspline` offers of measured files: `diagnose` and `predict`, as the commands."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from flexspline.pipeline.no_design import require_design
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+    from flexspline.pipeline.diagnosis.model.predict import Predicted
+    from flexspline.pipeline.parts import AnalysisContext
+
+
+def diagnose(
+    design: Design,
+    path: Path | str,
+    K_b: float | None = None,
+    K_e: float | None = None,
+    *,
+    counts_per_turn: float | None = None,
+    against: Literal["sum", "gear"] = "sum",
+) -> Diagnosis:
+    """What the simulation of a design leaves out, from a measured file; K [N·m/rad] by FE where not given.
+
+    Parameters
+    ----------
+    counts_per_turn : of the encoder, where the file's angle is in counts.
+    against : the straight line of the backlash sum, or the curve of the whole gear (`gear`), without K.
+
+    Returns
+    -------
+    Diagnosis : `verdict`, `causes`, and `model`, which predicts other histories.
+
+    Raises
+    ------
+    DesignError
+    MeasurementError : the file cannot be accepted.
+    ComputationError : a stiffness that is needed was not found.
+
+    Examples
+    --------
+    The example's record was made with friction and a gap that shrinks as the gear warms up
+    (examples/measured/make_sweep.py):
+
+    >>> from flexspline import diagnose, load_design
+    >>> design = load_design("examples/xb1-40.toml")
+    >>> found = diagnose(design, "examples/measured/xb1-40-sweep.csv", K_b=31377, K_e=43275)
+    >>> found.verdict, sorted(cause.id for cause in found.causes)
+    ('named', ['friction_hysteresis', 'thermal_clearance'])
+    >>> cold, warm = (found.model.angle_arcsec([1.0, -1.0], temperature_C=[T, T]) for T in (20, 40))
+    >>> bool(warm[0] - warm[1] < cold[0] - cold[1])
+    True
+    """
+    from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
+
+    @cache
+    def context() -> AnalysisContext:
+        from flexspline.pipeline.analysis import analysis_context
+
+        return analysis_context(design)
+
+    require_design(design)
+    found, _ = diagnose_with_stiffness(
+        design,
+        Path(path),
+        (K_b, K_e),
+        ("K_b = ", "K_e = "),
+        context,
+        counts_per_turn,
+        gear=against == "gear",
+    )
+    return found
+
+
+def predict(
+    model: Path | str, path: Path | str, *, counts_per_turn: float | None = None
+) -> Predicted:
+    """The angle for each row of a measured file, by an `extended_model.toml` that `diagnose` wrote.
+
+    Parameters
+    ----------
+    counts_per_turn : of the encoder, where the file's wave-generator angle is in counts.
+
+    Raises
+    ------
+    ModelFileError, MeasurementError
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from flexspline import FlexsplineError, predict
+    >>> try:
+    ...     predict("no-such-model.toml", "examples/measured/xb1-40-sweep.csv")
+    ... except FlexsplineError as fault:
+    ...     print(fault)
+    no-such-model.toml: no such file
+    """
+    from flexspline.pipeline.diagnosis.model.model_file import read_model_file
+    from flexspline.pipeline.diagnosis.model.predict import predict_file
+
+    return predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)
