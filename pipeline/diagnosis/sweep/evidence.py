@@ -67,8 +67,8 @@ class GaussianEvidence:
     @cached_property
     def positive_columns(self) -> np.ndarray:
         """(P,) whether a column's amplitude may not be negative."""
-        widths = [t.at.stop - t.at.start for t in self.terms]
-        return np.repeat(np.array([t.positive for t in self.terms], bool), widths)
+        positive = np.array([t.positive for t in self.terms], bool)
+        return np.repeat(positive, [t.width for t in self.terms])
 
 
 def gaussian_evidence(
@@ -177,7 +177,7 @@ class Posterior:
         """Amplitudes (k,) of each term."""
         at, out = self.base_count, []
         for i in self.terms:
-            k = evidence.terms[i].at.stop - evidence.terms[i].at.start
+            k = evidence.terms[i].width
             out.append(self.mean[at : at + k])
             at += k
         return out

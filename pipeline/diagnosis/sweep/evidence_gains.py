@@ -31,8 +31,7 @@ class ColumnSets:
     def of(evidence: GaussianEvidence, sets: Sequence[Sequence[int]]) -> ColumnSets:
         """Of sets of terms."""
         at = np.array([column_indices(evidence, terms) for terms in sets])
-        matrix = evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1])
-        inverse = np.linalg.inv(matrix)
+        inverse = np.linalg.inv(with_prior(evidence, at))
         cross = evidence.gram[at]
         mean = (inverse @ evidence.right[at][:, :, None])[:, :, 0]
         return ColumnSets(cross, inverse @ cross, mean, evidence.positive_columns[at])
@@ -45,19 +44,15 @@ class RegressorGroup:
     Attributes
     ----------
     at : (m, k) their columns. own : (m, k, k) their blocks of the evidence's matrix, prior included.
-    positive : (m,).
     """
 
     at: np.ndarray
     own: np.ndarray
-    positive: np.ndarray
 
     @staticmethod
     def of(evidence: GaussianEvidence, members: Sequence[int]) -> RegressorGroup:
-        terms = [evidence.terms[i] for i in members]
-        at = np.array([np.arange(t.at.start, t.at.stop) for t in terms])
-        own = evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1])
-        return RegressorGroup(at, own, np.array([t.positive for t in terms]))
+        at = np.array([column_indices(evidence, (i,)) for i in members])
+        return RegressorGroup(at, with_prior(evidence, at))
 
     def gains(self, evidence: GaussianEvidence, sets: ColumnSets) -> tuple[np.ndarray, np.ndarray]:
         """Evidence (B, m) that each member adds to each set, and whether all signs stay physical."""
@@ -68,7 +63,7 @@ class RegressorGroup:
         amplitude = np.linalg.solve(matrix, right[..., None])[..., 0]
         gain = (right * amplitude).sum(axis=2) / 2 - logdet / 2
         moved = sets.mean[:, :, None] - np.einsum("bsmk,bmk->bsm", p, amplitude)
-        valid = ~self.positive | (amplitude >= 0).all(axis=2)
+        valid = ((amplitude >= 0) | ~evidence.positive_columns[self.at]).all(axis=2)
         return gain, valid & ((moved >= 0) | ~sets.held[:, :, None]).all(axis=1)
 
 
@@ -96,8 +91,8 @@ class Regressors:
         """Of the terms with these numbers."""
         blocks: dict[int, dict[str, list[int]]] = {}
         for i in allowed:
-            of_width = blocks.setdefault(width_of(evidence, i), {})
-            of_width.setdefault(evidence.terms[i].owner, []).append(i)
+            term = evidence.terms[i]
+            blocks.setdefault(term.width, {}).setdefault(term.owner, []).append(i)
         groups = [[i for block in of_width.values() for i in block] for of_width in blocks.values()]
         sizes = [len(block) for of_width in blocks.values() for block in of_width.values()]
         members = [i for group in groups for i in group]
@@ -140,7 +135,6 @@ class Regressors:
         return order[rank < most]
 
 
-def width_of(evidence: GaussianEvidence, term: int) -> int:
-    """Columns of a term."""
-    at = evidence.terms[term].at
-    return int(at.stop - at.start)
+def with_prior(evidence: GaussianEvidence, at: np.ndarray) -> np.ndarray:
+    """(B, s, s) blocks of the evidence's matrix of B sets of columns (B, s), their unit priors included."""
+    return np.asarray(evidence.gram[at[:, :, None], at[:, None, :]] + np.eye(at.shape[1]))

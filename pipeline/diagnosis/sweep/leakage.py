@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.robust import rms
+from flexspline.pipeline.diagnosis.sweep.evidence import column_indices
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 SHAPE_MISFIT = 2.0
@@ -28,7 +29,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     found = {c: 0.0 for c in (*causes, *fit.elements())}
     if len(found) < 2:
         return found
-    at = np.concatenate([np.arange(t.at.start, t.at.stop) for t in fit.regressors])
+    at = column_indices(evidence, posterior.terms)
     model = np.hstack([evidence.base, evidence.x[:, at]])
     scale = np.concatenate([np.ones(b), evidence.scale[at]])
     inverse = posterior.covariance / np.outer(scale, scale)
@@ -38,7 +39,7 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
         others = [
             t.at.start
             for t in evidence.terms
-            if t.owner == cause and t.at.stop == t.at.start + 1 and t.at.start not in at
+            if t.owner == cause and t.width == 1 and t.at.start not in at
         ]
         tried = evidence.x[:, others]
         length = np.linalg.norm(tried, axis=0)
@@ -70,5 +71,5 @@ def _owners(fit: SweepFit) -> np.ndarray:
     """(p,) owner of each amplitude; empty of the calibration's."""
     owners = [""] * fit.posterior.base_count
     for t in fit.regressors:
-        owners += [t.owner] * (t.at.stop - t.at.start)
+        owners += [t.owner] * t.width
     return np.array(owners)

@@ -41,6 +41,11 @@ class Regressor:
         """Cause id, or `?channel`."""
         return self.cause.id if self.cause else f"?{self.channel}"
 
+    @property
+    def width(self) -> int:
+        """How many columns it has."""
+        return int(self.at.stop - self.at.start)
+
 
 @dataclass(frozen=True)
 class FrictionAhead:
@@ -93,7 +98,7 @@ class DesignMatrix:
 
     def _only(self, wanted: Callable[[Regressor], bool]) -> DesignMatrix:
         kept = [t for t in self.terms if wanted(t)]
-        ends = np.cumsum([0, *(t.at.stop - t.at.start for t in kept)]).tolist()
+        ends = np.cumsum([0, *(t.width for t in kept)]).tolist()
         return replace(
             self,
             all=np.hstack([self.all[:, :0], *(self.all[:, t.at] for t in kept)]),

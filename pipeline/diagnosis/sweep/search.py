@@ -9,7 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
-from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, Regressors, width_of
+from flexspline.pipeline.diagnosis.sweep.evidence_gains import ColumnSets, Regressors
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 
 NAMED_COST = 4.5
@@ -134,6 +134,8 @@ class Search:
 
     def _grown(self, beam: Sequence[Candidate]) -> list[Candidate]:
         """Sets with one term more: of each set the best few of each owner."""
+        if not len(self._joining.members):
+            return []
         found: list[Candidate] = []
         for c, (gain, score) in zip(beam, self._scored(beam), strict=True):
             most = 2 if c.terms else len(score)
@@ -152,16 +154,18 @@ class Search:
 
     def _scored(self, beam: Sequence[Candidate]) -> list[tuple[np.ndarray, np.ndarray]]:
         """Of each set, what every term that may join would add (M,) to its evidence and to its score."""
-        evidence, joining = self.evidence, self._joining
         alike: dict[int, list[int]] = {}
         for i, c in enumerate(beam):
-            alike.setdefault(sum(width_of(evidence, term) for term in c.terms), []).append(i)
-        out = [(np.empty(0), np.empty(0))] * len(beam)
-        for places in alike.values() if len(joining.members) else ():
-            sets = ColumnSets.of(evidence, [beam[i].terms for i in places])
-            for i, gain, valid in zip(places, *joining.gains(evidence, sets), strict=True):
-                out[i] = gain, np.where(valid, gain + self._joining_prior(beam[i]), -np.inf)
-        return out
+            alike.setdefault(sum(self.evidence.terms[j].width for j in c.terms), []).append(i)
+        scored: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        for places in alike.values():
+            sets = ColumnSets.of(self.evidence, [beam[i].terms for i in places])
+            for i, gain, valid in zip(
+                places, *self._joining.gains(self.evidence, sets), strict=True
+            ):
+                score = np.where(valid, gain + self._joining_prior(beam[i]), -np.inf)
+                scored[i] = gain, score
+        return [scored[i] for i in range(len(beam))]
 
     def _joining_prior(self, c: Candidate) -> np.ndarray:
         """Log prior (M,) of each term that may join a set; −∞ of those that may not stand beside it."""

@@ -55,10 +55,8 @@ def _moved(fit: SweepFit, j: int, key: str) -> SweepFit:
     rig = evidence.columns.rig
     terms = list(evidence.terms)
     terms[posterior.terms[j]] = replace(term, shape=shape)
-    first = posterior.base_count + sum(t.at.stop - t.at.start for t in fit.regressors[:j])
+    first = posterior.base_count + sum(t.width for t in fit.regressors[:j])
     mean = posterior.mean.copy()
-    mean[first : first + term.at.stop - term.at.start] *= (
-        term.cause.spread(shape, rig) / evidence.scale[term.at]
-    )
+    mean[first : first + term.width] *= term.cause.spread(shape, rig) / evidence.scale[term.at]
     columns = replace(evidence.columns, terms=tuple(terms))
     return SweepFit(replace(evidence, columns=columns), replace(posterior, mean=mean))

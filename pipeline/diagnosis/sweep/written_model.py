@@ -84,11 +84,10 @@ def _covariance(fit: SweepFit, model: ExtendedModel, ahead: FoundAhead | None) -
     fitted: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
     for i in fit.posterior.terms:
         term = fit.evidence.terms[i]
-        width = term.at.stop - term.at.start
         if term.cause is not None:
             key = term.cause.id, tuple(sorted(term.shape.items()))
-            fitted[key] = list(range(place, place + width))
-        place += width
+            fitted[key] = list(range(place, place + term.width))
+        place += term.width
     for cause_id, elements in model.elements.items():
         for e in elements:
             key = cause_id, tuple(sorted(e.shape.items()))
