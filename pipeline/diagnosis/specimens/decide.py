@@ -159,6 +159,6 @@ def _relative_rms(race: SpecimenRace, f: LaplaceFit, owners: tuple[str, ...]) ->
 
 def _unexplained(race: SpecimenRace, best: LaplaceFit, term: SpecimenParameter) -> Unexplained:
     p = chance(best.score, (race.null, *(f.score for f in race.fits if term not in f.terms)))
-    rms = 100 * _relative_rms(race, best, (term.owner,))
+    size_pct = 100 * _relative_rms(race, best, (term.owner,))
     assert term.form is not None
-    return Unexplained(term.owner[1:], rms, p, (term.form,), unit="%")
+    return Unexplained(term.owner[1:], size_pct, p, (term.form,), unit="%")

@@ -93,9 +93,8 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     if curve is None:
         return None
     inputs = {one.key: one for one in inputs_of(design, chain)}
-    start = chain.model.at_torque(
-        curve.smallest_Nm
-    )  # its solve takes longest; the others start from it
+    # this solve takes longest; the others start from it
+    start = chain.model.at_torque(curve.smallest_Nm)
     nominal = angles_as_recorded(chain, curve, start)
     curve = _with_numerical(curve, nominal)
     off = curve.angle_arcsec - nominal
