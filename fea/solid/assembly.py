@@ -18,8 +18,9 @@ from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import SAME
 
-CHUNK_ELEMENTS = 20_000
-"""Elements handled at once: bounds the memory of the gradients at quadrature points."""
+CHUNK_ELEMENTS = 5_000
+"""Elements handled at once: it bounds the memory of the gradients at quadrature points, and they stay near
+the processor (1.8 s for 42 888 elements, 2.6 s with 20 000 at once)."""
 XX = BilinearForm(lambda u, v, w: u.grad[0] * v.grad[0])
 YY = BilinearForm(lambda u, v, w: u.grad[1] * v.grad[1])
 ZZ = BilinearForm(lambda u, v, w: u.grad[2] * v.grad[2])

@@ -7,19 +7,17 @@ conjugate gradients in double.
 from __future__ import annotations
 
 import ctypes
-import os
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.solid.errors import SolveError
-from flexspline.fea.solid.iteration import conjugate_gradients
+from flexspline.fea.solid.iteration import conjugate_gradients, dot
+from flexspline.fea.solid.mkl import address, mkl
 
 Back = Callable[[np.ndarray], np.ndarray]
 PARDISO_OUT_OF_MEMORY = -2
@@ -74,10 +72,13 @@ class PardisoFactors:
         b = np.ascontiguousarray(right, self._type)
         x, error = np.zeros_like(b), ctypes.c_int32(0)
         one, silent = _pointer(1), _pointer(0)
+        pt, data, starts, columns = map(
+            address, (self._pt, self._data, self._starts, self._columns)
+        )
         pardiso()(
-            _at(self._pt), one, one, _pointer(SYMMETRIC_POSITIVE), _pointer(phase), _pointer(len(b)),
-            _at(self._data), _at(self._starts), _at(self._columns), None, one, _at(self._iparm), silent,
-            _at(b), _at(x), ctypes.byref(error),
+            pt, one, one, _pointer(SYMMETRIC_POSITIVE), _pointer(phase), _pointer(len(b)),
+            data, starts, columns, None, one, address(self._iparm), silent,
+            address(b), address(x), ctypes.byref(error),
         )  # fmt: skip
         if error.value:
             raise _said(error.value, len(b))
@@ -86,10 +87,6 @@ class PardisoFactors:
 
 def _pointer(value: int) -> Any:
     return ctypes.byref(ctypes.c_int32(value))
-
-
-def _at(array: np.ndarray) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
 
 
 def _upper(matrix: csr_matrix, to: type) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -158,7 +155,7 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
         before = x
 
         def allowed(more: np.ndarray, before: np.ndarray = before) -> float:
-            return FACTORED_ENERGY * abs(float((before + more) @ right))
+            return FACTORED_ENERGY * abs(dot(before + more, right))
 
         off = right - matrix @ before
         found = conjugate_gradients(matrix.__matmul__, back, off, FACTORED_STEPS, allowed)
@@ -191,17 +188,10 @@ def _superlu(matrix: csr_matrix) -> Back:
 
 @cache
 def pardiso() -> Any:
-    """MKL's routine of that name, or None where MKL does not exist (Arm)."""
-    # pypardiso would search the whole environment for MKL, twice, 0.3 s, and not the one that a virtual
-    # environment may share packages with: it lies where wheels put it
-    for prefix in (sys.prefix, sys.base_prefix):
-        for library in sorted(Path(prefix, "lib").glob("libmkl_rt*")):
-            os.environ.setdefault("PYPARDISO_MKL_RT", str(library))
-    try:
-        from pypardiso import PyPardisoSolver
-
-        routine = PyPardisoSolver(mtype=SYMMETRIC_POSITIVE).libmkl["pardiso"]  # loads the library
-    except (ImportError, OSError):
+    """MKL's routine of that name, or None where MKL does not exist."""
+    library = mkl()
+    if library is None:
         return None
+    routine = library["pardiso"]
     routine.restype = None
     return routine

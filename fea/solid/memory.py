@@ -15,20 +15,19 @@ from flexspline.fea.solid.direct import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]
-DIRECT_BELOW = {True: 180_000, False: 50_000}
-"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors in
-double and of iteration, shafts in layers, one thread: 73 000 2.3 and 2.6, 121 000 3.6 and 3.0, 150 000 5.3
-and 6.1, 193 000 11.6 and 11.1; but where elements are bent and flat beside a deep slot 96 000 1.9 and 13.5,
-166 000 3.4 and 58. Factors in single precision take 0.6 of that: 3.5 for 152 000 of a thick hat, and 22 to 34
-steps of an iteration 3.7 to 5.0 for 196 000 to 255 000 of others."""
-THIN_BELOW, THIN_ENTRIES = 300_000, 70.0
-"""The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 in cups of one
-layer, 75 to 80 in shafts), its factors are small, and its flat elements take many steps (a cup with a wall of
-1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which were not enough)."""
-STEPS_PER_ROOT = 0.16
-"""Steps of an iteration that take as long as factors, per √unknowns: 37 and 60 for 53 000 and 145 000
-unknowns of two shafts, 45 for 216 000 of a thin cup (factors in single precision with their own steps 0.95,
-4.3 and 4.3 s of the processor)."""
+DIRECT_BELOW = {True: 40_000, False: 50_000}
+"""Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors (in
+single precision, with their own steps) and of iteration, two threads: 28 900 0.6 and 0.85, 35 300 0.7 and
+0.6, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000 8.8 and 2.2, 270 000 13.7 and 4.2;
+where an iteration takes many steps factors follow (`steps_of_factors`)."""
+THIN_BELOW, THIN_ENTRIES = 300_000, 75.0
+"""The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 to 73 in cups of
+one or two layers, 75 to 83 in shafts and thick hats), its factors are small, and its flat elements take many
+steps (a cup with a wall of 1/200 of its diameter, 87 000 unknowns: 1.2 s by factors, 5 s by 150 steps, which
+were not enough; another, 85 000: 2.7 and 6.4 s)."""
+STEPS_PER_ROOT = 0.25
+"""Steps of an iteration that take as long as factors, per √unknowns: 65, 87 and 120 for 52 000, 126 000 and
+173 000 unknowns of three shafts."""
 ENTRY_BYTES = 38.0
 """Per entry of the matrix when it is factorised: the free part, its triangle, the ordering."""
 FACTOR_BYTES = 72.0
@@ -37,7 +36,8 @@ precision, where double may have to follow."""
 LU_FACTORS = 2.0
 """SuperLU keeps both triangles."""
 ITERATION_ENTRY_BYTES = 24.0
-"""Per entry when it is iterated: the free part, and the product with the interpolation while it is made."""
+"""Per entry when it is iterated: K by blocks in double and single precision (13), and the product with the
+interpolation while it is made; 22 were measured for 173 000 and 270 000 unknowns."""
 CORNER_SHARE = 1 / 7.0
 """Corners' unknowns over all, at most (1/7.3 to 1/8 measured)."""
 ASSEMBLY_ENTRY_BYTES = 30.0
@@ -69,8 +69,10 @@ def check_before_assembly(unknowns: int) -> None:
         raise MemoryShortError(unknowns, need, there)
 
 
-def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
-    """How to solve; `corners`: the mesh's interpolation is known, so iteration is possible.
+def choose_solver(unknowns: int, entries: int, corners: bool, slow: bool = False) -> SolverKind:
+    """How to solve.
+
+    `corners`: the mesh's interpolation is known, so iteration is possible; `slow`: it would take many steps.
 
     Raises
     ------
@@ -80,7 +82,7 @@ def choose_solver(unknowns: int, entries: int, corners: bool) -> SolverKind:
     factors = direct_bytes(unknowns, entries)
     steps = iterative_bytes(unknowns, entries) if corners else inf
     below = DIRECT_BELOW[bool(pardiso())]
-    if pardiso() and entries < THIN_ENTRIES * unknowns:
+    if pardiso() and (slow or entries < THIN_ENTRIES * unknowns):
         below = THIN_BELOW
     if factors <= there and (unknowns <= below or not corners):
         return "direct"

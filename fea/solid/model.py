@@ -8,6 +8,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
+from flexspline.fea.solid.flatness import mostly_flat
 from flexspline.fea.solid.memory import SolverKind, check_before_assembly
 from flexspline.fea.solid.solver import ITERATION_ENERGY, Solution, solve
 from flexspline.fea.solid.space import SolidSpace
@@ -97,4 +98,5 @@ class Supports:
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
             iteration_energy,
+            mostly_flat(model.mesh),
         )

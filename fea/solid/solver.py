@@ -13,6 +13,7 @@ from skfem import condense
 from flexspline.fea.axisymmetric.harmonics import LOST_ENERGY_LIMIT
 from flexspline.fea.solid.direct import direct
 from flexspline.fea.solid.errors import IterationError, SolveError
+from flexspline.fea.solid.iteration import dot
 from flexspline.fea.solid.memory import SolverKind, choose_solver, steps_of_factors
 from flexspline.fea.solid.twolevel import iterate
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -44,6 +45,7 @@ def solve(
     corners: Callable[[], csr_matrix] | None = None,
     by: SolverKind | None = None,
     iteration_energy: float = ITERATION_ENERGY,
+    slow: bool = False,
 ) -> Solution:
     """Solve K u = f with u[fixed] = values.
 
@@ -54,6 +56,7 @@ def solve(
     corners : makes `twolevel.corner_interpolation` of the mesh; without it only factors are possible.
     by : the way to solve; chosen by unknowns and memory when absent.
     iteration_energy : of the error, over u·Ku, at which an iteration ends.
+    slow : whether an iteration is expected to take long, so that factors are preferred.
 
     Raises
     ------
@@ -62,30 +65,38 @@ def solve(
     """
     u = np.zeros(matrix.shape[0])
     u[fixed] = values
-    free = np.setdiff1d(np.arange(matrix.shape[0]), fixed, assume_unique=True)
-    inner, right = condense(matrix, load, x=u, I=free, expand=False)
-    how = by or choose_solver(len(free), inner.nnz, corners is not None)
+    is_free = np.ones(len(u), bool)
+    is_free[fixed] = False
+    free = np.flatnonzero(is_free)
+    of_fixed = matrix @ u
+    entries = round(matrix.nnz * len(free) / len(u))
+    how = by or choose_solver(len(free), entries, corners is not None, slow)
     error_energy = 0.0
     if how == "iterative" and corners is not None:
-        lift = u.copy()
-        of_lift = float(lift @ (matrix @ lift))
+        right = np.where(is_free, load - of_fixed, 0.0)
+        of_lift, of_x = float(u @ of_fixed), 2 * load - right
 
         def allowed(x: np.ndarray) -> float:
             # u·Ku of x and the lift, by K x = f on the free unknowns
-            return iteration_energy * abs(of_lift + 2 * float(x @ load[free]) - float(x @ right))
+            return iteration_energy * abs(of_lift + dot(x, of_x))
 
-        worth = inf if by else steps_of_factors(len(free), inner.nnz)
+        worth = inf if by else steps_of_factors(len(free), entries)
         try:
-            u[free], error_energy = iterate(inner, right, free, corners(), allowed, worth)
+            x, error_energy = iterate(matrix, right, is_free, corners(), allowed, worth)
+            u += x
         except IterationError:
             if worth == inf:
                 raise
             how = "direct"  # below, where the error holds none of the iteration's memory any more
     if how == "direct":
+        inner, right = condense(matrix, load, x=u, I=free, expand=False)
         u[free] = direct(inner, right)
-    off = inner @ u[free] - right
-    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
+        del inner
     forces = matrix @ u
+    off = (forces - load)[free]
+    residual = float(np.linalg.norm(off)) / max(
+        float(np.linalg.norm((load - of_fixed)[free])), ABOVE_ZERO
+    )
     energy = max(float(u @ forces), ABOVE_ZERO)
     for lost, limit in (
         (abs(float(u[free] @ off)) / energy, LOST_ENERGY_LIMIT),

@@ -12,12 +12,13 @@ from collections.abc import Callable
 from math import inf
 
 import numpy as np
-from scipy.sparse import bsr_matrix, csr_matrix, dia_matrix, diags
+from scipy.sparse import bsr_matrix, csr_matrix, diags
 
 from flexspline.fea.solid.assembly import NodeFrames
+from flexspline.fea.solid.block_product import BlockProduct
 from flexspline.fea.solid.direct import factorised
 from flexspline.fea.solid.errors import IterationError
-from flexspline.fea.solid.iteration import Operator, conjugate_gradients
+from flexspline.fea.solid.iteration import conjugate_gradients, dot
 from flexspline.fea.types import TetMesh
 
 EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
@@ -54,13 +55,13 @@ def iterate(
     allowed: Callable[[np.ndarray], float],
     worth: float = inf,
 ) -> tuple[np.ndarray, float]:
-    """Solve K u = f on the free unknowns.
+    """Solve K u = f for the free unknowns; the others are 0.
 
     Parameters
     ----------
-    matrix, right : K (N, N) and f (N,) of the free unknowns.
-    free : (N,) their numbers, 3·node + component, rising.
-    corners : `corner_interpolation` of the whole mesh.
+    matrix, right : K (N, N) and f (N,) of all unknowns, 3·node + component.
+    free : (N,) which unknowns are; f is 0 at the others.
+    corners : `corner_interpolation` of the mesh.
     allowed : of u (N,), what (u − u*)·K(u − u*) may be [N·mm].
     worth : further steps that are worth while; where its rate tells of more, the iteration ends.
 
@@ -75,18 +76,17 @@ def iterate(
     """
     if not right.any():
         return np.zeros_like(right), 0.0
-    rows = corners[free]
-    held = np.ones(corners.shape[1], bool)
-    held[free[free < corners.shape[1]]] = False  # corner nodes come first
-    p = rows[:, np.flatnonzero(~held)].tocsr()
+    of_free = diags(free.astype(float))
+    p = (of_free @ corners)[:, np.flatnonzero(free[: corners.shape[1]])].tocsr()  # these come first
     up = p.T.tocsr()
     coarse = (up @ (matrix @ p)).tocsr()
+    blocks = _uncoupled(matrix, free)
+    double = BlockProduct(blocks)
     # conjugate gradients bear a preconditioner's rounding, and its products with K are most of the time
-    single = csr_matrix(
-        (matrix.data.astype(np.float32), matrix.indices, matrix.indptr), matrix.shape
-    )
+    blocks = blocks.astype(np.float32)
+    single = BlockProduct(blocks)
     p, up = p.astype(np.float32), up.astype(np.float32)
-    smooth = _Smoother(single, free // 3)
+    smooth = _Smoother(single, _inverse_of_nodes(blocks), free)
     with factorised(coarse, single=True) as exact:
 
         def precondition(residual: np.ndarray) -> np.ndarray:
@@ -96,11 +96,11 @@ def iterate(
             return (x + smooth(r - single @ x)).astype(np.float64)
 
         found = conjugate_gradients(
-            matrix.__matmul__, precondition, right, MOST_STEPS, allowed, worth
+            double.__matmul__, precondition, right, MOST_STEPS, allowed, worth
         )
         # the recurrence drifts from the true residual by rounding: the energy is of the true one
-        r = right - matrix @ found.x
-        left, most = float(r @ precondition(r)) / found.spectrum[0], allowed(found.x)
+        r = right - double @ found.x
+        left, most = dot(r, precondition(r)) / found.spectrum[0], allowed(found.x)
         if found.early and left > most:
             raise IterationError(found.steps, left, most)
         return found.x, left
@@ -109,12 +109,10 @@ def iterate(
 class _Smoother:
     """Chebyshev iteration for K x = r from 0: a symmetric polynomial in B⁻¹K (Saad, 2003, alg. 12.1)."""
 
-    def __init__(self, matrix: csr_matrix, node: np.ndarray) -> None:
-        self._matrix = matrix
-        self._inverse = _node_inverse(matrix, node)
-        start = np.random.default_rng(0).standard_normal(len(node)).astype(matrix.dtype)
-        jacobi: Operator = self._inverse.__matmul__
-        seen = conjugate_gradients(matrix.__matmul__, jacobi, start, SPECTRUM_STEPS)
+    def __init__(self, matrix: BlockProduct, inverse: BlockProduct, free: np.ndarray) -> None:
+        self._matrix, self._inverse = matrix, inverse
+        start = np.random.default_rng(0).standard_normal(len(free)).astype(np.float32) * free
+        seen = conjugate_gradients(matrix.__matmul__, inverse.__matmul__, start, SPECTRUM_STEPS)
         high = SPECTRUM_SAFETY * seen.spectrum[1]
         low = high / SMOOTHED_RATIO
         self._middle, self._half = (high + low) / 2, (high - low) / 2
@@ -135,25 +133,20 @@ class _Smoother:
         return x
 
 
-def _node_inverse(matrix: csr_matrix, node: np.ndarray) -> dia_matrix:
-    """B⁻¹: the inverses of the nodes' diagonal blocks, one to three free unknowns each."""
-    n = len(node)
-    start = np.flatnonzero(np.r_[True, node[1:] != node[:-1]])
-    block = np.repeat(np.arange(len(start)), np.diff(np.r_[start, n]))
-    place = np.arange(n) - start[block]
-    blocks = np.zeros((len(start), 3, 3), matrix.dtype) + np.eye(3, dtype=matrix.dtype)
-    pairs = []
-    for k in range(3):
-        i = np.flatnonzero(node[: n - k] == node[k:])
-        pairs.append(i)
-        blocks[block[i], place[i], place[i] + k] = matrix.diagonal(k)[i]
-        blocks[block[i], place[i] + k, place[i]] = matrix.diagonal(k)[i]
-    inverse = np.linalg.inv(blocks)
-    bands: list[np.ndarray] = []
-    for k, i in enumerate(pairs):
-        band = np.zeros(n - k, matrix.dtype)
-        band[i] = inverse[block[i], place[i], place[i] + k]
-        bands.append(band)
-    return diags(
-        [bands[2], bands[1], bands[0], bands[1], bands[2]], [-2, -1, 0, 1, 2], format="dia"
-    )
+def _uncoupled(matrix: csr_matrix, free: np.ndarray) -> bsr_matrix:
+    """K by nodes' blocks, with 1 on the diagonal of what is not free and 0 beside it."""
+    blocks = matrix.tobsr((3, 3))
+    free = free.reshape(-1, 3)
+    row = np.repeat(np.arange(len(free)), np.diff(blocks.indptr))
+    blocks.data *= free[row][:, :, None]
+    blocks.data *= free[blocks.indices][:, None, :]
+    blocks.data[row == blocks.indices] += np.eye(3) * ~free[:, None, :]
+    return blocks
+
+
+def _inverse_of_nodes(blocks: bsr_matrix) -> BlockProduct:
+    """B⁻¹: the inverses of the blocks on the diagonal."""
+    n = len(blocks.indptr) - 1
+    row = np.repeat(np.arange(n), np.diff(blocks.indptr))
+    inverse = np.linalg.inv(blocks.data[row == blocks.indices])
+    return BlockProduct(bsr_matrix((inverse, np.arange(n), np.arange(n + 1))))

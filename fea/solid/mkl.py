@@ -1,0 +1,33 @@
+"""Intel's oneMKL, where it is installed: not on Arm, for which it has no wheel."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+@cache
+def mkl() -> Any:
+    """The library, or None where MKL does not exist."""
+    # pypardiso would search the whole environment for MKL, twice, 0.3 s, and not the one that a virtual
+    # environment may share packages with: it lies where wheels put it
+    for prefix in (sys.prefix, sys.base_prefix):
+        for library in sorted(Path(prefix, "lib").glob("libmkl_rt*")):
+            os.environ.setdefault("PYPARDISO_MKL_RT", str(library))
+    try:
+        from pypardiso import PyPardisoSolver
+
+        return PyPardisoSolver().libmkl  # loads the library
+    except (ImportError, OSError):
+        return None
+
+
+def address(array: np.ndarray) -> ctypes.c_void_p:
+    """Of the first entry of an array, which must outlive the call."""
+    return ctypes.c_void_p(array.ctypes.data)
