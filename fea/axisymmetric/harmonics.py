@@ -27,8 +27,10 @@ from flexspline.fea.axisymmetric.couplings import (
     TANGENTIAL,
     Couplings,
 )
+from flexspline.fea.axisymmetric.factors import Solver
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual, solved
+from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual
+from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError
@@ -137,6 +139,11 @@ class HarmonicModel:
         """What all harmonics of this mesh are made of."""
         return Couplings(self.space, self.material)
 
+    @cached_property
+    def solver(self) -> Solver:
+        """Of all harmonics: their matrices have their entries at the same places."""
+        return Solver()
+
     def stiffness(self, wave: Harmonic) -> csr_matrix:
         """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.
 
@@ -164,8 +171,8 @@ class HarmonicModel:
         matrix = self.stiffness(wave)
         inside, right = condense(matrix, load, x=u, I=np.flatnonzero(free), expand=False)
         try:
-            u[free] = solved(inside, right)
-        except RuntimeError as fault:  # SuperLU's word for an exactly singular matrix
+            u[free] = self.solver.solve(inside, right)
+        except (RuntimeError, SolveError) as fault:  # the matrix is singular
             raise HarmonicError(f"harmonic {wave.n}: {fault}; is the body held?") from fault
         twice_energy = float(u @ (matrix @ u))
         lost = abs(float(u[free] @ (inside @ u[free] - right)))

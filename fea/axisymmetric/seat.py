@@ -21,7 +21,6 @@ from flexspline.fea.axisymmetric.harmonics import (
     HarmonicModel,
 )
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH, TORQUE, lobe_coefficient
-from flexspline.fea.axisymmetric.space import factorised
 from flexspline.fea.types import NMM_PER_NM
 
 
@@ -121,5 +120,5 @@ def responses(
     free, _ = model.prescribed(wave, [*model.held("mount"), *(also or [])])
     out = np.zeros_like(loads)
     inside = condense(model.stiffness(wave), I=np.flatnonzero(free), expand=False)
-    out[free] = factorised(inside).solve(loads[free])
+    out[free] = model.solver.solve(inside, loads[free])
     return out

@@ -11,8 +11,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse import coo_matrix, csr_matrix
 from skfem import Basis, BilinearForm, ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
@@ -171,21 +170,6 @@ def assembled(form: BilinearForm, basis: Any, **fields: np.ndarray) -> csr_matri
     """As `form.assemble`, but entries that happen to be 0 stay: one basis, one sparsity pattern."""
     entries = form.elemental(basis, **fields)
     return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()
-
-
-def solved(matrix: csr_matrix, load: np.ndarray) -> np.ndarray:
-    """Direct solve of a symmetric positive definite system."""
-    return factorised(matrix).solve(load)
-
-
-def factorised(matrix: csr_matrix) -> SuperLU:
-    """Of a symmetric positive definite matrix."""
-    return splu(
-        csc_matrix(matrix.T),  # the same matrix, and by columns already
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
 
 
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:

@@ -1,0 +1,95 @@
+"""One solver for matrices in turn: the ordering is kept where it may be, and only there."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix, diags, eye_array, kron
+
+from flexspline.fea.axisymmetric import factors
+from flexspline.fea.axisymmetric.factors import PARDISO_FROM, Solver, solved
+from flexspline.fea.pardiso import PardisoFactors, pardiso
+from flexspline.fea.solid.errors import SolveError
+
+WIDTH = 80
+
+needs_mkl = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
+
+
+def grid(weight: float, height: int = WIDTH) -> csr_matrix:
+    """Of springs in a grid, those of one direction `weight` times as stiff, all nodes held by springs too."""
+    chain = [diags([-1.0, 2.1, -1.0], [-1, 0, 1], shape=(n, n)) for n in (WIDTH, height)]
+    both = kron(chain[0], eye_array(height)) + weight * kron(eye_array(WIDTH), chain[1])
+    return csr_matrix(both)
+
+
+@pytest.fixture
+def orderings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Unknowns of every matrix that was ordered."""
+    made: list[int] = []
+
+    class Seen(PardisoFactors):
+        def __init__(self, matrix: csr_matrix, single: bool) -> None:
+            made.append(matrix.shape[0])
+            super().__init__(matrix, single)
+
+    monkeypatch.setattr(factors, "PardisoFactors", Seen)
+    return made
+
+
+@needs_mkl
+def test_matrices_with_the_same_places_are_ordered_once(orderings: list[int]) -> None:
+    solver = Solver()
+    for weight in (1.0, 7.0, 0.3):
+        matrix = grid(weight)
+        assert matrix.shape[0] >= PARDISO_FROM
+        x = np.arange(matrix.shape[0]) % 11.0
+        # the condition number is below 1e2, rounding 1e-16
+        assert solver.solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-12)
+    assert orderings == [WIDTH**2]
+
+
+@needs_mkl
+def test_other_places_are_ordered_anew(orderings: list[int]) -> None:
+    solver = Solver()
+    for height in (WIDTH, WIDTH - 1, WIDTH):
+        matrix = grid(2.0, height)
+        x = np.cos(np.arange(matrix.shape[0]))
+        assert solver.solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-12)
+    assert orderings == [WIDTH**2, WIDTH * (WIDTH - 1), WIDTH**2]
+
+
+def test_many_loads_at_once() -> None:
+    matrix = grid(3.0)
+    x = np.random.default_rng(0).standard_normal((matrix.shape[0], 5))
+    assert Solver().solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-11)
+    assert Solver().solve(matrix, matrix @ x) == pytest.approx(
+        solved(matrix, matrix @ x), abs=1e-11
+    )
+
+
+def test_threads_share_a_solver() -> None:
+    solver = Solver()
+    x = np.cos(np.arange(WIDTH**2))
+
+    def off(weight: float) -> float:
+        matrix = grid(weight)
+        return float(np.abs(solver.solve(matrix, matrix @ x) - x).max())
+
+    with ThreadPoolExecutor(4) as pool:
+        # what one thread solves with another's factors is off by the whole of it
+        assert max(pool.map(off, np.linspace(1.0, 9.0, 24))) < 1e-12
+
+
+@needs_mkl
+def test_after_a_singular_matrix_the_next_is_solved() -> None:
+    solver = Solver()
+    matrix = grid(1.0)
+    solver.solve(matrix, np.ones(matrix.shape[0]))
+    wrong = matrix - 3.0 * eye_array(matrix.shape[0])
+    with pytest.raises(SolveError, match="unsupported"):
+        solver.solve(csr_matrix(wrong), np.ones(matrix.shape[0]))
+    x = np.cos(np.arange(matrix.shape[0]))
+    assert solver.solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-12)
