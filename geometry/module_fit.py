@@ -7,6 +7,7 @@ from flexspline.geometry.design import Design
 
 WRONG_MODULE_RATIO = 1.5
 """Times too large or too small: no ring's thickness mends that."""
+MM_PER_M = 1000.0
 
 
 def root_radius_mm(design: Design) -> float:
@@ -15,12 +16,23 @@ def root_radius_mm(design: Design) -> float:
 
 
 def module_hint(design: Design) -> str:
-    """The module that ring and teeth ask for, where the stated one is far from it; else ""."""
-    root, ring = root_radius_mm(design), design.flexspline.ring_radius
-    if 1 / WRONG_MODULE_RATIO <= root / ring <= WRONG_MODULE_RATIO:
+    """The module, or the diameter, that is far from what the rest of the ring asks for; else ""."""
+    root, part = root_radius_mm(design), design.flexspline
+    ring = part.ring_radius
+    if _fits(root, ring):
         return ""
+    inner_mm = part.inner_diameter_mm
+    if _fits(root, ring + (MM_PER_M - 1) * inner_mm / 2):
+        return (
+            f"flexspline.inner_diameter_mm = {inner_mm:g} looks like metres:"
+            f" with {MM_PER_M * inner_mm:g} mm module and teeth belong to this ring"
+        )
     fits = ring / root * design.gear.module_mm
     return (
         f"gear.module_mm = {design.gear.module_mm:g} does not belong to this ring: with "
         f"{design.gear.teeth_flexspline} teeth on a ring of {2 * ring:.4g} mm it is {fits:.2g}"
     )
+
+
+def _fits(root_mm: float, ring_mm: float) -> bool:
+    return 1 / WRONG_MODULE_RATIO <= root_mm / ring_mm <= WRONG_MODULE_RATIO

@@ -231,7 +231,8 @@ def torque_field(model: PartModel) -> SolidField:
             sharp_edges(model, twisted.meshed),
         )
         if not model.axisymmetric:
-            return solved
+            settled = replace(solved.peak, shortfall=twisted.stiffness.shortfall)
+            return replace(solved, peak=settled)
         exact = torsion_stress(
             model.part.meridian,
             model.material,

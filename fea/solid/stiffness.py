@@ -83,7 +83,7 @@ def solid_stiffness(
     SolidError, MemoryError : from mesher and solver, of the first mesh.
     """
     found = _SolidTorsion(mesher, by_error, first, material, driven, tolerance, progress, deadline)
-    mesh = mesher(first)
+    mesh = found.mesh(first)
     # what is meshed is solved, however late; `finer` then ends it
     late = deadline.elapsed() >= deadline.limit_s
     shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements(mesh))
@@ -103,14 +103,24 @@ class _SolidTorsion:
         self._by_error = by_error
         self._mesher, self._spec, self._material, self._driven = mesher, first, material, driven
         self._tolerance, self._progress, self._deadline = tolerance, progress, deadline
-        self._began_s = deadline.elapsed()
+        self._last_s = 0.0  # of the last mesh, made and solved
         self.estimate = ScaledEstimate(USUAL_EFFICIENCY, EFFICIENCY)
         self.meshes: list[TetMesh] = []
 
+    def mesh(self, spec: MeshSpec) -> TetMesh:
+        began_s = self._deadline.elapsed()
+        mesh = self._mesher(spec)
+        self._last_s = self._deadline.elapsed() - began_s
+        return mesh
+
     def solve(self, mesh: TetMesh) -> None:
         with alone(mesh.elements):
+            began_s = (
+                self._deadline.working()
+            )  # a turn that is waited for, or another program, is no work
             solved = torsion(Model.of(mesh, self._material), self._driven)
             error = energy_error(mesh, solved.displacement, self._material)
+            self._last_s += self._deadline.working() - began_s
         self.solved, self._errors = solved, error.error
         self.meshes.append(mesh)
         self.estimate.add(level_of(solved), error.relative)
@@ -132,14 +142,12 @@ class _SolidTorsion:
         if made is not None:  # made at once, and begun by its own size if there is time (`refine`)
             self.estimate.believed, self.estimate.falls = EFFICIENCY_BY_ERROR, ERROR_RATIOS
             return made
-        now_s, step = self._deadline.elapsed(), near_step(self._tolerance, self.half)
-        longer = LONGER * NEAR_STEP[1] / step
-        if now_s + longer * (now_s - self._began_s) >= self._deadline.limit_s:
+        step = near_step(self._tolerance, self.half)
+        left_s = self._deadline.limit_s - self._deadline.elapsed()
+        if LONGER * NEAR_STEP[1] / step * self._last_s >= left_s:
             raise OutOfTimeError(self._deadline.limit_s)
-        self._began_s = now_s
         self._spec = _finer(self._spec, step)
-        left_s = self._deadline.limit_s - now_s
-        return self._mesher(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
+        return self.mesh(replace(self._spec, time_limit_s=min(self._spec.time_limit_s, left_s)))
 
 
 def near_step(tolerance: float, half: float) -> float:

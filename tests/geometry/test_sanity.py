@@ -83,6 +83,16 @@ def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module
     assert "would fit" not in line
 
 
+def test_a_diameter_in_metres_is_said() -> None:
+    """A hat's holes lie outside its tube, so that nothing else refuses it."""
+    inner_mm = load_design(EXAMPLES / "hat-25.toml").flexspline.inner_diameter_mm
+    design = changed_design("hat-25", {"flexspline.inner_diameter_mm": f"{inner_mm / 1000:g}"})
+    (line,) = (t for t in warnings(design) if "tooth-root" in t)
+    assert f"flexspline.inner_diameter_mm = {inner_mm / 1000:g} looks like metres" in line
+    assert f"with {inner_mm:g} mm module" in line
+    assert "does not belong" not in line
+
+
 def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:
     with pytest.raises(DesignError, match=r"radial_clearance_um.*gear\.module_mm = 0\.02 does not"):
         changed_design("xb1-40", {"gear.module_mm": "0.02"})
