@@ -19,6 +19,7 @@ from flexspline.results.diagnosis.words import (
     cause_title,
     figures_text,
     magnitude_words,
+    noise_words,
     sure_words,
     title_of,
 )
@@ -72,7 +73,7 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
             ("simulation as it stands", gain.rmse_before),
             (calibrated_words(gain), gain.rmse_calibrated),
             ("with the causes found", gain.rmse_after),
-            ("noise of the reading", gain.noise_floor),
+            (noise_words(gain), gain.noise_floor),
         ):
             lines.append(f"    {words:<60} {figures_text(value)}")
     if outcome.gains_at_levels:

@@ -8,12 +8,16 @@ from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
+from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts
 from flexspline.results.diagnosis.reading import columns_record, form_record
 from flexspline.results.diagnosis.words import plus_minus
 from flexspline.results.numbers import grouped
 
 AS_SIMULATED = 0.8
 """Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
+
+AT_REVERSALS, BEFORE_FIRST = "at reversals", "before the first reversal"
+"""Rows that were not used."""
 
 
 def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -98,6 +102,17 @@ def rows_used(prepared: PreparedSweep) -> str:
     return words if averaging is None else f"{words} means"
 
 
+def kinds_left_out(counts: RowCounts) -> list[tuple[str, int]]:
+    """Short words for each kind of row that is there and was not used, with how many."""
+    kinds = (
+        ("gap crossed", counts.crossing),
+        (AT_REVERSALS, counts.turning),
+        (BEFORE_FIRST, counts.settling),
+        (f"outlier{'s' * (counts.outliers != 1)}", counts.outliers),
+    )
+    return [(words, count) for words, count in kinds if count]
+
+
 def row_notes(prepared: PreparedSweep) -> list[str]:
     """Rows used, and rows left out by their reason."""
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
@@ -116,8 +131,8 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
     others = [
         f"{grouped(count, 0)} {words}"
         for count, words in (
-            (counts.turning, "at reversals of torque"),
-            (counts.settling, "before the first reversal at high torque"),
+            (counts.turning, f"{AT_REVERSALS} of torque"),
+            (counts.settling, f"{BEFORE_FIRST} at high torque"),
             (counts.outliers, f"isolated outlier{'s' * (counts.outliers != 1)}"),
         )
         if count

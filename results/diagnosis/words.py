@@ -109,3 +109,8 @@ def figures_text(value: float, digits: int = 3) -> str:
 def calibrated_words(gain: Gain) -> str:
     """What was fitted beside the causes: of specimens only the modulus is free."""
     return "Young's modulus fitted" if gain.unit == "%" else "stiffness and gap calibrated"
+
+
+def noise_words(gain: Gain) -> str:
+    """Whose noise the gain's floor is: of the rows held out, or of all where each was held out in turn."""
+    return "noise of the reading" if gain.held_out.each else "noise of the held-out rows"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import calibrated_words, capital, figures_text
+from flexspline.results.diagnosis.words import calibrated_words, capital, figures_text, noise_words
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
 
 
@@ -59,7 +59,7 @@ def _errors(gain: Gain, found: bool) -> Iterable[tuple[str, float]]:
     yield f"{capital(calibrated_words(gain))}, no cause added", gain.rmse_calibrated
     if found:
         yield "With the causes found", gain.rmse_after
-    yield "Measurement noise, the lower limit", gain.noise_floor
+    yield f"{capital(noise_words(gain))}, the lower limit", gain.noise_floor
 
 
 def _percent(share: float) -> str:

@@ -62,5 +62,5 @@ def _gain(gain: Summary) -> str:
     floor = figures_text(gain["noise_floor"])
     return (
         f"On {gain['held_out']}, not used for fitting: {before} {gain['unit']} rms before, "
-        f"{after} with what was found; the reading's own noise is {floor}."
+        f"{after} with what was found; the noise of these readings is {floor}."
     )

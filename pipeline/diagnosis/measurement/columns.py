@@ -19,6 +19,8 @@ from flexspline.pipeline.diagnosis.measurement.units import (
 
 STAMP = "date and time"
 """Read in the place of a unit."""
+TIME_OF_DAY = "hh:mm:ss"
+"""Accepted in the place of a unit of time."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,7 @@ def _read(grid: CellGrid, at: int, name: ColumnName, counts_per_turn: float | No
     if name.unit is None:
         if quantity == "time" and name.strange is None and is_stamp(_first(grid, at)):
             return ReadColumn(at, head, ours, STAMP, day_at=_day_beside(grid, at))
-        raise MeasurementError(grid.path, grid.head_line, _no_unit(head, name))
+        raise MeasurementError(grid.path, _line_of_unit(grid, at, name), _no_unit(head, name))
     if name.unit == COUNTS:
         if counts_per_turn is None:
             reason = f"column {head} is in counts; say --counts-per-turn N, its counts in a turn"
@@ -158,8 +160,16 @@ def _read(grid: CellGrid, at: int, name: ColumnName, counts_per_turn: float | No
     return ReadColumn(at, head, ours, name.unit, known.factors[name.unit], shift)
 
 
+def _line_of_unit(grid: CellGrid, at: int, name: ColumnName) -> int:
+    """Where an unknown unit stands: in the row of units where the head alone says none."""
+    alone = column_name(grid.head[at])
+    in_row = name.strange is not None and (alone is None or alone.strange is None)
+    return grid.unit_line if in_row else grid.head_line
+
+
 def _no_unit(head: str, name: ColumnName) -> str:
-    accepted = ", ".join(f"{name.quantity}_{u}" for u in QUANTITIES[name.quantity].factors)
+    ways = [f"{name.quantity}_{u}" for u in QUANTITIES[name.quantity].factors]
+    accepted = ", ".join(ways + [TIME_OF_DAY] * (name.quantity == "time"))
     if (name.strange or "").lower() == "grad":
         both = f"{name.quantity}_deg or {name.quantity}_gon"
         return f"column {head}: grad may be degrees or gon; write {both}"

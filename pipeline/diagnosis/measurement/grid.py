@@ -29,7 +29,8 @@ class CellGrid:
 
     Attributes
     ----------
-    head : one text for each column; `head_line` where it stands. unit_row : units below it, () for none.
+    head : one text for each column; `head_line` where it stands. unit_row : units below it, () for none;
+        `unit_line` where they stand, that of the head for none.
     rows : as many texts each as `head`. line : of each row. separator : "" in a workbook.
     misfit : what is wrong with the first row that has more or fewer cells, None for none. footer : lines of
         words below the last row.
@@ -42,6 +43,7 @@ class CellGrid:
     head: tuple[str, ...]
     head_line: int
     unit_row: tuple[str, ...]
+    unit_line: int
     rows: list[list[str]]
     line: list[int]
     misfit: MeasurementError | None = None
@@ -177,7 +179,8 @@ def _grid(
         row[:] = (row + [""] * (width - fields))[:width]
     units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
     return CellGrid(
-        path, raw, encoding, head.separator, tuple(names), numbers[0], units, body, line, misfit, footer
+        path, raw, encoding, head.separator, tuple(names), numbers[0], units, numbers[first - 1],
+        body, line, misfit, footer,
     )  # fmt: skip
 
 

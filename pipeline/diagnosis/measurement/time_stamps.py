@@ -6,17 +6,21 @@ import re
 from collections.abc import Sequence
 from datetime import datetime, timedelta
 
-CLOCK = r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d{1,9})?)?(?:\s?(?:Z|[+-]\d{2}:?\d{2}))?"
+CLOCK = r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d{1,9}|:\d{3})?)?(?:\s?(?:Z|[+-]\d{2}:?\d{2}))?"
 DAY_ISO, DAY_DOTS = r"\d{4}-\d{2}-\d{2}", r"\d{1,2}\.\d{1,2}\.\d{4}"
 LAST_HOUR = 23
 STAMP = re.compile(
     rf"(?:(?P<iso>{DAY_ISO})|(?P<dots>{DAY_DOTS}))?[T ,]*(?P<clock>{CLOCK})?", re.ASCII
 )
+MILLISECONDS = re.compile(r":(?=\d{3}(?!\d))", re.ASCII)
+"""The colon before them, in "hh:mm:ss:ms"."""
 SHORT = re.compile(r"(\d{1,4}):([0-5]\d(?:[.,]\d{1,9})?)", re.ASCII)
 """Two numbers: hours and minutes, or minutes and seconds."""
+_SECONDS = r"(?:ss?|se[ck])(?:[.,:](?:ms(?:ec)?|f+|s+|z+|0+))?"
+"""Of a form, with what programs write for the parts of a second."""
 FORMS = {
-    "mm:ss": re.compile(r"(?<!:)\b(?:mm?|min):(?:ss?|se[ck])\b", re.IGNORECASE),
-    "hh:mm": re.compile(r"\b(?:hh?|std):(?:mm?|min)(?::(?:ss?|se[ck]))?\b", re.IGNORECASE),
+    "mm:ss": re.compile(rf"(?<!:)\b(?:mm?|min):{_SECONDS}\b", re.IGNORECASE),
+    "hh:mm": re.compile(rf"\b(?:hh?|std):(?:mm?|min)(?::{_SECONDS})?\b", re.IGNORECASE),
 }
 """How a head or a unit says which."""
 SLASHES = re.compile(r"\d{1,4}/\d{1,2}/\d{1,4}\b.*", re.ASCII)
@@ -46,7 +50,7 @@ def is_clock(text: str) -> bool:
 
 
 def form_said(head: str) -> str | None:
-    """ "mm:ss" or "hh:mm" (also of "hh:mm:ss") where the head of a column says so."""
+    """ "mm:ss" or "hh:mm" (also of "hh:mm:ss", "hh:mm:ss,ms") where the head of a column says so."""
     return next((form for form, said in FORMS.items() if said.search(head)), None)
 
 
@@ -109,6 +113,7 @@ def _moment(text: str) -> datetime | None:
     dots = (match["dots"] or "1.1.2000").split(".")  # any day serves for times of day
     day = match["iso"] or "-".join(_padded(p) for p in reversed(dots))
     clock = (match["clock"] or "00:00").replace(",", ".").replace(" ", "")
+    clock = MILLISECONDS.sub(".", clock)
     hour, colon, rest = clock.partition(":")
     try:
         return datetime.fromisoformat(f"{day}T{_padded(hour)}{colon}{rest}")

@@ -78,7 +78,7 @@ def _provenance(p: Provenance, gain: Gain | None, held_out: str) -> list[str]:
             f"rmse_before = {number(gain.rmse_before)}   # simulation, its zero fitted",
             f"rmse_calibrated = {number(gain.rmse_calibrated)}   # stiffness and gap fitted too",
             f"rmse_after = {number(gain.rmse_after)}   # with the causes below",
-            f"noise_floor = {number(gain.noise_floor)}   # of the reading",
+            f"noise_floor = {number(gain.noise_floor)}   # noise of these readings",
             f"unit = {quoted(gain.unit)}",
             "",
         ]

@@ -103,7 +103,7 @@ def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
 def _told(shown: SweepPictureData) -> dict[str, str]:
     """Of each channel, whether structure is left in it."""
     return {
-        t.channel: f"structure left, {t.rms_arcsec:.2g}″"
+        t.channel: f"structure left, {t.rms_arcsec:.2g} arcsec"
         if t.p_value < STRUCTURE_P_VALUE
         else "no structure left"
         for t in shown.tests

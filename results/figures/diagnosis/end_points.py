@@ -63,7 +63,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
             said.append(axes.annotate(
-                f"{unit.total_arcsec:.1f}″, {words} ({unit.z:+.1f} σ)".replace("-", "−"),
+                f"{unit.total_arcsec:.1f} arcsec, {words} ({unit.z:+.1f} σ)".replace("-", "−"),
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
@@ -123,7 +123,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
                 unit.mid_arcsec, row + 0.08, "o", color=INK, ms=5, label="middle" if first else None
             )
             axes.annotate(
-                f"middle {unit.mid_arcsec:+.1f}″".replace("-", "−"), (1.02, row),
+                f"middle {unit.mid_arcsec:+.1f} arcsec".replace("-", "−"), (1.02, row),
                 xycoords=("axes fraction", "data"), va="center", fontsize=9.5, annotation_clip=False,
             )  # fmt: skip
         axes.set_ylim(len(units) - 0.5, -0.5)

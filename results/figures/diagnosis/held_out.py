@@ -8,9 +8,10 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import figures_text
+from flexspline.results.diagnosis.words import figures_text, noise_words
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
+from flexspline.results.figures.words import wrapped
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 BARS = (
@@ -57,9 +58,8 @@ def write_held_out(path: Path, gain: Gain) -> None:
         bars.set_xticks(range(3), ["as it\nstands", "cali-\nbrated", "with\ncauses"])
         bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
         bars.set_ylabel(f"rms error, {gain.unit}")
-        bars.set_title(
-            f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6
-        )
+        dashed = wrapped(f"dashed: {noise_words(gain)}, {figures_text(gain.noise_floor)}", 24)
+        bars.set_title(dashed, fontsize=9, weight="normal", pad=6)
         figure.text(
             0.035,
             0.945,

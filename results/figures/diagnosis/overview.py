@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.results.diagnosis.data_used import kinds_left_out
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import keep_inside
+from flexspline.results.numbers import grouped
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
 
 
 def write_overview(path: Path, shown: SweepPictureData) -> None:
@@ -20,7 +28,7 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
     model = shown.nominal - shown.left
     with styled():
         figure = new_figure(8.0, 5.4, DPI)
-        above = figure.add_axes((0.095, 0.43, 0.875, 0.405))
+        above = figure.add_axes((0.095, 0.43, 0.875, 0.39))
         below = figure.add_axes((0.095, 0.104, 0.875, 0.295))
         angle = prediction.angle_arcsec(replace(shown.history, torque_Nm=torque)) + shown.nominal
         for sign in (-1.0, 1.0):
@@ -50,11 +58,11 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
                 torque[rows], model[rows], ".", ms=2.0, mew=0, color=INK, label="extended model",
                 rasterized=True,
             )  # fmt: skip
-        crossing = thinned(inside)
+        crossing, not_used = thinned(inside), _not_used(shown)
         for axes, values in ((above, angle), (below, shown.nominal)):
             axes.plot(
                 torque[crossing], values[crossing], "x", ms=3.2, mew=0.8, color=ACCENT, alpha=0.7,
-                label="not used: gap crossed, or outlier",
+                label=not_used if len(crossing) else None,
             )  # fmt: skip
             axes.axvline(0, color=MUTED, lw=0.6)
             axes.grid(True)
@@ -71,10 +79,23 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         )  # fmt: skip
         named = dict(zip(*reversed(above.get_legend_handles_labels()), strict=True))
         named |= dict(zip(*reversed(below.get_legend_handles_labels()), strict=True))
-        figure.legend(
-            named.values(), named.keys(), loc="center left", bbox_to_anchor=(0.085, 0.88), ncols=3,
-            fontsize=9, markerscale=2.0, columnspacing=1.3, borderpad=0,
-        )  # fmt: skip
+        crosses = named.pop(not_used, None)
+        _legend(figure, 0.893, named)
+        if crosses is not None:
+            _legend(figure, 0.842, {not_used: crosses})
         for axes in (above, below):
             keep_inside(axes)
         save_png(figure, path)
+
+
+def _not_used(shown: SweepPictureData) -> str:
+    """Why the crossed rows were not used, and how many each reason has."""
+    kinds = kinds_left_out(shown.explained.prepared.row_counts)
+    return "not used: " + ", ".join(f"{words} ({grouped(count, 0)})" for words, count in kinds)
+
+
+def _legend(figure: Figure, y: float, named: Mapping[str, Artist]) -> None:
+    figure.legend(
+        named.values(), named.keys(), loc="center left", bbox_to_anchor=(0.085, y), ncols=3,
+        fontsize=9, markerscale=2.0, columnspacing=1.3, borderpad=0,
+    )  # fmt: skip

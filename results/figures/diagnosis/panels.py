@@ -91,7 +91,8 @@ def branch_legend(figure: Figure, y: float, shown: SweepPictureData) -> None:
             Line2D([], [], color=MUTED, lw=1.8, label="mean, T > 0"),
             Line2D([], [], color=MUTED, lw=1.8, ls=(0, (2.5, 1.5)), label="mean, T < 0"),
         ]
-    handles.append(Patch(color="#e4e7ea", label=f"noise ± 2σ (σ = {shown.noise_arcsec:.2g}″)"))
+    noise = f"noise of all rows used:\n± 2σ, σ = {shown.noise_arcsec:.2g} arcsec"
+    handles.append(Patch(color="#e4e7ea", label=noise))
     figure.legend(
         handles=handles, loc="center left", bbox_to_anchor=(0.025, y), ncols=len(handles),
         fontsize=9, columnspacing=1.3, handlelength=1.7, handletextpad=0.5, borderpad=0,

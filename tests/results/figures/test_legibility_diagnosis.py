@@ -6,9 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from legibility import drawn_figures, faults
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
+from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.results.cli import app
+from flexspline.results.diagnosis.data_used import data_record
+from flexspline.results.figures.diagnosis.overview import write_overview
+from flexspline.results.figures.diagnosis.seen import seen
 
 ROOT = Path(__file__).parents[3]
 CUP = ROOT / "examples" / "xb1-40.toml"
@@ -120,3 +126,24 @@ def test_figures_of_a_diagnosis(tmp_path, monkeypatch, name):
     assert result.exit_code == 0, result.stderr
     assert len(found) >= 2
     assert [fault for figure in found for fault in faults(figure)] == []
+
+
+def test_the_legend_counts_each_kind_of_row_that_was_not_used(tmp_path: Path) -> None:
+    path = sweep(tmp_path / "m.csv", lambda *_: 0.0)
+    diagnosis = diagnose_file(load_design(CUP), path, 31329, 43339)
+    shown = seen(diagnosis)
+    assert shown is not None
+    with drawn_figures() as found:
+        write_overview(tmp_path / "m.png", shown)
+    (figure,) = found
+    (said,) = [t for t in legend_texts(figure) if t.startswith("not used")]
+    left = data_record(diagnosis)["rows"]["left_out"]
+    assert left["outlier"] == 0
+    assert said == (
+        f"not used: gap crossed ({left['backlash_crossing']}), at reversals ({left['torque_reversal']}), "
+        f"before the first reversal ({left['before_first_reversal']})"
+    )
+
+
+def legend_texts(figure: Figure) -> list[str]:
+    return [t.get_text() for legend in figure.legends for t in legend.get_texts()]

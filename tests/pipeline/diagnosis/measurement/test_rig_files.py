@@ -188,6 +188,11 @@ REFUSED = {
     "no unit": ("Drehmoment;Winkel [°]\n1;2\n", "column Drehmoment: accepted are torque_Nm"),
     "an unknown unit": ("Torque [lbf·s],Angle [deg]\n1,2\n", '"lbf·s" is no unit'),
     "degrees or gon": ("Torque [Nm],Angle [grad]\n1,2\n", "angle_deg or angle_gon"),
+    "an unknown unit below the head":
+        ("Rig\nZeit;M [Nm];Winkel\nfortnight;Nm;deg\n1;1;2\n", ':3: column Zeit: accepted are time_s, '
+         'time_ms, time_us, time_min, time_h, hh:mm:ss; "fortnight" is no unit'),
+    "an unknown unit in the head, others below":
+        ("Rig\nZeit [fortnight];M;Winkel\n;Nm;deg\n1;1;2\n", ':2: column Zeit [fortnight]: accepted'),
     "a unit of something else": ("Torque [deg],Angle [deg]\n1,2\n", '"deg" is no unit'),
     "day or month first":
         ("Time,torque_Nm,angle_arcsec\n" + "05/01/2024 12:00:00,1,2\n" * 9, "the day or the month"),

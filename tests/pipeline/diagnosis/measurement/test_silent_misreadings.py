@@ -90,6 +90,30 @@ def test_what_says_which_of_the_two(
     assert found.tolist() == [0.0, seconds]
 
 
+@pytest.mark.parametrize(
+    "form",
+    ["hh:mm:ss", "hh:mm:ss,ms", "hh:mm:ss.ms", "hh:mm:ss:ms", "hh:mm:ss,fff", "hh:mm:ss,000", "HH:mm:ss.SSS"],
+)  # fmt: skip
+@pytest.mark.parametrize("row", [False, True], ids=["in the head", "below it"])
+@pytest.mark.parametrize("mark", [",", ".", ":"])
+def test_parts_of_a_second_in_the_form_of_a_time_of_day(
+    form: str, row: bool, mark: str, tmp_path: Path
+) -> None:
+    head = (
+        "Zeit;Moment;Winkel\n[{}];[Nm];[arcsec]\n" if row else "Zeit [{}];torque_Nm;angle_arcsec\n"
+    )
+    body = "".join(
+        f"09:58:{s}{mark}{ms};1,5;{ms}\n" for s, ms in (("07", 250), ("08", 300), ("08", 350))
+    )
+    found = read_table(written(tmp_path, head.format(form) + body)).numbers["time_s"]
+    assert found == pytest.approx([0.0, 1.05, 1.1])
+
+
+def test_milliseconds_after_minutes_and_seconds(tmp_path: Path) -> None:
+    found = read_table(stamped(tmp_path, "Zeit [mm:ss,ms]", "10:59,500", "11:01,250"))
+    assert found.numbers["time_s"].tolist() == [0.0, 1.75]
+
+
 def test_times_past_midnight_are_refused_with_what_to_do(tmp_path: Path) -> None:
     path = stamped(tmp_path, "time", "23:59:58", "23:59:59", "00:00:00")
     with pytest.raises(MeasurementError, match="past midnight"):

@@ -16,12 +16,14 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.model.doubt import (
     BEYOND_THE_EDGE,
+    Deviation,
     Doubt,
     deviation_of,
     parameter_columns,
     parameter_count,
 )
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
+from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
@@ -175,7 +177,10 @@ def test_a_prediction_says_which_rows_extrapolate(tmp_path: Path) -> None:
     csv.write_text("torque_Nm\n" + "".join(f"{t / 10}\n" for t in range(31)))
     found = predict_file(read_model_file(path), csv)
     (warning,) = found.warnings
-    assert "rows extrapolate: torque 0 to 3 N·m; the model's record torque -2 to 2 N·m" in warning
+    assert warning == (
+        "9 of 31 rows are beyond the measured torque: this file spans 0 to 3 N·m, the model's record "
+        "-2 to 2 N·m; the model is less certain there, so their deviations are wider"
+    )
     assert found.angle_std_arcsec is not None
     assert found.angle_std_arcsec[-1] > 1.4 * found.angle_std_arcsec[20]
 
@@ -202,6 +207,17 @@ def test_friction_in_smaller_loops_than_any_measured_is_not_known() -> None:
         assert bool(found.std_arcsec[settled].min() > 1.9) is wide
         turned = len(RECORD) - int(np.argmax(np.diff(RECORD.torque_Nm) < 0)) - 1
         assert found.rows_beyond == ({"torque_amplitude": turned} if wide else {})
+
+
+def test_small_loops_are_said_with_the_smallest_of_file_and_record() -> None:
+    history = replace(RECORD, torque_Nm=0.5 * RECORD.torque_Nm)
+    small = Deviation(np.ones(len(history)), {"torque_amplitude": 40})
+    (line,) = extrapolated(small, span_of(RECORD), history)
+    assert line == (
+        f"40 of {len(history)} rows are in cycles smaller than the smallest measured: the smallest of this "
+        "file reaches 1 N·m, that of the model's record 2 N·m; the friction of small loops is less certain, "
+        "so their deviations are wider"
+    )
 
 
 @pytest.mark.parametrize("rows", [1_000, 10_000])
