@@ -17,7 +17,7 @@ Pardiso's factors, and of those with a new ordering, on a busy machine: 1 000 to
 matrices have the places of the last one."""
 
 
-class Solver:
+class PatternSolver:
     """Of symmetric positive definite systems; the ordering stays while the entries' places do."""
 
     def __init__(self) -> None:

@@ -27,7 +27,7 @@ from flexspline.fea.axisymmetric.couplings import (
     TANGENTIAL,
     Couplings,
 )
-from flexspline.fea.axisymmetric.factors import Solver
+from flexspline.fea.axisymmetric.factors import PatternSolver
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual
 from flexspline.fea.solid.errors import SolveError
@@ -140,9 +140,9 @@ class HarmonicModel:
         return Couplings(self.space, self.material)
 
     @cached_property
-    def solver(self) -> Solver:
+    def solver(self) -> PatternSolver:
         """Of all harmonics: their matrices have their entries at the same places."""
-        return Solver()
+        return PatternSolver()
 
     def stiffness(self, wave: Harmonic) -> csr_matrix:
         """Stiffness matrix (3·count, 3·count) of a harmonic, whole circle, before any support.

@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse import csr_matrix, diags, eye_array, kron
 
 from flexspline.fea.axisymmetric import factors
-from flexspline.fea.axisymmetric.factors import PARDISO_FROM, Solver, solved
+from flexspline.fea.axisymmetric.factors import PARDISO_FROM, PatternSolver, solved
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.solid.errors import SolveError
 
@@ -41,7 +41,7 @@ def orderings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 @needs_mkl
 def test_matrices_with_the_same_places_are_ordered_once(orderings: list[int]) -> None:
-    solver = Solver()
+    solver = PatternSolver()
     for weight in (1.0, 7.0, 0.3):
         matrix = grid(weight)
         assert matrix.shape[0] >= PARDISO_FROM
@@ -53,7 +53,7 @@ def test_matrices_with_the_same_places_are_ordered_once(orderings: list[int]) ->
 
 @needs_mkl
 def test_other_places_are_ordered_anew(orderings: list[int]) -> None:
-    solver = Solver()
+    solver = PatternSolver()
     for height in (WIDTH, WIDTH - 1, WIDTH):
         matrix = grid(2.0, height)
         x = np.cos(np.arange(matrix.shape[0]))
@@ -64,14 +64,14 @@ def test_other_places_are_ordered_anew(orderings: list[int]) -> None:
 def test_many_loads_at_once() -> None:
     matrix = grid(3.0)
     x = np.random.default_rng(0).standard_normal((matrix.shape[0], 5))
-    assert Solver().solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-11)
-    assert Solver().solve(matrix, matrix @ x) == pytest.approx(
+    assert PatternSolver().solve(matrix, matrix @ x) == pytest.approx(x, abs=1e-11)
+    assert PatternSolver().solve(matrix, matrix @ x) == pytest.approx(
         solved(matrix, matrix @ x), abs=1e-11
     )
 
 
 def test_threads_share_a_solver() -> None:
-    solver = Solver()
+    solver = PatternSolver()
     x = np.cos(np.arange(WIDTH**2))
 
     def off(weight: float) -> float:
@@ -85,7 +85,7 @@ def test_threads_share_a_solver() -> None:
 
 @needs_mkl
 def test_after_a_singular_matrix_the_next_is_solved() -> None:
-    solver = Solver()
+    solver = PatternSolver()
     matrix = grid(1.0)
     solver.solve(matrix, np.ones(matrix.shape[0]))
     wrong = matrix - 3.0 * eye_array(matrix.shape[0])
