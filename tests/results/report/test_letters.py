@@ -76,3 +76,12 @@ def test_a_report_in_latin_letters_reads_no_font():
 
 def test_the_fonts_are_there():
     assert (font_folder() / "DejaVuSans.ttf").is_file()
+
+
+def test_a_long_word_is_copied_as_it_is(tmp_path):
+    """It may break at the end of a line, after its points and underscores; nothing invisible is added."""
+    key = "wave_generator." + "a_long_part_of_a_key_" * 5 + "youngs_modulus_GPa"
+    write_report(tmp_path / "r.pdf", content(design=design(name=key)))
+    said = "".join(page.extract_text() for page in PdfReader(tmp_path / "r.pdf").pages)
+    assert "\u200b" not in said
+    assert key in said.replace("\n", "")
