@@ -5,10 +5,10 @@ from __future__ import annotations
 from threading import Lock
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_matrix
 
 from flexspline.fea.pardiso import PardisoFactors, pardiso
+from flexspline.fea.superlu import superlu
 
 PARDISO_FROM = 3_000
 """Unknowns from which oneMKL's Pardiso takes less time than SuperLU, where it is. Milliseconds of SuperLU, of
@@ -44,10 +44,4 @@ class PatternSolver:
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
     """K⁻¹ f of loads (N,) or (N, k), K symmetric positive definite, once."""
-    factors = splu(
-        csc_matrix(matrix.T),  # the same matrix, and by columns already
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    return factors.solve(loads)
+    return superlu(matrix).solve(loads)

@@ -30,7 +30,6 @@ from flexspline.fea.axisymmetric.couplings import (
 from flexspline.fea.axisymmetric.factors import PatternSolver
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual
-from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError
@@ -172,7 +171,10 @@ class HarmonicModel:
         inside, right = condense(matrix, load, x=u, I=np.flatnonzero(free), expand=False)
         try:
             u[free] = self.solver.solve(inside, right)
-        except (RuntimeError, SolveError) as fault:  # the matrix is singular
+        except (
+            RuntimeError,
+            ComputationError,
+        ) as fault:  # SuperLU's and Pardiso's for a singular matrix
             raise HarmonicError(f"harmonic {wave.n}: {fault}; is the body held?") from fault
         twice_energy = float(u @ (matrix @ u))
         lost = abs(float(u[free] @ (inside @ u[free] - right)))

@@ -33,13 +33,10 @@ class BlockProduct:
         if library is None:
             return
         double = matrix.dtype == np.float64
-        self._starts, self._columns = (
-            matrix.indptr.astype(np.int32),
-            matrix.indices.astype(np.int32),
-        )
-        self._data = np.ascontiguousarray(
-            matrix.data
-        )  # these three are oneMKL's for as long as the handle is
+        # oneMKL reads these three in place
+        self._starts = matrix.indptr.astype(np.int32, copy=False)
+        self._columns = matrix.indices.astype(np.int32, copy=False)
+        self._data = np.ascontiguousarray(matrix.data)
         create = library.mkl_sparse_d_create_bsr if double else library.mkl_sparse_s_create_bsr
         rows, columns = (ctypes.c_int32(size // 3) for size in matrix.shape)
         failed = create(

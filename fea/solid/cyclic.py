@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
-from flexspline.fea.solid.flatness import mostly_flat
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
 from flexspline.fea.solid.solver import Solution, solve
@@ -160,7 +159,7 @@ class WaveSupports:
 
         solution = solve(
             matrix, forces, fixed, value[fixed], interpolation, model.solve_by,
-            slow=mostly_flat(model.mesh),
+            slow=model.is_flat,
         )  # fmt: skip
         x, y = solution.unknowns[places].reshape(2, -1, 3)
         return matrix, forces, solution, self._turned(x + 1j * y, every, back=True)

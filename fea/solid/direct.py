@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.iteration import conjugate_gradients, dot
+from flexspline.fea.superlu import superlu
 
 Back = Callable[[np.ndarray], np.ndarray]
 SINGLE_FROM = 10_000
@@ -95,10 +96,7 @@ def _in_double(matrix: csr_matrix, right: np.ndarray, back: Back) -> np.ndarray:
 
 
 def _superlu(matrix: csr_matrix) -> Back:
-    from scipy.sparse.linalg import splu
-
-    options = {"SymmetricMode": True}
     try:
-        return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options=options).solve
-    except RuntimeError as fault:  # its word for an exactly singular matrix
+        return superlu(matrix).solve
+    except RuntimeError as fault:  # exactly singular
         raise SolveError(f"{fault}: part of the model may be unsupported") from fault

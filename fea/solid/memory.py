@@ -11,7 +11,7 @@ from math import inf, sqrt
 from pathlib import Path
 from typing import Literal
 
-from flexspline.fea.solid.direct import pardiso
+from flexspline.fea.pardiso import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]

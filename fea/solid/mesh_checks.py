@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
+from flexspline.fea.solid.flatness import longest_edges
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import sector_planes
@@ -24,10 +25,7 @@ LEAST_SHAPE = 1e-7
 
 def refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
     """Beside the axis two nodes can go to one place of it, and the tetrahedron between has no volume."""
-    corner = points[tets]
-    sides = [corner - np.roll(corner, k, axis=1) for k in (1, 2)]
-    longest = np.linalg.norm(sides, axis=3).max(axis=(0, 2))
-    flat = signed_volumes(points, tets) < LEAST_SHAPE * longest**3
+    flat = signed_volumes(points, tets) < LEAST_SHAPE * longest_edges(points, tets) ** 3
     if flat.any():
         raise MeshQualityError(
             f"{int(flat.sum())} elements are flat once their nodes are on the CAD"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -32,6 +33,11 @@ class Model:
     """Its patches as scikit-fem's boundaries."""
     solve_by: SolverKind | None = None
     """How to solve; by unknowns and memory when absent."""
+
+    @cached_property
+    def is_flat(self) -> bool:
+        """Whether so many elements are flat that an iteration is slow."""
+        return mostly_flat(self.mesh)
 
     @classmethod
     def of(cls, mesh: TetMesh, material: Elastic) -> Model:
@@ -98,5 +104,5 @@ class Supports:
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
             iteration_energy,
-            mostly_flat(model.mesh),
+            model.is_flat,
         )

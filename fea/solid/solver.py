@@ -69,11 +69,11 @@ def solve(
     is_free[fixed] = False
     free = np.flatnonzero(is_free)
     of_fixed = matrix @ u
+    right = np.where(is_free, load - of_fixed, 0.0)
     entries = round(matrix.nnz * len(free) / len(u))
     how = by or choose_solver(len(free), entries, corners is not None, slow)
     error_energy = 0.0
     if how == "iterative" and corners is not None:
-        right = np.where(is_free, load - of_fixed, 0.0)
         of_lift, of_x = float(u @ of_fixed), 2 * load - right
 
         def allowed(x: np.ndarray) -> float:
@@ -89,14 +89,10 @@ def solve(
                 raise
             how = "direct"  # below, where the error holds none of the iteration's memory any more
     if how == "direct":
-        inner, right = condense(matrix, load, x=u, I=free, expand=False)
-        u[free] = direct(inner, right)
-        del inner
+        u[free] = direct(condense(matrix, I=free, expand=False), right[free])
     forces = matrix @ u
     off = (forces - load)[free]
-    residual = float(np.linalg.norm(off)) / max(
-        float(np.linalg.norm((load - of_fixed)[free])), ABOVE_ZERO
-    )
+    residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
     energy = max(float(u @ forces), ABOVE_ZERO)
     for lost, limit in (
         (abs(float(u[free] @ off)) / energy, LOST_ENERGY_LIMIT),

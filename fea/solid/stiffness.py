@@ -115,9 +115,8 @@ class _SolidTorsion:
 
     def solve(self, mesh: TetMesh) -> None:
         with alone(mesh.elements):
-            began_s = (
-                self._deadline.working()
-            )  # a turn that is waited for, or another program, is no work
+            # a turn that is waited for, or another program, is no work
+            began_s = self._deadline.working()
             solved = torsion(Model.of(mesh, self._material), self._driven)
             error = energy_error(mesh, solved.displacement, self._material)
             self._last_s += self._deadline.working() - began_s

@@ -135,9 +135,8 @@ class _Smoother:
 
 def _uncoupled(matrix: csr_matrix, free: np.ndarray) -> bsr_matrix:
     """K by nodes' blocks, with 1 on the diagonal of what is not free and 0 beside it."""
-    blocks = matrix.tobsr((3, 3))
-    free = free.reshape(-1, 3)
-    row = np.repeat(np.arange(len(free)), np.diff(blocks.indptr))
+    blocks, free = matrix.tobsr((3, 3)), free.reshape(-1, 3)
+    row = _rows(blocks)
     blocks.data *= free[row][:, :, None]
     blocks.data *= free[blocks.indices][:, None, :]
     blocks.data[row == blocks.indices] += np.eye(3) * ~free[:, None, :]
@@ -146,7 +145,11 @@ def _uncoupled(matrix: csr_matrix, free: np.ndarray) -> bsr_matrix:
 
 def _inverse_of_nodes(blocks: bsr_matrix) -> BlockProduct:
     """B⁻¹: the inverses of the blocks on the diagonal."""
-    n = len(blocks.indptr) - 1
-    row = np.repeat(np.arange(n), np.diff(blocks.indptr))
-    inverse = np.linalg.inv(blocks.data[row == blocks.indices])
+    inverse = np.linalg.inv(blocks.data[_rows(blocks) == blocks.indices])
+    n = len(inverse)
     return BlockProduct(bsr_matrix((inverse, np.arange(n), np.arange(n + 1))))
+
+
+def _rows(blocks: bsr_matrix) -> np.ndarray:
+    """The row of nodes (b,) of each block."""
+    return np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))

@@ -1,0 +1,16 @@
+"""SuperLU's factors of a sparse symmetric positive definite matrix: of small ones, and where MKL is not."""
+
+from __future__ import annotations
+
+from scipy.sparse import csc_matrix, csr_matrix
+from scipy.sparse.linalg import SuperLU, splu
+
+
+def superlu(matrix: csr_matrix) -> SuperLU:
+    """The factors; RuntimeError, its word for an exactly singular matrix."""
+    return splu(
+        csc_matrix(matrix.T),  # the same matrix, and by columns already
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
