@@ -11,10 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.fea.address_space import LIBRARIES_BYTES, free_address_space_bytes
+
 
 @cache
 def mkl() -> Any:
-    """The library, or None where MKL does not exist."""
+    """The library, or None where MKL does not exist or cannot be loaded."""
+    if free_address_space_bytes() < LIBRARIES_BYTES:
+        return None
     # pypardiso would search the whole environment for MKL, twice, 0.3 s, and not the one that a virtual
     # environment may share packages with: it lies where wheels put it
     for prefix in (sys.prefix, sys.base_prefix):
@@ -23,9 +27,18 @@ def mkl() -> Any:
     try:
         from pypardiso import PyPardisoSolver
 
-        return PyPardisoSolver().libmkl  # loads the library
+        library = PyPardisoSolver().libmkl
     except (ImportError, OSError):
         return None
+    _load_kernels(library)
+    return library
+
+
+def _load_kernels(library: Any) -> None:
+    """Load the rest now, while there is room: oneMKL does so in its first sum, or ends the process."""
+    one = np.ones(1)
+    library["cblas_ddot"].restype = ctypes.c_double
+    library["cblas_ddot"](1, address(one), 1, address(one), 1)
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:

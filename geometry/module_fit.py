@@ -25,7 +25,7 @@ def module_hint(design: Design) -> str:
     if _fits(root, ring + (MM_PER_M - 1) * inner_mm / 2):
         return (
             f"flexspline.inner_diameter_mm = {inner_mm:g} looks like metres:"
-            f" with {MM_PER_M * inner_mm:g} mm module and teeth belong to this ring"
+            f" module and teeth fit one of {MM_PER_M * inner_mm:g} mm"
         )
     fits = ring / root * design.gear.module_mm
     return (

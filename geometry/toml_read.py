@@ -19,6 +19,7 @@ _WITH_UNIT = re.compile(
 """A number, and what may be the unit behind it."""
 _VALUE = re.compile(r"=\s*([^#]*)")
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
+_STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'')
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
 
 
@@ -79,5 +80,5 @@ def _help(text: str, fault: ValueError) -> str:
 def _deepest_key(text: str) -> int:
     """Parts of the longest dotted key, at least."""
     lines = (s for s in text.split("\n") if not s.lstrip().startswith("#"))
-    pieces = (piece for line in lines for piece in _NO_KEY.split(line))
+    pieces = (p for line in lines for p in _NO_KEY.split(_STRING.sub("x", line)))
     return max((sum(map(bool, map(str.strip, p.split(".")))) for p in pieces), default=0)

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from flexspline.fea.address_space import refuse_little_address_space
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
@@ -42,7 +43,13 @@ class AnalysisContext:
         return ring_of(self.design, self.cache, self.progress)
 
     def part(self, name: PartName) -> PartModel:
-        """Its model; a flexspline's teeth enter it as the equivalent plain ring."""
+        """Its model; a flexspline's teeth enter it as the equivalent plain ring.
+
+        Raises
+        ------
+        AddressSpaceError : this process can solve nothing.
+        """
+        refuse_little_address_space()
         if name == "shaft" or self.ring is None:
             return PartModel(self, self.design.part(name))
         plain = replace(self, design=with_plain_ring(self.design, self.ring))

@@ -34,12 +34,13 @@ def readable_streams() -> Iterator[None]:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             _prepare(stream)
-    try:
-        yield
-    except SystemExit as ended:
-        _flush(ended.code)
-        raise
-    _flush(0)
+    with _libraries_write_to_stderr():
+        try:
+            yield
+        except SystemExit as ended:
+            _flush(ended.code)
+            raise
+        _flush(0)
 
 
 def show(text: str, json: bool = False) -> None:
@@ -61,6 +62,33 @@ def show(text: str, json: bool = False) -> None:
     except OSError as error:
         _give_up(sys.stdout)
         raise OSError(error.errno, error.strerror, STDOUT) from None
+
+
+@contextmanager
+def _libraries_write_to_stderr() -> Iterator[None]:
+    """Standard output is for the answer: what a library writes there (oneMKL: "Not enough memory") goes to
+    standard error."""
+    ours = sys.stdout
+    if not isinstance(ours, io.TextIOWrapper) or ours.fileno() != 1:  # somebody took it over
+        yield
+        return
+    ours.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    sys.stdout = os.fdopen(
+        kept,
+        "w",
+        encoding=ours.encoding,
+        errors=ours.errors,
+        buffering=1 if ours.line_buffering else -1,
+    )
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(sys.stdout.fileno(), 1)
+            sys.stdout.close()
+        sys.stdout = ours
 
 
 def _prepare(stream: io.TextIOWrapper) -> None:

@@ -11,6 +11,7 @@ from math import inf, sqrt
 from pathlib import Path
 from typing import Literal
 
+from flexspline.fea.address_space import free_address_space_bytes
 from flexspline.fea.pardiso import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
@@ -102,7 +103,7 @@ def steps_of_factors(unknowns: int, entries: int) -> float:
 
 def available_bytes() -> float:
     """Memory that this process may still take: of the machine, its container, its own limit."""
-    return min(_of_machine(), container_free_bytes(), _of_process())
+    return min(_of_machine(), container_free_bytes(), free_address_space_bytes())
 
 
 def _of_machine() -> float:
@@ -132,15 +133,3 @@ def container_free_bytes(folder: Path = Path("/sys/fs/cgroup")) -> float:
         return inf if most == "max" else float(most) - used + idle
     except (OSError, ValueError):
         return inf
-
-
-def _of_process() -> float:
-    """Address space left under `ulimit -v`."""
-    try:
-        import resource
-
-        most, _ = resource.getrlimit(resource.RLIMIT_AS)
-        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-    except (ImportError, OSError):
-        return inf
-    return inf if most == resource.RLIM_INFINITY else float(most - pages * resource.getpagesize())

@@ -89,7 +89,7 @@ def test_a_diameter_in_metres_is_said() -> None:
     design = changed_design("hat-25", {"flexspline.inner_diameter_mm": f"{inner_mm / 1000:g}"})
     (line,) = (t for t in warnings(design) if "tooth-root" in t)
     assert f"flexspline.inner_diameter_mm = {inner_mm / 1000:g} looks like metres" in line
-    assert f"with {inner_mm:g} mm module" in line
+    assert f"fit one of {inner_mm:g} mm" in line
     assert "does not belong" not in line
 
 

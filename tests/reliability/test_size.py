@@ -83,6 +83,14 @@ def test_numbers_of_the_refusal() -> None:
     assert "solver.tolerance_pct" in str(caught.value)
 
 
+def test_too_little_for_the_libraries_is_said(tmp_path: Path) -> None:
+    """OpenBLAS would wait for ever, and oneMKL end the process with what was found."""
+    done = within(650 << 20, command("stiffness", bases.CUP, "--out", tmp_path / "out"), tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "0.68 GB of address space (ulimit -v)" in done.stderr.splitlines()[-1]
+    assert not (tmp_path / "out" / "result.json").exists()
+
+
 KEYWAY, SOLVED_FIRST = pytest.mark.cad, pytest.mark.long
 """With edges of 0.05 mm the holed cup's own mesh is allowed, and solved for half a minute before the shaft's
 is refused; a cup without holes needs no mesh, and its shaft is refused at the same edge."""

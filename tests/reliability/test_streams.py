@@ -264,3 +264,26 @@ def test_ctrl_c_is_one_line_at_most(after_s: float, tmp_path: Path) -> None:
     assert child.returncode in (0, 130, -signal.SIGINT)
     assert said.count(b"\n") <= 1
     assert not list(tmp_path.rglob("*.part"))
+
+
+LIBRARY_SPEAKS = """
+import os, sys
+from flexspline.results import cli, entry
+
+def app():
+    os.write(1, b"a library speaks\\n")  # as C does, past sys.stdout
+    print("answer")
+
+cli.app = app
+entry.main()
+print("after")
+"""
+
+
+def test_what_a_library_prints_is_no_part_of_the_answer(tmp_path: Path) -> None:
+    words = [sys.executable, "-c", LIBRARY_SPEAKS]
+    done = subprocess.run(
+        words, capture_output=True, text=True, check=True, env=environment(tmp_path / "cache")
+    )
+    assert done.stdout == "answer\nafter\n"
+    assert "a library speaks" in done.stderr

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from flexspline.geometry.full_width import narrow
-from flexspline.pipeline.diagnosis.measurement.time_stamps import without_form
+from flexspline.pipeline.diagnosis.measurement.time_form import without_form
 from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES, UNITS, unit_named
 from flexspline.pipeline.diagnosis.measurement.vocabulary import (
     ANOTHER,

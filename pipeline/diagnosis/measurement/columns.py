@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from flexspline.geometry.ranges import COUNTS_PER_TURN
 from flexspline.pipeline.diagnosis.measurement.column_names import ColumnName, column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.grid import CellGrid
 from flexspline.pipeline.diagnosis.measurement.head import with_unit
+from flexspline.pipeline.diagnosis.measurement.time_form import ALL, is_parted
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_day, is_stamp
 from flexspline.pipeline.diagnosis.measurement.units import (
     ARCSEC_PER_TURN,
@@ -19,8 +21,6 @@ from flexspline.pipeline.diagnosis.measurement.units import (
 
 STAMP = "date and time"
 """Read in the place of a unit."""
-TIME_OF_DAY = "hh:mm:ss"
-"""Accepted in the place of a unit of time."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColum
     if counts_per_turn is not None and counts_per_turn not in COUNTS_PER_TURN:
         reason = f"--counts-per-turn = {counts_per_turn:g}: must be {COUNTS_PER_TURN}"
         raise MeasurementError(grid.path, None, reason)
+    _refuse_parted_time(grid)
     chosen = _chosen(grid)
     counted = [grid.head[at] for at, name in chosen if name.unit == COUNTS]
     if counts_per_turn is not None and len(counted) != 1:
@@ -59,6 +60,16 @@ def columns_of(grid: CellGrid, counts_per_turn: float | None) -> tuple[ReadColum
         reason = f"--counts-per-turn is of one column in counts; here {many}"
         raise MeasurementError(grid.path, grid.head_line, reason)
     return tuple(_read(grid, at, name, counts_per_turn) for at, name in chosen)
+
+
+def _refuse_parted_time(grid: CellGrid) -> None:
+    for one, following in pairwise(grid.head):
+        if is_parted(one, following):
+            reason = (
+                f'"{one}" and "{following}" are the parts of one time: write it into one column, as'
+                " 00:00:01.250; where its comma parts the columns, separate them by semicolons"
+            )
+            raise MeasurementError(grid.path, grid.head_line, reason)
 
 
 def _chosen(grid: CellGrid) -> list[tuple[int, ColumnName]]:
@@ -169,7 +180,7 @@ def _line_of_unit(grid: CellGrid, at: int, name: ColumnName) -> int:
 
 def _no_unit(head: str, name: ColumnName) -> str:
     ways = [f"{name.quantity}_{u}" for u in QUANTITIES[name.quantity].factors]
-    accepted = ", ".join(ways + [TIME_OF_DAY] * (name.quantity == "time"))
+    accepted = ", ".join(ways + [ALL] * (name.quantity == "time"))
     if (name.strange or "").lower() == "grad":
         both = f"{name.quantity}_deg or {name.quantity}_gon"
         return f"column {head}: grad may be degrees or gon; write {both}"

@@ -4,34 +4,31 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from datetime import datetime, timedelta
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 
-CLOCK = r"\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d{1,9}|:\d{3})?)?(?:\s?(?:Z|[+-]\d{2}:?\d{2}))?"
-DAY_ISO, DAY_DOTS = r"\d{4}-\d{2}-\d{2}", r"\d{1,2}\.\d{1,2}\.\d{4}"
 LAST_HOUR = 23
-STAMP = re.compile(
-    rf"(?:(?P<iso>{DAY_ISO})|(?P<dots>{DAY_DOTS}))?[T ,]*(?P<clock>{CLOCK})?", re.ASCII
+_PART = r"(?:(?:[.,]|:(?=\d{3}(?!\d)))(?P<part>\d{1,9}))?"
+"""Of a second; after a colon they are milliseconds."""
+_CLOCK = rf"(?P<hour>\d{{1,4}}):(?P<minute>\d{{2}})(?::(?P<second>\d{{2}}){_PART})?"
+_ZONE = r"(?:\s?(?P<zone>Z|[+-]\d{2}:?\d{2}))?"
+_DAY_ISO, _DAY_DOTS = r"\d{4}-\d{2}-\d{2}", r"\d{1,2}\.\d{1,2}\.\d{4}"
+DAY = re.compile(f"{_DAY_ISO}|{_DAY_DOTS}", re.ASCII)
+DATED = re.compile(
+    rf"(?:(?P<iso>{_DAY_ISO})|(?P<dots>{_DAY_DOTS}))(?:[T ,]+{_CLOCK}{_ZONE})?", re.ASCII
 )
-MILLISECONDS = re.compile(r":(?=\d{3}(?!\d))", re.ASCII)
-"""The colon before them, in "hh:mm:ss:ms"."""
-SHORT = re.compile(r"(\d{1,4}):([0-5]\d(?:[.,]\d{1,9})?)", re.ASCII)
+TIME = re.compile(_CLOCK + _ZONE, re.ASCII)
+SHORT = re.compile(rf"(?P<minute>\d{{1,4}}):(?P<second>[0-5]\d){_PART}", re.ASCII)
 """Two numbers: hours and minutes, or minutes and seconds."""
-_SECONDS = r"(?:ss?|se[ck])(?:[.,:](?:ms(?:ec)?|f+|s+|z+|0+))?"
-"""Of a form, with what programs write for the parts of a second."""
-FORMS = {
-    "mm:ss": re.compile(rf"(?<!:)\b(?:mm?|min):{_SECONDS}\b", re.IGNORECASE),
-    "hh:mm": re.compile(rf"\b(?:hh?|std):(?:mm?|min)(?::{_SECONDS})?\b", re.IGNORECASE),
-}
-"""How a head or a unit says which."""
+PART = re.compile(rf":\d{{2}}(?:[.,]|:(?=\d{{3}}))(\d{{1,9}}){_ZONE}$", re.ASCII)
+"""The parts of a second, in a text of any kind."""
 SLASHES = re.compile(r"\d{1,4}/\d{1,2}/\d{1,4}\b.*", re.ASCII)
 """Day first in Europe, month first in America: two readings."""
 
 
 def is_stamp(text: str) -> bool:
     """Whether a text is a date, a time of day, or both; plain numbers are none."""
-    return bool(text) and (
-        STAMP.fullmatch(text) is not None or SHORT.fullmatch(text) is not None or is_slashed(text)
-    )
+    return is_dated(text) or is_clock(text) or is_short(text) or is_slashed(text)
 
 
 def is_slashed(text: str) -> bool:
@@ -41,31 +38,17 @@ def is_slashed(text: str) -> bool:
 
 def is_day(text: str) -> bool:
     """Whether it is a date without a time of day."""
-    return re.fullmatch(f"{DAY_ISO}|{DAY_DOTS}", text) is not None
+    return DAY.fullmatch(text) is not None
+
+
+def is_dated(text: str) -> bool:
+    """Whether it is a date, with a time of day or without."""
+    return DATED.fullmatch(text) is not None
 
 
 def is_clock(text: str) -> bool:
     """Whether it is a time of day without a date."""
-    return re.fullmatch(CLOCK, text) is not None
-
-
-def form_said(head: str) -> str | None:
-    """ "mm:ss" or "hh:mm" (also of "hh:mm:ss", "hh:mm:ss,ms") where the head of a column says so."""
-    return next((form for form, said in FORMS.items() if said.search(head)), None)
-
-
-def without_form(head: str) -> str:
-    """The head without what `form_said` reads."""
-    for said in FORMS.values():
-        head = said.sub("", head)
-    return head
-
-
-def form_shown(texts: Sequence[str]) -> str | None:
-    """ "mm:ss" where only that explains some of the texts; None where none does."""
-    short = [found for t in texts if (found := SHORT.fullmatch(t))]
-    seconds = any(not found[2].isdigit() or int(found[1]) > LAST_HOUR for found in short)
-    return "mm:ss" if seconds else None
+    return TIME.fullmatch(text) is not None
 
 
 def is_short(text: str) -> bool:
@@ -73,53 +56,88 @@ def is_short(text: str) -> bool:
     return SHORT.fullmatch(text) is not None
 
 
-def counted_seconds(texts: Sequence[str]) -> tuple[list[float], int | None]:
-    """As `seconds_of`, for minutes and seconds."""
-    found: list[float] = []
-    for i, text in enumerate(texts):
-        match = SHORT.fullmatch(text)
-        if match is None:
-            return found, i
-        found.append(60 * int(match[1]) + float(match[2].replace(",", ".")))
-    return [value - found[0] for value in found], None
+def short_are_minutes(texts: Sequence[str]) -> bool:
+    """Whether only minutes and seconds explain some of the texts of two numbers."""
+    short = [found for t in texts if (found := SHORT.fullmatch(t))]
+    return any(found["part"] or int(found["minute"]) > LAST_HOUR for found in short)
 
 
-def seconds_of(texts: Sequence[str]) -> tuple[list[float], int | None]:
+def seconds_of(texts: Sequence[str], in_minutes: bool) -> tuple[list[float], int | None]:
     """Seconds from the first text, and the first text that is no stamp of its kind (None: all are).
 
-    ISO 8601, `dd.mm.yyyy` and times of day; a time zone counts where all have one.
+    ISO 8601, `dd.mm.yyyy`, times of day, hours that go on beyond 23; a time zone counts where all have one.
+    `in_minutes`: texts of two numbers are minutes and seconds.
     """
+    dated, minutes = is_dated(texts[0]), in_minutes and is_short(texts[0])
+    read = _dated if dated else _minutes if minutes else _time_of_day
     found: list[float] = []
-    first: datetime | None = None
+    first: Moment | None = None
     for i, text in enumerate(texts):
-        moment = _moment(text)
-        if moment is None or (
-            first is not None and (moment.tzinfo is None) != (first.tzinfo is None)
-        ):
+        moment = read(text)
+        if moment is None or (first is not None and moment.kind != first.kind):
             return found, i
         first = first or moment
-        found.append((moment - first) / timedelta(seconds=1))
+        found.append((moment.since - first.since) / timedelta(seconds=1))
     return found, None
 
 
-def _moment(text: str) -> datetime | None:
+@dataclass(frozen=True)
+class Moment:
+    """A text as a time since a beginning that all texts of its kind share."""
+
+    since: timedelta
+    kind: str
+
+
+def _dated(text: str) -> Moment | None:
     try:
-        return datetime.fromisoformat(text)  # fast, and most stamps are so
+        return _since_year_1(datetime.fromisoformat(text))  # fast, and most stamps are so
     except ValueError:
         pass
-    match = STAMP.fullmatch(text)
-    if match is None or not text:
+    found = DATED.fullmatch(text)
+    if found is None:
         return None
-    dots = (match["dots"] or "1.1.2000").split(".")  # any day serves for times of day
-    day = match["iso"] or "-".join(_padded(p) for p in reversed(dots))
-    clock = (match["clock"] or "00:00").replace(",", ".").replace(" ", "")
-    clock = MILLISECONDS.sub(".", clock)
-    hour, colon, rest = clock.partition(":")
+    day, month, year = (found["dots"] or ".".join(reversed(found["iso"].split("-")))).split(".")
+    zone = (found["zone"] or "").strip()
     try:
-        return datetime.fromisoformat(f"{day}T{_padded(hour)}{colon}{rest}")
+        midnight = datetime.fromisoformat(f"{year}-{month:0>2}-{day:0>2}T00:00{zone}")
     except ValueError:
         return None
+    after = _clock(found)
+    if after is None or after >= timedelta(days=1):
+        return None
+    return _since_year_1(midnight + after)
 
 
-def _padded(part: str) -> str:
-    return part.rjust(2, "0")
+def _since_year_1(moment: datetime) -> Moment:
+    year_1 = datetime.min.replace(tzinfo=moment.tzinfo and UTC)
+    return Moment(moment - year_1, "date" if moment.tzinfo is None else "date with a zone")
+
+
+def _time_of_day(text: str) -> Moment | None:
+    found = TIME.fullmatch(text)
+    after = found and _clock(found)
+    if found is None or after is None:
+        return None
+    numbers = "hours and minutes" if found["second"] is None else "hours, minutes and seconds"
+    return Moment(after, f"{numbers} {found['zone'] or ''}")
+
+
+def _minutes(text: str) -> Moment | None:
+    found = SHORT.fullmatch(text)
+    return found and Moment(_after(int(found["minute"]), found), "minutes and seconds")
+
+
+def _clock(found: re.Match[str]) -> timedelta | None:
+    """None where minutes or seconds are beyond 59."""
+    minutes, seconds = int(found["minute"] or 0), int(found["second"] or 0)
+    return (
+        _after(60 * int(found["hour"] or 0) + minutes, found)
+        if max(minutes, seconds) < 60
+        else None
+    )
+
+
+def _after(minutes: int, found: re.Match[str]) -> timedelta:
+    part = float(f"0.{found['part'] or 0}")
+    return timedelta(minutes=minutes, seconds=int(found["second"] or 0) + part)

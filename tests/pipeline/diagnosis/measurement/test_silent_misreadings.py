@@ -114,6 +114,66 @@ def test_milliseconds_after_minutes_and_seconds(tmp_path: Path) -> None:
     assert found.numbers["time_s"].tolist() == [0.0, 1.75]
 
 
+@pytest.mark.parametrize(
+    ("head", "times", "seconds"),
+    [
+        ("Zeit [mm:ss:ms]", ("12:30:500", "12:31:250"), 0.75),
+        ("time", ("12:30:500", "12:31:250"), 0.75),  # three digits are no hundredths
+        ("time_hh:mm:ss", ("00:59:00", "01:01:00"), 120.0),  # as the list of what is accepted names it
+        ("Time [hh:mm:ss.mmm]", ("00:00:01.250", "00:00:02.300"), 1.05),
+        ("Time [hh:mm:ss,µs]", ("00:00:01,250000", "00:00:02,300000"), 1.05),
+        ("Time (%H:%M:%S.%f)", ("00:00:01.250000", "00:00:02.300000"), 1.05),
+        ("Time [yyyy-mm-dd hh:mm:ss]", ("2026-01-02 00:00:01", "2026-01-02 00:01:00"), 59.0),
+        ("Zeit [TT.MM.JJJJ hh:mm:ss]", ("02.01.2026 00:00:01", "02.01.2026 00:01:00"), 59.0),
+        ("time", ("23:59:59", "24:00:01"), 2.0),  # time since the start
+        ("time", ("33:58:07", "100:00:00"), 66 * 3600 + 113.0),
+        ("time", ("12:00:00Z", "12:00:05Z"), 5.0),
+        ("time", ("2026-01-01 23:59:59", "2026-01-02"), 1.0),  # a sheet leaves out midnight's time
+    ],
+)  # fmt: skip
+def test_other_forms_of_a_time(
+    head: str, times: tuple[str, str], seconds: float, tmp_path: Path
+) -> None:
+    found = read_table(stamped(tmp_path, head, *times)).numbers["time_s"]
+    assert found.tolist() == pytest.approx([0.0, seconds])
+
+
+@pytest.mark.parametrize("form", ["yyyy-mm-dd hh:mm:ss", "hh:mm:ss.xxx", "%H:%M:%S.%f"])
+def test_a_form_of_a_time_in_the_row_of_units(form: str, tmp_path: Path) -> None:
+    rows = "".join(f"2026-01-02 00:00:0{i}.500000;0.{i};{i}\n" for i in range(3))
+    text = f"Zeit;Moment;Winkel\n{form};Nm;arcsec\n{rows}"
+    assert read_table(written(tmp_path, text)).numbers["time_s"].tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("head", "times", "reason"),
+    [
+        ("Time [hh:mm:ss]", ("05:30", "05:31"), "has two numbers, not hh:mm:ss"),
+        ("Time [hh:mm:ss,ms]", ("05:30,100", "05:30,200"), "has two numbers, not hh:mm:ss"),
+        ("Time [mm:ss:ff]", ("00:05:30", "00:05:31"), "has three numbers, not mm:ss"),
+        ("Time [hh:mm:ss,ms]", ("00:00:01,998", "00:00:02,3"), "may be 003 or 300; write all 3 digits"),
+        ("time", ("23:59:59", "2026-01-02 00:00:00"), "is no date and time as"),
+        ("time", ("12:30:00", "12:31"), "is no date and time as"),
+        ("time", ("12:30:00Z", "12:31:00+01:00"), "is no date and time as"),
+        ("time", ("12:30:00", "12:61:00"), "minutes and seconds to 59"),
+        ("time", ("12:61:00", "12:62:00"), "minutes and seconds to 59"),
+        ("time", ("2026-01-02 24:00:00", "2026-01-03 00:00:01"), "00:00 of the next day"),
+    ],
+)  # fmt: skip
+def test_times_that_are_not_as_the_head_or_the_first_says(
+    head: str, times: tuple[str, str], reason: str, tmp_path: Path
+) -> None:
+    with pytest.raises(MeasurementError, match=reason):
+        read_table(stamped(tmp_path, head, *times))
+
+
+@pytest.mark.parametrize("rows", ["00:00:01,250,1.5,3", '"00:00:01,250",1.5,3,'])
+def test_a_form_cut_at_its_comma_is_refused(rows: str, tmp_path: Path) -> None:
+    text = f"Zeit [hh:mm:ss,ms],torque_Nm,angle_arcsec\n{rows}\n{rows}\n"
+    with pytest.raises(MeasurementError, match="are the parts of one time"):
+        read_table(written(tmp_path, text))
+
+
 def test_times_past_midnight_are_refused_with_what_to_do(tmp_path: Path) -> None:
     path = stamped(tmp_path, "time", "23:59:58", "23:59:59", "00:00:00")
     with pytest.raises(MeasurementError, match="past midnight"):
