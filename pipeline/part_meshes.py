@@ -33,10 +33,10 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 COARSER_EDGES, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
-LAYERED_FIRST = 20_000
-"""Elements of a first mesh in layers, where a coarser one has fewer; the next ones follow the error. A shaft
-of two segments whose slot goes beyond the axis had 85 730, a minute and a half: 21 853 with edges four times
-as long."""
+FIRST_ELEMENTS = 12_000
+"""Of a first mesh: 55 000 unknowns. One of 57 000 elements took more than two minutes on a disc with small
+holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds; a shaft of two segments whose slot goes
+beyond the axis had 85 730, a minute and a half, and 21 853 with edges four times as long."""
 ANOTHER = 0.8
 """Edges of the second try where a sweep fails a check: elements beside a keyway may be bent too far in one
 mesh and not in the next, and fTetWild takes minutes where a sweep takes a second."""
@@ -113,7 +113,7 @@ class PartMeshes:
             return None
 
     def _coarsened_layers(self, spec: MeshSpec) -> LayeredMesh:
-        """To a specification, or to a coarser one where it has more than LAYERED_FIRST elements by that.
+        """To a specification, or to a coarser one where it has more than FIRST_ELEMENTS elements by that.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class PartMeshes:
         before = spec
         for _ in range(COARSENINGS):
             try:
-                return layered_mesh(part, degrees, spec, LAYERED_FIRST)
+                return layered_mesh(part, degrees, spec, FIRST_ELEMENTS)
             except TooManyElementsError:
                 spec, before = spec.scaled(LAYERED_COARSER), spec
             except (MeshQualityError, MeshingError):

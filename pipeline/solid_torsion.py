@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, log2
 
 import numpy as np
 
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.solid.errors import MeshQualityError, SolidError
+from flexspline.fea.scaled_estimate import ERROR_RATIOS
+from flexspline.fea.solid.errors import MeshQualityError, SolidError, TooManyElementsError
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
@@ -16,23 +17,21 @@ from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline.part_meshes import KINDS, Kind, MeshedPart, PartMeshes
+from flexspline.pipeline.part_meshes import FIRST_ELEMENTS, KINDS, Kind, MeshedPart, PartMeshes
 from flexspline.pipeline.parts import PartModel
 
 SOLID_SECONDS = 60.0
 """Of all meshes of a part after the first: with that one and the rest of a command, a minute and a half."""
-FIRST_ELEMENTS = 20_000
-"""Of a first mesh: 85 000 unknowns, 3 to 5 s in a compact part. On 12 random keyed shafts mostly half the
-processor time of 30 000, and nine met the tolerance by it, as many as before. One of 57 000 took more than
-two minutes on a disc with small holes (10.7 mm across, holes of 0.74 mm), one of 18 600 six seconds."""
 LAYERED_TIMES, LAYERED_LEAST = 2.0, 1.5
 """Elements of the next mesh of a shaft in layers over those of the last, and at least."""
-LAYERED_ELEMENTS, LAYERED_LAST = 36_000, 18_000
-"""Of such a mesh at most: its solution takes 3 to 5 s of the processor, the whole command 1.4 GB; and the
-number beyond which none follows. A first mesh is followed by a second whatever its size: one alone cannot
-tell its own error. A third one of 37 000 to 53 000 elements took 20 to 38 s of the 34 to 54 of three random
-shafts, none met its tolerance by it, and of two K was known no better (± 1.5 and 1.9 %, 1.4 and 1.5 %; 0.7
-and 0.4 %)."""
+LAYERED_ELEMENTS, LAYERED_LAST = 36_000, 12_000
+"""Of such a mesh at most: its solution takes 3 to 5 s of the processor; and the number beyond which a third
+mesh is made only where it is expected to meet the tolerance. A first mesh is followed by a second whatever
+its size: one alone cannot tell its own error. Of 42 random shafts 29 met their tolerance so, in 186 s of the
+processor; in 275 s with FIRST_ELEMENTS of 20 000 and a third mesh of any, also 29. One known to ± 4.9 % by
+15 000 elements, where 0.1 % was asked, was known to ± 3.6 % by 48 000, 23 s later."""
+ELEMENTS_EXPONENT = -1 / log2(ERROR_RATIOS[0])
+"""Elements that bounds 1/x as wide take, over those there are: x to this power."""
 UNLAYERED_LAST = 40_000
 """That number for any other mesh. A thick hat with sixteen holes, 0.1 % asked: ± 0.60, 0.13 and 0.07 % on
 16 704, 36 843 and 66 024 elements, for 3.0, 7.3 and 14.6 s of the processor."""
@@ -115,9 +114,12 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
             raise OtherKindError(made[-1].kind)
         return made[-1].mesh
 
-    def by_error(mesh: TetMesh, error: np.ndarray) -> TetMesh | None:
+    def by_error(mesh: TetMesh, error: np.ndarray, over: float) -> TetMesh | None:
         if not isinstance(mesh, LayeredMesh):
             return None
+        wanted = mesh.elements * over**ELEMENTS_EXPONENT
+        if mesh is not made[0].mesh and mesh.elements > LAYERED_LAST and wanted > LAYERED_ELEMENTS:
+            raise TooManyElementsError(wanted, LAYERED_ELEMENTS)
         most = max(LAYERED_LEAST * mesh.elements, LAYERED_ELEMENTS)
         with model.context.progress.stage(f"mesh of the {model.name}"):
             try:
@@ -128,8 +130,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
                 return finer_layers(model.part, mesh, error, LAYERED_LEAST * mesh.elements)
 
     def most(mesh: TetMesh) -> float:
-        last = LAYERED_LAST if isinstance(mesh, LayeredMesh) else UNLAYERED_LAST
-        return max(last, mesh.elements)
+        return inf if isinstance(mesh, LayeredMesh) else max(UNLAYERED_LAST, mesh.elements)
 
     found = solid_stiffness(
         mesher,

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import RLock
 
-LARGE = 20_000
-"""Elements: a model of 16 704 takes 0.45 GB beside the program's own 0.25, one of 36 843 1.3 GB with factors
-in double. Two of 30 688 and 35 016 at once made 2.45 GB of a command whose largest alone takes 1.6."""
+LARGE = 30_000
+"""Elements: 135 000 unknowns, 0.3 GB of matrix and 0.3 GB of iteration, or 0.5 GB of factors in single
+precision. Two of 30 688 and 35 016 at once made 2.45 GB of a command with factors in double."""
 _TURN = RLock()
 
 

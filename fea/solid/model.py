@@ -11,7 +11,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.solid.assembly import NodeFrames, stiffness_matrix
 from flexspline.fea.solid.flatness import mostly_flat
 from flexspline.fea.solid.memory import SolverKind, check_before_assembly
-from flexspline.fea.solid.solver import ITERATION_ENERGY, Solution, solve
+from flexspline.fea.solid.solver import Solution, solve
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.twolevel import corner_interpolation
 from flexspline.fea.types import Elastic, TetMesh
@@ -93,7 +93,7 @@ class Supports:
         for component in (RADIAL, TANGENTIAL, AXIAL):
             self.set(nodes, component)
 
-    def solve(self, load: np.ndarray, iteration_energy: float = ITERATION_ENERGY) -> Solution:
+    def solve(self, load: np.ndarray) -> Solution:
         fixed = np.flatnonzero(self.mask.ravel())
         model = self._model
         return solve(
@@ -103,6 +103,5 @@ class Supports:
             self.value.ravel()[fixed],
             lambda: corner_interpolation(model.mesh, model.frames),
             model.solve_by,
-            iteration_energy,
             model.is_flat,
         )

@@ -3,6 +3,7 @@ becomes of a sweep that fails a check."""
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -38,6 +39,7 @@ def first_elements(design: Design, folder: Path) -> int:
 
 
 def test_the_first_mesh_is_made_coarser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", inf)
     usual = first_elements(DESIGN, tmp_path / "usual")
     monkeypatch.setattr(solid_torsion, "FIRST_ELEMENTS", usual - 1)
     assert first_elements(DESIGN, tmp_path / "coarser") < usual
@@ -123,7 +125,7 @@ def test_a_first_mesh_in_layers_is_made_coarser_too(
     meshes = PartMeshes(context.part("shaft"))
     usual = meshes.layered(meshes.model.first_spec)
     assert usual is not None
-    monkeypatch.setattr(part_meshes, "LAYERED_FIRST", usual.mesh.elements - 1)
+    monkeypatch.setattr(part_meshes, "FIRST_ELEMENTS", usual.mesh.elements - 1)
     coarser = meshes.layered(meshes.model.first_spec)
     assert coarser is not None
     if stated:  # the user says how long edges are
