@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import inf
 
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
@@ -33,11 +34,12 @@ def may_answer(model: PartModel) -> bool:
     return has_enclosure(model) and model.context.design.solver.model == "auto"
 
 
-def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
+def enclosure_of(model: PartModel, solve: Solve, expected: float = inf) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
-    Where half of it is more than the tolerance, `shortfall` says why; where it is more than FAR_HALF_WIDTHS
-    tolerances, the bodies are solved no finer than to FIRST_BOUNDS_PCT.
+    `expected` is the half-width of another load case: where it is near the tolerance, the bodies are solved
+    at once as finely as that takes. Where half of the distance is more than the tolerance, `shortfall` says
+    why; where it is more than FAR_HALF_WIDTHS tolerances, they are solved no finer than to FIRST_BOUNDS_PCT.
 
     Raises
     ------
@@ -45,8 +47,10 @@ def enclosure_of(model: PartModel, solve: Solve) -> Stiffness:
     ComputationError : of `solve`.
     """
     finest_pct = BODY_SHARE * model.context.design.solver.tolerance_pct
-    found = _enclosed_to(model, solve, max(FIRST_BOUNDS_PCT, finest_pct))
-    if finest_pct < FIRST_BOUNDS_PCT and found.half_width <= FAR_HALF_WIDTHS * model.tolerance:
+    near = FAR_HALF_WIDTHS * model.tolerance
+    first_pct = finest_pct if expected <= near else max(FIRST_BOUNDS_PCT, finest_pct)
+    found = _enclosed_to(model, solve, first_pct)
+    if finest_pct < first_pct and found.half_width <= near:
         found = _enclosed_to(model, solve, finest_pct)
     if found.half_width <= model.tolerance:
         return replace(found, shortfall="")
@@ -62,7 +66,7 @@ def _enclosed_to(model: PartModel, solve: Solve, tolerance_pct: float) -> Stiffn
     return enclosed(model.part, lambda body: solve(replace(model, context=context, part=body)))
 
 
-def enclosure_if_any(model: PartModel, solve: Solve) -> Stiffness | None:
+def enclosure_if_any(model: PartModel, solve: Solve, expected: float = inf) -> Stiffness | None:
     """`enclosure_of` where there is one and it can be solved: the solid model answers without it too.
 
     Raises
@@ -72,7 +76,7 @@ def enclosure_if_any(model: PartModel, solve: Solve) -> Stiffness | None:
     if not has_enclosure(model):
         return None
     try:
-        return enclosure_of(model, solve)
+        return enclosure_of(model, solve, expected)
     except NestingError:
         raise
     except (ComputationError, MemoryError) as fault:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from math import inf
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
@@ -23,6 +24,7 @@ from flexspline.pipeline.enclosed_part import (
     may_answer,
 )
 from flexspline.pipeline.enclosure import answered_within
+from flexspline.pipeline.part_stiffness import revolved_stiffness
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, lobes
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
@@ -80,9 +82,11 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
 
 def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     """The enclosure; where it is too wide the solid model's K within it, if there is such a model."""
+    torsion = enclosure_if_any(flexspline, revolved_stiffness)  # a fraction of a second, and kept
+    expected = torsion.half_width if torsion else inf
     if asked.solid is None:
-        return enclosure_of(flexspline, asked.revolved)
-    enclosure = enclosure_if_any(flexspline, asked.revolved)
+        return enclosure_of(flexspline, asked.revolved, expected)
+    enclosure = enclosure_if_any(flexspline, asked.revolved, expected)
     if enclosure is None:
         return asked.solid(flexspline)
     tolerance = flexspline.tolerance

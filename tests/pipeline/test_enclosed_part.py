@@ -165,3 +165,25 @@ def test_bodies_that_are_far_apart_are_not_solved_finely(
     assert found.half_width < fine.half_width + FIRST_BOUNDS_PCT / 100
     assert found.lower_Nm_per_rad <= fine.lower_Nm_per_rad * (1 + 1e-5)
     assert (found.shortfall == TOO_FAR) is (times == 1)
+
+
+@pytest.mark.parametrize(
+    ("expected", "first"), [(0.003, BODY_SHARE * 0.1), (0.0031, FIRST_BOUNDS_PCT)]
+)
+def test_where_another_case_tells_of_near_bodies_they_are_solved_finely_at_once(
+    expected: float, first: float, tmp_path: Path
+) -> None:
+    """Near is three times 0.1 %."""
+    asked: list[float] = []
+
+    def solve(body: PartModel) -> Stiffness:
+        asked.append(body.context.design.solver.tolerance_pct)
+        return part_stiffness.revolved_stiffness(body)
+
+    part = model(CUP.changed({"solver.tolerance_pct": 0.1}), tmp_path)
+    found = enclosure_of(part, solve, expected)
+    assert asked[0] == pytest.approx(first)
+    assert asked[-1] == pytest.approx(BODY_SHARE * 0.1)
+    twice = enclosure_of(part, solve)
+    same = pytest.approx(twice.bounds_Nm_per_rad, rel=1e-12)
+    assert found.bounds_Nm_per_rad == same
