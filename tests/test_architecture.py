@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from source_tree import parsed
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("geometry", "fea", "pipeline", "results")
@@ -29,7 +30,7 @@ def room_of(module: str) -> str:
 
 def imports(path: Path) -> Iterator[tuple[str, bool]]:
     """The room, or else the top-level package, of every import in a file; whether it is for types only."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = parsed(path.read_text(encoding="utf-8"))
     guarded = {
         id(inner)
         for node in ast.walk(tree)
@@ -64,7 +65,7 @@ def test_no_two_classes_have_one_name() -> None:
     """A reader who searches for a name finds one meaning."""
     places: dict[str, list[str]] = {}
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef):
                 places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     twice = {name: files for name, files in places.items() if len(files) > 1}
@@ -73,13 +74,13 @@ def test_no_two_classes_have_one_name() -> None:
 
 def programs(text: str) -> Iterator[ast.Module]:
     """A test file, and the programs in its strings that it runs in processes of their own."""
-    tree = ast.parse(text)
+    tree = parsed(text)
     yield tree
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             with suppress(SyntaxError, ValueError):
                 if "flexspline" in node.value:
-                    yield ast.parse(node.value)
+                    yield parsed(node.value)
 
 
 def is_private(name: str) -> bool:
@@ -89,7 +90,7 @@ def is_private(name: str) -> bool:
 def private_names(path: Path) -> set[str]:
     """Private functions, classes, variables, methods and attributes that a file of the program defines."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             names.add(node.name)
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from source_tree import parsed
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -26,7 +27,7 @@ NOT_SYMBOLS = frozenset({"mount", "mesh", "seat", "init", "write_NAME"})
 
 def defined(file: Path) -> set[str]:
     """All classes, functions and variables that a file defines, at any depth."""
-    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+    nodes = list(ast.walk(parsed(file.read_text(encoding="utf-8"))))
     names = {n.name for n in nodes if isinstance(n, ast.ClassDef | ast.FunctionDef)}
     return names | {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
 

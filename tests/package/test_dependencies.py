@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from source_tree import parsed
 
 ROOT = Path(__file__).parents[2]
 ROOMS = ("geometry", "fea", "pipeline", "results")
@@ -27,7 +28,7 @@ NOT_IMPORTED = {"vtk": "bounds the version that pyvista draws with"}
 def imported(source: str) -> set[str]:
     """Top-level names that a file imports, by statement, `import_module` or `importlib.resources`."""
     names = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parsed(source)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
