@@ -109,6 +109,7 @@ def test_a_thick_wall_is_not_split_at_the_cut_below_its_ring() -> None:
     )
 
 
+@pytest.mark.long
 def test_the_mounts_rim_is_in_the_mesh() -> None:
     """The mesher loses a circle in a plane here and there: one facet held beyond it: K 3 % too large on it.
 
@@ -174,6 +175,7 @@ def test_a_bent_symmetry_plane_is_refused(shaft) -> None:
         check_against_cad(replace(mesh, nodes=nodes), surface)
 
 
+@pytest.mark.long
 def test_a_wide_keyway_keeps_its_planes() -> None:
     """Unrolled, the two triangles of the slot's floor leave its plane: 0.6 % of this short shaft's volume."""
     flange = {"length_mm": 4.0, "outer_diameter_mm": 20.0, "inner_diameter_mm": 6.0}

@@ -356,6 +356,7 @@ def test_a_keyed_shaft_lies_between_two_bodies_of_revolution(name: str) -> None:
     assert cut.lower_Nm_per_rad < K < 1.01 * revolved({}).upper_Nm_per_rad
 
 
+@pytest.mark.long
 def test_a_keyed_shaft_is_as_stiff_as_on_the_meshers_mesh() -> None:
     design = design_of("keyed-shaft.toml", "shaft", {})
     part = design.part("shaft")

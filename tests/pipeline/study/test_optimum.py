@@ -64,6 +64,7 @@ def torsion(task: Task) -> Outcome:
     return evaluate(replace(task, solves=("torsion",)))
 
 
+@pytest.mark.long
 def test_no_worse_than_a_dense_grid_of_the_cup(tmp_path: Path) -> None:
     grid = found(TWO + 'method = "grid"\nevaluations = 49\n', tmp_path / "grid", torsion)
     best = found(TWO + 'method = "optimize"\nevaluations = 50\n', tmp_path / "best", torsion)
