@@ -64,6 +64,13 @@ def show(text: str, json: bool = False) -> None:
         raise OSError(error.errno, error.strerror, STDOUT) from None
 
 
+def private_stdout(encoding: str, errors: str | None = None, buffering: int = -1) -> TextIO:
+    """Standard output for one writer alone; what others write there goes to standard error from now on."""
+    alone = os.fdopen(os.dup(1), "w", buffering, encoding, errors)
+    os.dup2(2, 1)
+    return alone
+
+
 @contextmanager
 def _libraries_write_to_stderr() -> Iterator[None]:
     """Standard output is for the answer: what a library writes there (oneMKL: "Not enough memory") goes to
@@ -73,15 +80,8 @@ def _libraries_write_to_stderr() -> Iterator[None]:
         yield
         return
     ours.flush()
-    kept = os.dup(1)
-    os.dup2(2, 1)
-    sys.stdout = os.fdopen(
-        kept,
-        "w",
-        encoding=ours.encoding,
-        errors=ours.errors,
-        buffering=1 if ours.line_buffering else -1,
-    )
+    buffering = 1 if ours.line_buffering else -1
+    sys.stdout = private_stdout(ours.encoding, ours.errors, buffering)
     try:
         yield
     finally:

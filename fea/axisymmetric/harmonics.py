@@ -171,10 +171,7 @@ class HarmonicModel:
         inside, right = condense(matrix, load, x=u, I=np.flatnonzero(free), expand=False)
         try:
             u[free] = self.solver.solve(inside, right)
-        except (
-            RuntimeError,
-            ComputationError,
-        ) as fault:  # SuperLU's and Pardiso's for a singular matrix
+        except (RuntimeError, ComputationError) as fault:  # SuperLU's and Pardiso's: it is singular
             raise HarmonicError(f"harmonic {wave.n}: {fault}; is the body held?") from fault
         twice_energy = float(u @ (matrix @ u))
         lost = abs(float(u[free] @ (inside @ u[free] - right)))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import re
 import signal
 import subprocess
@@ -18,12 +17,13 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from threading import Lock, Timer
-from typing import Any, TextIO
+from typing import Any
 
 from flexspline.fea.child_python import child_command
 from flexspline.geometry.errors import ComputationError, one_line
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.results.renders.opengl import ADVICE
+from flexspline.results.streams import private_stdout
 
 SLOWEST_S = 300.0
 """The largest part of the examples takes 5 s where the processor draws; a driver that hangs, for ever."""
@@ -170,7 +170,7 @@ class DrawingProcess:
 def serve() -> None:
     """The process: draw what each line asks for, until there are no more."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: an end without a traceback
-    answers = _private_stdout()
+    answers = private_stdout("utf-8")  # the answers alone
     for line in sys.stdin:
         asked = json.loads(line)
         print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
@@ -187,13 +187,6 @@ def _types() -> tuple[type, ...]:
     return (
         Assumed, Backlash, ExtendedBacklash, GearCurve, MeshLevel, SolidField, Stiffness, StressPeak, TetMesh,
     )  # fmt: skip
-
-
-def _private_stdout() -> TextIO:
-    """Standard output for the answers alone; what libraries print goes to standard error."""
-    alone = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)
-    return alone
 
 
 def _drawn(function: str, asked: str, made: str) -> str:

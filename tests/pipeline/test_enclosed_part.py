@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,17 +145,23 @@ def test_a_wrong_solid_model_is_found_out(solver: str, tmp_path: Path, monkeypat
         part_stiffness.part_stiffness(model(CUP.changed({"solver.model": solver}), tmp_path))
 
 
-@pytest.mark.parametrize(("design", "times"), [(WIDE, 1), (CUP, 2)])
-def test_bodies_that_are_far_apart_are_not_solved_finely(
-    design: Design, times: int, tmp_path: Path
-) -> None:
-    """At 0.1 %: what the holes take off K stays, however well each body is known."""
+def recorded() -> tuple[list[float], Callable[[PartModel], Stiffness]]:
+    """Tolerances [%] to which bodies are solved in torsion, and what solves them."""
     asked: list[float] = []
 
     def solve(body: PartModel) -> Stiffness:
         asked.append(body.context.design.solver.tolerance_pct)
         return part_stiffness.revolved_stiffness(body)
 
+    return asked, solve
+
+
+@pytest.mark.parametrize(("design", "times"), [(WIDE, 1), (CUP, 2)])
+def test_bodies_that_are_far_apart_are_not_solved_finely(
+    design: Design, times: int, tmp_path: Path
+) -> None:
+    """At 0.1 %: what the holes take off K stays, however well each body is known."""
+    asked, solve = recorded()
     part = model(design.changed({"solver.tolerance_pct": 0.1}), tmp_path)
     found = enclosure_of(part, solve)
     of_two_bodies = [FIRST_BOUNDS_PCT] * 2 + [pytest.approx(BODY_SHARE * 0.1)] * 2
@@ -174,12 +181,7 @@ def test_where_another_case_tells_of_near_bodies_they_are_solved_finely_at_once(
     expected: float, first: float, tmp_path: Path
 ) -> None:
     """Near is three times 0.1 %."""
-    asked: list[float] = []
-
-    def solve(body: PartModel) -> Stiffness:
-        asked.append(body.context.design.solver.tolerance_pct)
-        return part_stiffness.revolved_stiffness(body)
-
+    asked, solve = recorded()
     part = model(CUP.changed({"solver.tolerance_pct": 0.1}), tmp_path)
     found = enclosure_of(part, solve, expected)
     assert asked[0] == pytest.approx(first)

@@ -79,6 +79,8 @@ def _refuse_other_form(
             f" correct the head, or write {form.numbers}"
         )
         raise MeasurementError(grid.path, grid.line[0], reason)
+    if not form.parts_digits:
+        return
     for text, line in zip(texts, grid.line, strict=True):
         part = PART.search(text)
         if part is not None and len(part[1]) < form.parts_digits:

@@ -66,10 +66,9 @@ def seconds_of(texts: Sequence[str], in_minutes: bool) -> tuple[list[float], int
     """Seconds from the first text, and the first text that is no stamp of its kind (None: all are).
 
     ISO 8601, `dd.mm.yyyy`, times of day, hours that go on beyond 23; a time zone counts where all have one.
-    `in_minutes`: texts of two numbers are minutes and seconds.
+    `in_minutes`: they are minutes and seconds.
     """
-    dated, minutes = is_dated(texts[0]), in_minutes and is_short(texts[0])
-    read = _dated if dated else _minutes if minutes else _time_of_day
+    read = _minutes if in_minutes else _dated if is_dated(texts[0]) else _time_of_day
     found: list[float] = []
     first: Moment | None = None
     for i, text in enumerate(texts):
@@ -131,11 +130,9 @@ def _minutes(text: str) -> Moment | None:
 def _clock(found: re.Match[str]) -> timedelta | None:
     """None where minutes or seconds are beyond 59."""
     minutes, seconds = int(found["minute"] or 0), int(found["second"] or 0)
-    return (
-        _after(60 * int(found["hour"] or 0) + minutes, found)
-        if max(minutes, seconds) < 60
-        else None
-    )
+    if max(minutes, seconds) >= 60:
+        return None
+    return _after(60 * int(found["hour"] or 0) + minutes, found)
 
 
 def _after(minutes: int, found: re.Match[str]) -> timedelta:
