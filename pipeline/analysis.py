@@ -37,7 +37,7 @@ from flexspline.pipeline.rim_case import RimCase, figure_of
 from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
-from flexspline.pipeline.stress_limits import PEAK_OF
+from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.wave_generator import sharp_edges
 
 CACHED_TYPES: tuple[type, ...] = (
@@ -87,7 +87,7 @@ def stiffnesses(
     """All that `flexspline stiffness` answers, for the parts that are asked for.
 
     What fails is absent, with its reason in `missing`; the rest is there. `solved` is told each part
-    after its K.
+    after its K, by the thread that found it: there are two.
 
     Without `rim` the lobes and the wave generator are left out: the backlash sum needs them only
     where `solver.load_case` says so.
@@ -101,57 +101,58 @@ def stiffnesses(
     for wanted, part in ((flexspline, rim_part), (shaft, shaft_part)):
         if wanted:
             part.refuse_settings()
-    tried = Attempts()
-
-    def K_of(name: str, part: PartModel) -> Stiffness | None:
-        found = tried.get(name, lambda: part_stiffness(part))
-        solved(part)
-        return found
-
-    def K_of_parts() -> dict[str, Stiffness | None]:
-        return {
-            "K_b": K_of("K_b", rim_part) if flexspline else None,
-            "K_e": K_of("K_e", shaft_part) if shaft else None,
-        }
-
-    if not (flexspline and rim):
-        every = K_of_parts()
-        ring = context.ring if flexspline else None
-        return Stiffnesses(in_order(every), ring=ring, missing=tried.missing)
-
-    rim_found = _RimFigures()
-    with beside(context.progress, rim_found.tasks(rim_part)) as rest:
-        every = K_of_parts()
-        every_tried = [tried, *rest()]
+    found = _Figures()
+    others: list[Callable[[], Attempts]] = []
+    if shaft:
+        others.append(partial(found.solve_part, "K_e", shaft_part, solved))
+    if flexspline and rim:
+        others += found.rim_tasks(rim_part)
+    with beside(context.progress, others) as rest:
+        own = [found.solve_part("K_b", rim_part, solved)] if flexspline else []
+        tried = [*own, *rest()]
     return Stiffnesses(
-        in_order({**every, **rim_found.K}),
-        rim_found.peaks["wave_generator_peak"],
-        rim_found.peaks["half_seat_peak"],
-        context.ring,
-        {name: why for each in every_tried for name, why in each.missing.items()},
+        in_order(found.K),
+        found.peaks.get("wave_generator_peak"),
+        found.peaks.get("half_seat_peak"),
+        context.ring if flexspline else None,
+        {name: why for each in tried for name, why in each.missing.items()},
     )
 
 
-class _RimFigures:
-    """K and peak stresses of the rim under lobes and ellipse, by name; None: not found."""
+class _Figures:
+    """K and peak stresses by name, as they are found by tasks of two threads; None: not found.
+
+    Each task gives what it tried.
+    """
 
     def __init__(self) -> None:
         self.K: dict[str, Stiffness | None] = {}
         self.peaks: dict[str, StressPeak | None] = {}
 
-    def tasks(self, rim: PartModel) -> list[Callable[[], Attempts]]:
-        """What finds them, in any order; each gives what it tried."""
+    def solve_part(
+        self, name: str, part: PartModel, solved: Callable[[PartModel], None]
+    ) -> Attempts:
+        """K of a part; `solved` is told after it."""
+        tried = Attempts()
+        self.K[name] = tried.get(name, partial(part_stiffness, part))
+        solved(part)
+        return tried
+
+    def rim_tasks(self, rim: PartModel) -> list[Callable[[], Attempts]]:
+        """What the lobes and the ellipse do to the rim.
+
+        Long ones first, so that two threads end together. Lift-off has no solid model: it stands between
+        two cases that may have large ones, of which one waits for the other (`fea.solid.alone`).
+        """
         return [
-            *(partial(self._solve, rim, cases) for cases in rim_cases(rim)),
+            *(partial(self._solve_case, rim, case) for case in rim_cases(rim)),
             partial(self._find, rim, "wave_generator_peak", ellipse_peak),
             partial(self._find, rim, "half_seat_peak", half_seat_peak),
         ]
 
-    def _solve(self, rim: PartModel, cases: tuple[RimCase, ...]) -> Attempts:
-        tried = Attempts()
-        for case in cases:
-            name = figure_of(case)
-            self.K[name] = tried.get(name, partial(rim_stiffness, rim, case))
+    def _solve_case(self, rim: PartModel, case: RimCase) -> Attempts:
+        tried, name = Attempts(), figure_of(case)
+        self.K[name] = tried.get(name, partial(rim_stiffness, rim, case))
         return tried
 
     def _find(self, rim: PartModel, name: str, peak: Callable[[PartModel], StressPeak]) -> Attempts:
@@ -166,7 +167,7 @@ def run(
     """The main job: all stiffnesses, the three stress fields, the backlash sum, and the whole gear.
 
     A field or a curve that fails is absent, with its reason in `stiffnesses.missing`. `told` is given each of
-    `RunResult.fields` as soon as it is there.
+    `RunResult.fields` as soon as it is there, by one of two threads.
 
     Raises
     ------
@@ -192,6 +193,7 @@ def run(
     with beside(context.progress, [lambda: tried_gear.get("gear", lambda: _gear(context))]) as rest:
         solve("wave_generator", lambda: ellipse_field(context.part("flexspline")))
         (gear,) = rest()
+    fields = {name: fields[name] for name in STRESS_CASES if name in fields}  # whoever was first
     found = replace(found, missing={**found.missing, **tried.missing, **tried_gear.missing})
     peaks = {PEAK_OF[name]: solved.peak for name, solved in fields.items()}
     limit = linear_limit(design, found.series_Nm_per_rad(design), peaks)

@@ -46,15 +46,15 @@ class LoadCase:
     fast: Callable[[Part, float], Stiffness]
 
 
-def rim_cases(flexspline: PartModel) -> tuple[tuple[RimCase, ...], ...]:
-    """The cases that are answered by the model of the part's stiffness, those together that share solves.
+def rim_cases(flexspline: PartModel) -> tuple[RimCase, ...]:
+    """The cases that are answered by the model of the part's stiffness.
 
     "lobes_contact" (the seat may lift off) is not among them where the solid model is asked for: lift-off
     breaks the symmetry that makes that model small.
     """
     if flexspline.axisymmetric or may_answer(flexspline):
-        return ("lobes", "lobes_contact"), ("lobes_unsupported",)
-    return (SOLID_CASES,)
+        return RIM_CASES
+    return SOLID_CASES
 
 
 def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
