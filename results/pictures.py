@@ -1,16 +1,17 @@
 """All pictures of a run, drawn while it goes on, once for the same content, and kept.
 
-One process draws (`results.renders.process`), one after the other: a solved part as soon as it is there, the
-charts in the end. What cannot be drawn is missing and everything else comes; it is not kept, so the next run
-tries again.
+Two processes draw (`results.renders.process`): a solved part as soon as it is there, the charts in the end.
+What cannot be drawn is missing and everything else comes; it is not kept, so the next run tries again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
 
 from flexspline.fea.types import SolidField
 from flexspline.pipeline.analysis import RunResult
@@ -23,6 +24,9 @@ from flexspline.results.renders.scene import load
 
 STAGE = "picture"
 """Of the cache."""
+PROCESSES = 2
+"""That draw at once, the second from when there are pictures for both. A run of the example cup on two cores:
+12.3 s with two, 14.0 with one."""
 NOTED = {"part": "picture", "view": "3-D view"}
 """Kinds of drawings that take long enough to be told."""
 
@@ -58,20 +62,25 @@ class RunDrawings:
 
     def __init__(self, context: AnalysisContext) -> None:
         self.context = context
-        self._process = DrawingProcess()
-        self._thread = ThreadPoolExecutor(1)
+        given_up: dict[str, str] = {}  # by all
+        self._processes = [DrawingProcess(gave_up=given_up) for _ in range(PROCESSES)]
+        self._idle: SimpleQueue[DrawingProcess] = SimpleQueue()
+        for process in self._processes:
+            self._idle.put(process)
+        self._threads = ThreadPoolExecutor(PROCESSES)
         self._asked: list[tuple[Drawing, Future[bytes]]] = []
         self._small: dict[str, bytes] = {}
 
     def __enter__(self) -> RunDrawings:
         part = self.context.part("flexspline")
         if not self.context.cache.has(STAGE, drawing_key("flexspline_mesh", part.torsion_key)):
-            self._thread.submit(self._process.draw, load)  # while the part is solved
+            self._threads.submit(self._draw, load)  # while the part is solved
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._process.__exit__()  # first: the thread then comes to its end
-        self._thread.shutdown(cancel_futures=True)
+        for process in self._processes:  # first: the threads then come to their end
+            process.__exit__()
+        self._threads.shutdown(cancel_futures=True)
 
     def add_field(self, name: str, field: SolidField) -> None:
         """Begin to draw one of `RunResult.fields`."""
@@ -80,7 +89,7 @@ class RunDrawings:
     def add(self, drawings: Iterable[Drawing]) -> None:
         """Draw these after what was asked before."""
         for drawing in drawings:
-            self._asked.append((drawing, self._thread.submit(self._drawn, drawing)))
+            self._asked.append((drawing, self._threads.submit(self._drawn, drawing)))
 
     def kept_in(self, folder: Path) -> RunPictures:
         """Wait for all, and write the pictures.
@@ -108,11 +117,18 @@ class RunDrawings:
                     path.unlink(missing_ok=True)
         return RunPictures(paths, self._small, views, missing)
 
+    def _draw(self, write: Callable[..., None], *arguments: Any) -> bytes:
+        process = self._idle.get()  # there is one for each thread
+        try:
+            return process.draw(write, *arguments)
+        finally:
+            self._idle.put(process)
+
     def _drawn(self, drawing: Drawing) -> bytes:
         def make() -> bytes:
             if drawing.kind in NOTED:
                 self.context.progress.note(f"  {NOTED[drawing.kind]} {drawing.name}")
-            return self._process.draw(drawing.write, *drawing.arguments)
+            return self._draw(drawing.write, *drawing.arguments)
 
         made, _ = self.context.cache.get(STAGE, drawing.key, make)
         if drawing.kind == "part":

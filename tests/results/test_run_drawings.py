@@ -1,4 +1,4 @@
-"""A run's pictures are drawn while it goes on, one after the other, and end with it."""
+"""A run's pictures are drawn while it goes on, two at a time, and end with it."""
 
 from __future__ import annotations
 
@@ -56,6 +56,7 @@ def test_what_crashes_costs_itself_and_its_view_and_an_older_picture_goes(
             drawings.add(
                 [Drawing("part", kind, {"of": kind}, failing_drawings.crashing, (str(noted),))]
             )
+            drawings.kept_in(tmp_path)  # waits for it
         drawings.add(charts(1))
         drawn = drawings.kept_in(tmp_path)
     assert set(drawn.paths) == {"chart 0"}
