@@ -8,11 +8,8 @@ from functools import partial
 
 from flexspline.fea.axisymmetric.stress import torsion_stress
 from flexspline.fea.deadline import STAGE_SECONDS, Deadline
-from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.peak import stress_field
-from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
-from flexspline.geometry.assumed import Assumed
+from flexspline.fea.types import SolidField, Stiffness, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.sanity import warnings
@@ -29,22 +26,14 @@ from flexspline.pipeline.ellipse_peak import (
 from flexspline.pipeline.gear import GearCurve, gear_curve
 from flexspline.pipeline.linear_limit import LinearLimit, linear_limit
 from flexspline.pipeline.load_cases import rim_cases, rim_stiffness
-from flexspline.pipeline.part_meshes import MeshedPart
 from flexspline.pipeline.part_stiffness import part_stiffness, twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim_case import RimCase, figure_of
-from flexspline.pipeline.solid_torsion import TwistedPart
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.wave_generator import sharp_edges
-
-CACHED_TYPES: tuple[type, ...] = (
-    Assumed, EquivalentRing, GearCurve, MeshLevel, MeshedPart, SolidField, Stiffness, StressPeak,
-    LayeredMesh, TetMesh, TwistedPart,
-)  # fmt: skip
-"""What may stand in a cache entry."""
 
 
 def analysis_context(
@@ -54,7 +43,7 @@ def analysis_context(
 ) -> AnalysisContext:
     """A design with the user's cache of solved parts; `say` is told the cache's faults, and the stages too
     where there is no `progress` yet."""
-    cache = Cache(cache_folder(), CACHED_TYPES, say)
+    cache = Cache(cache_folder(), say)
     return AnalysisContext(design, cache, progress or Progress(say))
 
 

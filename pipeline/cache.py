@@ -22,7 +22,7 @@ from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished
 
 T = TypeVar("T")
-FORMAT = 19
+FORMAT = 20
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
@@ -40,10 +40,9 @@ class Turns:
 
 @dataclass(frozen=True)
 class Cache:
-    """Entries below `folder`; `types` are the dataclasses that may stand in one."""
+    """Entries below `folder`."""
 
     folder: Path
-    types: tuple[type, ...]
     notice: Callable[[str], None] = print
     failed: dict[str, ComputationError] = field(default_factory=dict, compare=False)
     """What failed since this object was made, by key: nobody waits for the same failure twice."""
@@ -115,7 +114,7 @@ class Cache:
             self._discard(path, error)
             return _MISSING
         try:
-            stored = unpacked(data, self.types)
+            stored = unpacked(data)
             if stored["key"] != key:
                 raise ValueError("the answer to another question")
             return stored["value"]

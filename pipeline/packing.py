@@ -1,21 +1,25 @@
 """Values as bytes without pickles: one .npz of arrays, and a JSON text for the rest.
 
-Reading runs nothing: only the dataclasses that the reader names are made.
+Reading makes dataclasses of this package and runs nothing else.
 """
 
 from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
+PACKAGE = __name__.partition(".")[0] + "."
+"""Before the name of every module whose dataclasses may be packed."""
+
 
 def packed(value: Any) -> bytes:
-    """Arrays, dataclasses, mappings, sequences, bytes and plain values, nested at will."""
+    """Arrays, dataclasses of this package, mappings, sequences, bytes and plain values, nested at will."""
     arrays: dict[str, np.ndarray] = {}
     text = json.dumps(_encode(value, arrays)).encode()
     data = io.BytesIO()
@@ -23,8 +27,8 @@ def packed(value: Any) -> bytes:
     return data.getvalue()
 
 
-def unpacked(data: bytes, types: Sequence[type]) -> Any:
-    """What was packed; sequences come as tuples. `types`: the dataclasses that may stand in it.
+def unpacked(data: bytes) -> Any:
+    """What was packed; sequences come as tuples.
 
     Raises
     ------
@@ -33,7 +37,7 @@ def unpacked(data: bytes, types: Sequence[type]) -> Any:
     with np.load(io.BytesIO(data), allow_pickle=False) as entry:
         arrays = {name: entry[name] for name in entry.files}  # zip checks its CRCs here
     text = json.loads(arrays.pop("json").tobytes().decode())
-    return _decode(text, arrays, {t.__name__: t for t in types})
+    return _decode(text, arrays)
 
 
 def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:
@@ -49,7 +53,7 @@ def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:
         return value.item()
     if is_dataclass(value) and not isinstance(value, type):
         named = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value)}
-        return {"type": type(value).__name__, "fields": named}
+        return {"type": _name(type(value)), "fields": named}
     if isinstance(value, Mapping):
         return {"type": "dict", "fields": {k: _encode(v, arrays) for k, v in value.items()}}
     if isinstance(value, list | tuple):
@@ -57,14 +61,27 @@ def _encode(value: Any, arrays: dict[str, np.ndarray]) -> Any:
     return value
 
 
-def _decode(text: Any, arrays: Mapping[str, np.ndarray], types: Mapping[str, type]) -> Any:
+def _decode(text: Any, arrays: Mapping[str, np.ndarray]) -> Any:
     if isinstance(text, list):
-        return tuple(_decode(v, arrays, types) for v in text)
+        return tuple(_decode(v, arrays) for v in text)
     if not isinstance(text, dict):
         return text
     if "array" in text:
         return arrays[text["array"]]
     if "bytes" in text:
         return arrays[text["bytes"]].tobytes()
-    values = {k: _decode(v, arrays, types) for k, v in text["fields"].items()}
-    return values if text["type"] == "dict" else types[text["type"]](**values)
+    values = {k: _decode(v, arrays) for k, v in text["fields"].items()}
+    return values if text["type"] == "dict" else _named(text["type"])(**values)
+
+
+def _name(kind: type) -> str:
+    return f"{kind.__module__}:{kind.__name__}"
+
+
+def _named(name: str) -> type:
+    """The dataclass of that `_name`; any other is refused."""
+    module, _, own = name.partition(":")
+    kind = getattr(import_module(module), own) if module.startswith(PACKAGE) else None
+    if not (isinstance(kind, type) and is_dataclass(kind) and _name(kind) == name):
+        raise ValueError(f"{name} is no dataclass of this package")
+    return kind

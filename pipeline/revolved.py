@@ -47,9 +47,7 @@ def with_equivalent_ring(design: Design) -> Design:
     """With the plain ring that stands for drawn teeth, as in an analysis; errors as `revolved`."""
     if design.flexspline.teeth == "none":
         return design
-    from flexspline.pipeline.analysis import CACHED_TYPES
-
-    cache = Cache(cache_folder(), CACHED_TYPES, lambda line: None)  # what matters comes as an error
+    cache = Cache(cache_folder(), lambda line: None)  # what matters comes as an error
     return AnalysisContext(design, cache, Progress()).part("flexspline").context.design
 
 

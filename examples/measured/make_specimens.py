@@ -14,7 +14,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from flexspline.geometry.load import design_from, load_design
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -43,9 +42,7 @@ def lines() -> list[str]:
             rim = tables["flexspline"]
             rim["length_mm"], rim["diaphragm_thickness_mm"] = float(length), diaphragm
             rim["wall_thickness_mm"] = round(wall - THINNER_MM, 3)
-            context = AnalysisContext(
-                design_from(tables), Cache(Path(folder), CACHED_TYPES), Progress()
-            )
+            context = AnalysisContext(design_from(tables), Cache(Path(folder)), Progress())
             K = context.part("flexspline").stiffness().K_Nm_per_rad * (
                 1 + NOISE * rng.standard_normal()
             )

@@ -21,7 +21,7 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     ------
     DesignError, ComputationError
     """
-    cache = Cache(cache_folder(), (Slope, Slopes), say)
+    cache = Cache(cache_folder(), say)
 
     def solve() -> Slopes:
         from flexspline.pipeline.study.two_ways import slopes  # the solvers take a second to load

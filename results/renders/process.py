@@ -176,25 +176,12 @@ def serve() -> None:
         print(json.dumps({"reason": _drawn(**asked)}), file=answers, flush=True)
 
 
-def _types() -> tuple[type, ...]:
-    """What may be drawn, beside arrays and plain values."""
-    from flexspline.fea.types import MeshLevel, SolidField, Stiffness, StressPeak, TetMesh
-    from flexspline.geometry.assumed import Assumed
-    from flexspline.pipeline.backlash import Backlash
-    from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
-    from flexspline.pipeline.gear import GearCurve
-
-    return (
-        Assumed, Backlash, ExtendedBacklash, GearCurve, MeshLevel, SolidField, Stiffness, StressPeak, TetMesh,
-    )  # fmt: skip
-
-
 def _drawn(function: str, asked: str, made: str) -> str:
     """Draw; why it failed, or ""."""
     module, _, name = function.partition(":")
     try:
         write = getattr(import_module(module), name)
-        write(Path(made), *unpacked(Path(asked).read_bytes(), _types()))
+        write(Path(made), *unpacked(Path(asked).read_bytes()))
     except ComputationError as error:
         return one_line(str(error))
     except Exception as error:  # whatever a library raises costs its own picture

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from specimen_truth import AS_IN_THE_EXAMPLE, KEYS, MODULUS_STD, OFF_MM, Kind, batch, hidden
 
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.outcome import NamedCause
@@ -61,7 +60,7 @@ def answers(folder: Path, sets: list[Asked], rng: np.random.Generator) -> Iterat
     for asked in sets:
         name, seed = asked.name, asked.seed
         made = batch(name, seed)
-        context = AnalysisContext(made.design, Cache(folder, CACHED_TYPES), Progress())
+        context = AnalysisContext(made.design, Cache(folder), Progress())
         plain = Bench(context, 1.0, 1.0, False)
         K_b, K_e = (1 / plain.plain(made.design, p) for p in ("flexspline", "shaft"))
         bench = Bench(context, K_b, K_e, False)

@@ -12,7 +12,7 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.pipeline import parts
-from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
+from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -37,7 +37,7 @@ def design(file: str, model: str = "auto", **changes: object) -> Design:
 
 
 def kinds(asked: Design, folder: Path, *, rim: bool, shaft: bool = True) -> dict[str, str]:
-    context = AnalysisContext(asked, Cache(folder, CACHED_TYPES), Progress())
+    context = AnalysisContext(asked, Cache(folder), Progress())
     found: Stiffnesses = stiffnesses(context, shaft=shaft, rim=rim)
     assert not found.missing
     record = stiffness_record(asked, found, 0.0)

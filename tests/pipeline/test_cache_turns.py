@@ -13,7 +13,7 @@ LATE_S = 0.05
 
 
 def test_the_second_thread_waits_for_the_value_that_the_first_makes(tmp_path: Path) -> None:
-    cache, begun, go_on = Cache(tmp_path, ()), Event(), Event()
+    cache, begun, go_on = Cache(tmp_path), Event(), Event()
     made: list[str] = []
 
     def slow() -> int:
@@ -40,6 +40,6 @@ def test_the_second_thread_waits_for_the_value_that_the_first_makes(tmp_path: Pa
 
 
 def test_a_value_may_be_made_of_others(tmp_path: Path) -> None:
-    cache = Cache(tmp_path, ())
+    cache = Cache(tmp_path)
     found, stored = cache.get("lobes", {}, lambda: 1 + cache.get("torsion", {}, lambda: 2)[0])
     assert (found, stored) == (3, False)

@@ -15,7 +15,6 @@ from flexspline.fea.types import SolidField
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import ellipse_peak as under_test
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
@@ -27,7 +26,7 @@ SOLID_MPa = -1.0
 
 
 def model(design: Design, folder: Path) -> PartModel:
-    return AnalysisContext(design, Cache(folder, CACHED_TYPES), Progress()).part("flexspline")
+    return AnalysisContext(design, Cache(folder), Progress()).part("flexspline")
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,6 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, part_stiffness, solid_torsion
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import BODY_SHARE, FIRST_BOUNDS_PCT, TOO_FAR, enclosure_of
 from flexspline.pipeline.enclosure import NestingError, enclosed
@@ -39,7 +38,7 @@ WIDE = CUP.changed(
 
 
 def model(design: Design, folder: Path) -> PartModel:
-    context = AnalysisContext(design, Cache(folder, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(folder), Progress())
     return context.part("flexspline")
 
 
@@ -124,7 +123,7 @@ def test_where_the_enclosure_fails_the_solid_model_stays(tmp_path: Path, monkeyp
 
     monkeypatch.setattr(part_stiffness, "torsional_stiffness", fails)
     said: list[str] = []
-    context = AnalysisContext(CUP, Cache(tmp_path, CACHED_TYPES), Progress(said.append))
+    context = AnalysisContext(CUP, Cache(tmp_path), Progress(said.append))
     found = part_stiffness.part_stiffness(context.part("flexspline"))
     assert not found.guaranteed
     assert found.half_width <= 0.005

@@ -21,7 +21,6 @@ from flexspline.geometry.load import load_design
 from flexspline.geometry.part import Part
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import part_meshes, part_stiffness, parts, solid_torsion
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
@@ -34,7 +33,7 @@ STATED = DESIGN.changed({"solver.edge_length_mm": 4.0})
 
 
 def first_elements(design: Design, folder: Path) -> int:
-    context = AnalysisContext(design, Cache(folder, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(folder), Progress())
     return part_stiffness.part_stiffness(context.part("shaft")).levels[0].elements
 
 
@@ -62,7 +61,7 @@ def test_a_sweep_that_fails_when_refined_is_left_altogether(
         monkeypatch.setattr(PartMeshes, "layered", lambda self, spec: None)
     monkeypatch.setattr(stiffness, "MAX_LEVELS", 2)
     design = DESIGN.changed({"solver.tolerance_pct": 0.4})
-    model = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("shaft")
+    model = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
     by_mesher: list[MeshSpec] = []
 
     def stands_in(surface: object, spec: MeshSpec) -> TetMesh:
@@ -87,7 +86,7 @@ def test_a_stated_edge_length_is_kept(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_the_rims_mesh_keeps_within_its_elements(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cup = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
+    cup = AnalysisContext(DESIGN, Cache(tmp_path), Progress()).part("flexspline")
     usual = part_stiffness.rim_mesh(cup).mesh.elements
     copies = 3  # wedges of 30° in the ellipse's quarter
     assert solid_torsion.copies_in_rim(cup) == copies
@@ -99,7 +98,7 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     said: list[str] = []
-    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress(said.append))
+    context = AnalysisContext(DESIGN, Cache(tmp_path), Progress(said.append))
     meshes = PartMeshes(context.part("shaft"))
     spec = meshes.model.first_spec
     finer = meshes.swept(spec.scaled(part_meshes.ANOTHER))
@@ -121,7 +120,7 @@ def test_a_first_mesh_in_layers_is_made_coarser_too(
     stated: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     design = DESIGN.changed({"solver.edge_length_mm": 2.0}) if stated else DESIGN
-    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(tmp_path), Progress())
     meshes = PartMeshes(context.part("shaft"))
     usual = meshes.layered(meshes.model.first_spec)
     assert usual is not None
@@ -139,7 +138,7 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
 ) -> None:
     """The mesh after it, with longer edges, has all the time of a first one, and is for the fields only."""
     context = AnalysisContext(
-        DESIGN.changed({"solver.mesher": "tetwild"}), Cache(tmp_path, CACHED_TYPES), Progress()
+        DESIGN.changed({"solver.mesher": "tetwild"}), Cache(tmp_path), Progress()
     )
     cup = context.part("flexspline")
     asked: list[MeshSpec] = []
@@ -176,7 +175,7 @@ def test_nobody_waits_for_fTetWild_where_an_enclosure_answers(
     def not_asked_for(*_: object) -> None:
         raise AssertionError("a mesh, or its CAD")
 
-    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(DESIGN, Cache(tmp_path), Progress())
     cup = context.part("flexspline")
     monkeypatch.setattr(parts, "can_be_swept", lambda part: False)
     monkeypatch.setattr(part_meshes, "mesh_surface", not_asked_for)

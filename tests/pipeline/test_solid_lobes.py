@@ -12,7 +12,6 @@ from flexspline.fea.solid.lobes import promised
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import load_cases, solid_lobes
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosed_part import TOO_FAR, enclosure_of
 from flexspline.pipeline.load_cases import CASES, rim_stiffness
@@ -38,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def model(folder: Path, design: Design = WIDE) -> PartModel:
-    context = AnalysisContext(design, Cache(folder, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(folder), Progress())
     return context.part("flexspline")
 
 

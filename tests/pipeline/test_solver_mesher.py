@@ -9,7 +9,7 @@ import pytest
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
+from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -21,9 +21,7 @@ PLAIN = {"flexspline.bolt_count": 0, "solver.model": "solid", "solver.tolerance_
 
 def context_of(design: Design, folder: Path) -> tuple[AnalysisContext, list[str]]:
     said: list[str] = []
-    return AnalysisContext(
-        design, Cache(folder, CACHED_TYPES, said.append), Progress(said.append)
-    ), said
+    return AnalysisContext(design, Cache(folder, said.append), Progress(said.append)), said
 
 
 def with_mesher(mesher: str) -> Design:

@@ -12,7 +12,7 @@ from flexspline.fea.deadline import Deadline
 from flexspline.fea.shortfall import of_the_machine
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import by_harmonics
-from flexspline.pipeline.analysis import CACHED_TYPES, stiffnesses
+from flexspline.pipeline.analysis import stiffnesses
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -24,9 +24,7 @@ DESIGN = DESIGN.model_copy(update={"flexspline": CUP})
 
 
 def answers(folder: Path) -> Stiffnesses:
-    return stiffnesses(
-        AnalysisContext(DESIGN, Cache(folder, CACHED_TYPES), Progress()), shaft=False
-    )
+    return stiffnesses(AnalysisContext(DESIGN, Cache(folder), Progress()), shaft=False)
 
 
 @pytest.fixture

@@ -207,7 +207,7 @@ def test_a_full_scratch_disk(full: Path, plain: Path, tmp_path: Path) -> None:
 def test_a_result_that_cannot_be_stored_is_kept_for_this_command_and_told_once() -> None:
     said: list[str] = []
     made: list[int] = []
-    cache = Cache(Path("/dev/null/cache"), (), said.append)
+    cache = Cache(Path("/dev/null/cache"), said.append)
     for number in (1, 2, 1):
         assert cache.get("stage", {"n": number}, lambda n=number: made.append(n) or n)[0] == number
     assert made == [1, 2]

@@ -112,7 +112,7 @@ def test_who_discards_says_so(
         path.write_bytes(b"half")
     with own_scratch():
         folder_of(tmp_path / "design.toml", tmp_path / "out", ())
-    Cache(tmp_path / "cache", (), said.append).get("stage", {}, lambda: 1)
+    Cache(tmp_path / "cache", said.append).get("stage", {}, lambda: 1)
     heard = capsys.readouterr().err
     assert [path.name in heard for path in left] == [True, True]
     assert entry.name in said[0]

@@ -134,7 +134,7 @@ def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     for broken in ("torque_field", "ellipse_field"):
         monkeypatch.setattr(analysis, broken, fail)
     monkeypatch.setattr("flexspline.pipeline.load_cases.contact_stiffness", fail)
-    cache = Cache(tmp_path / "cache", analysis.CACHED_TYPES)
+    cache = Cache(tmp_path / "cache")
     result = analysis.run(AnalysisContext(load_design(revolved), cache, Progress()))
     assert not result.fields
     lines = [line for line in all_warnings(result) if line.endswith(f"not found, {WHY}")]
@@ -155,7 +155,7 @@ def test_the_same_failure_is_not_waited_for_twice(tmp_path):
         calls.append(1)
         raise ComputationError(WHY)
 
-    cache = Cache(tmp_path, ())
+    cache = Cache(tmp_path)
     for _ in range(3):
         with pytest.raises(ComputationError, match=WHY):
             cache.get("mesh", {"edge_mm": 1.0}, make)

@@ -9,7 +9,6 @@ import failing_drawings
 import pytest
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -27,7 +26,7 @@ def importable(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def context(tmp_path: Path) -> AnalysisContext:
-    cache = Cache(tmp_path / "cache", CACHED_TYPES)
+    cache = Cache(tmp_path / "cache")
     return AnalysisContext(load_design(CUP), cache, Progress())
 
 

@@ -13,7 +13,6 @@ import pytest
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -31,7 +30,7 @@ HOLES = 0.003
 )
 def test_the_free_rim_meets_its_tolerance_and_is_right(file: str, tmp_path: Path, record) -> None:
     design = load_design(EXAMPLES / file)
-    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(tmp_path), Progress())
     part = context.part("flexspline")
     found = solid_lobes(part, supported=False)
     outline = without_holes(design).part("flexspline").meridian

@@ -13,7 +13,6 @@ import pytest
 from hole_free import hole_free
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
@@ -34,7 +33,7 @@ CASES = {
 def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
     file, changes = CASES[case]
     design = hole_free(file, "flexspline", changes)
-    part = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress()).part("flexspline")
+    part = AnalysisContext(design, Cache(tmp_path), Progress()).part("flexspline")
     w0, wall = design.gear.centre_distance_mm, design.flexspline.wall_thickness_mm
     exact = ellipse_stress(design.part("flexspline").meridian, part.material, w0, wall, 0.005)
     peak = solid_ellipse(part).peak

@@ -8,7 +8,6 @@ from study_bench import EXAMPLES, study_of, threads
 from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
@@ -220,7 +219,7 @@ def test_a_shaft_that_is_mostly_flange_is_within_its_bounds(
     """One factor for every shaft missed the solid model's K_e of these by 10 and 6 %."""
     keys = ("shaft.segment[0].length_mm", "shaft.segment[1].length_mm")
     design = DESIGN.changed({**dict(zip(keys, lengths_mm, strict=True)), "solver.tolerance_pct": 2})
-    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(tmp_path), Progress())
     solid = part_stiffness(context.part("shaft"))
     fast = figures_of(design, ("torsion",), nominal_effect).figures
     low, high = (fast[f"K_e_bounds_Nm_per_rad[{i}]"] for i in (0, 1))

@@ -16,7 +16,6 @@ from flexspline.geometry.keys import (
     without_holes,
 )
 from flexspline.geometry.load import design_from, load_design, read_toml
-from flexspline.pipeline.analysis import CACHED_TYPES
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
@@ -39,7 +38,7 @@ LENGTH, WALL = "flexspline.length_mm", "flexspline.wall_thickness_mm"
 
 @pytest.fixture(scope="module")
 def bench(suite_cache: Path) -> Bench:
-    context = AnalysisContext(DESIGN, Cache(suite_cache, CACHED_TYPES), Progress())
+    context = AnalysisContext(DESIGN, Cache(suite_cache), Progress())
     given = Bench(context, 1.0, 1.0, False)
     return replace(
         given, K_b=1 / given.plain(DESIGN, "flexspline"), K_e=1 / given.plain(DESIGN, "shaft")
@@ -246,7 +245,7 @@ def test_unstated_noise_is_found_from_scatter(bench, fe) -> None:
 def test_relative_sensitivity_holds_with_bolt_holes(tmp_path) -> None:
     """Solved once with six holes: K's ratio between two drawings differs from the hole-free model's by
     less than 1 %, so a sensitivity's error is a small part of one specimen's 1 % of noise."""
-    context = AnalysisContext(DESIGN, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(DESIGN, Cache(tmp_path), Progress())
     other = with_values(DESIGN, {WALL: 0.5, LENGTH: 34.0})
     full, plain = Bench(context, 1.0, 1.0, True), Bench(context, 1.0, 1.0, False)
     assert full.compliance(other, "flexspline") == pytest.approx(
@@ -262,7 +261,7 @@ def test_shaft_has_its_own_keys_and_material(tmp_path) -> None:
         "poissons_ratio": 0.3,
     }
     design = design_from(tables)
-    context = AnalysisContext(design, Cache(tmp_path, CACHED_TYPES), Progress())
+    context = AnalysisContext(design, Cache(tmp_path), Progress())
     bench = Bench(context, 3e4, 4.3e4, False)
     key = "shaft.segment[1].outer_diameter_mm"
     values = np.array([15.0, 17, 20])  # no fewer are diagnosed
