@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.friction_memory import (
@@ -15,7 +16,7 @@ from flexspline.pipeline.diagnosis.model.friction_memory import (
     memory_variance,
     smaller_loops,
 )
-from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, beyond, clipped
+from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, beyond, clipped, times_slower
 
 BEYOND_THE_EDGE = 0.5
 """Of what a cause adds beyond the most that it adds within what was measured: laws that agree inside go apart
@@ -97,8 +98,9 @@ def deviation_of(
     friction may remember from before the first row, until torque has wiped it out; in loops smaller than any
     of the record half the width of the friction's loop, whose state there is not known; near T = 0 the
     torque's noise, which puts a row on the wrong side of the gap g with the probability Φ(−|T|/σ_T), a
-    square of g²Φ on average; beyond what was measured a share of what the causes add there. Outside, all
-    but the last grow in proportion to the distance. No row's deviation hangs on the rows after it.
+    square of g²Φ on average; beyond what was measured a share of what the causes add there, and where torque
+    moves slower than measured the same share of what a rate dependence loses: friction loses nothing.
+    Outside, all but these two grow in proportion to the distance.
     """
     from scipy.special import ndtr
 
@@ -122,8 +124,24 @@ def deviation_of(
     counts = {channel: int((far > 0).sum()) for channel, far in outside.items()}
     counts["torque_amplitude"] = int(smaller.sum())
     growth = 1 + sum(outside.values())
-    std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * _over(model, doubt.span, true)) ** 2)
+    off = _over(model, doubt.span, true)
+    if RATE in model.elements:
+        slower = times_slower(doubt.span, true)
+        off = np.hypot(off, _lost(model, slower, true))
+        counts["slow_torque_rate"] = int((slower > 1).sum())
+    std = np.sqrt(variance * growth**2 + (BEYOND_THE_EDGE * off) ** 2)
     return Deviation(std, {channel: n for channel, n in counts.items() if n})
+
+
+def _lost(model: ExtendedModel, slower: np.ndarray, true: History) -> np.ndarray:
+    """(n,) angle [arcsec] that the rate dependence adds at the slowest measured rate, and no more where
+    torque is slower by these times (n,)."""
+    if true.time_s is None or not (slower > 1).any():
+        return np.zeros(len(true))
+    rate, elements = known_causes()[RATE], model.elements[RATE]
+    as_measured = replace(true, time_s=true.time_s / float(np.median(slower[slower > 1])))
+    lost = rate.angle_arcsec(elements, as_measured) - rate.angle_arcsec(elements, true)
+    return np.where(slower > 1, np.abs(lost), 0.0)
 
 
 def _over(model: ExtendedModel, span: MeasuredSpan, true: History) -> np.ndarray:

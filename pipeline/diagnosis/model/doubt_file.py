@@ -28,7 +28,7 @@ torque_noise_Nm = {noise}
 # order of this file; lower triangle
 covariance = ["""
 
-POSITIVE = ("smallest_loop_Nm", "rate_Nm_per_s")
+POSITIVE = ("smallest_loop_Nm", "rate_Nm_per_s", "slowest_rate_Nm_per_s")
 """Numbers of [doubt.measured] that may be absent."""
 
 
@@ -80,8 +80,13 @@ def read_doubt(table: Mapping[str, Any], model: ExtendedModel, refuse: Refuse) -
     for key in POSITIVE:
         if key in measured and measured[key] <= 0:
             raise refuse(f"{key} in [doubt.measured] must be above 0")
-    smallest, rate = (float(measured[k]) if k in measured else None for k in POSITIVE)
-    span = MeasuredSpan(**ends, smallest_loop_Nm=smallest, rate_Nm_per_s=rate)
+    smallest, fastest, slowest = (float(measured[k]) if k in measured else None for k in POSITIVE)
+    span = MeasuredSpan(
+        **ends,
+        smallest_loop_Nm=smallest,
+        rate_Nm_per_s=fastest,
+        slowest_rate_Nm_per_s=slowest,
+    )
     return Doubt(float(table["reading_arcsec"]), float(table["torque_noise_Nm"]), covariance, span)
 
 

@@ -46,6 +46,12 @@ def _outside(channel: str, own: MeasuredSpan, record: MeasuredSpan, rate: str) -
             f"are faster than measured: torque in this file moves by {here}, in the model's record by "
             f"{there}; {LESS_CERTAIN}"
         )
+    if channel == "slow_torque_rate":
+        here, there = (f"{s.slowest_rate_Nm_per_s or 0.0:.3g} {rate}" for s in (own, record))
+        return (
+            f"are slower than measured: torque in this file moves by as little as {here}, in the model's "
+            f"record by {there} or more; what of the model is rate dependence is less certain there"
+        )
     words, unit = SPANS[channel]
     here, there = (_ends(getattr(s, channel), unit) for s in (own, record))
     return (

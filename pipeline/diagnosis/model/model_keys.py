@@ -39,7 +39,8 @@ DOUBT: Keys = {
 }  # fmt: skip
 MEASURED: Keys = {"torque_Nm": (list,)}
 MEASURED_OPTIONAL: Keys = {
-    "smallest_loop_Nm": NUMBER, "rate_Nm_per_s": NUMBER, "temperature_C": (list,), "input_angle_deg": (list,),
+    "smallest_loop_Nm": NUMBER, "rate_Nm_per_s": NUMBER, "slowest_rate_Nm_per_s": NUMBER,
+    "temperature_C": (list,), "input_angle_deg": (list,),
 }  # fmt: skip
 NAMES = {int: "a whole number", str: "text", bool: "true or false", list: "a list", dict: "a table"}
 

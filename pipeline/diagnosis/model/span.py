@@ -12,7 +12,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_
 
 Ends = tuple[float, float]
 MOST_TRAVEL = 0.95
-"""Of the travel of torque was made at no more than the rate that counts as measured: the rest are starts."""
+"""Of the travel of torque was made at no more than the fastest rate that counts as measured, and at no less
+than the slowest: the rest are starts and turns."""
 RANGE_SLACK = 0.05
 """Of a channel's range: noise and rounding are no extrapolation."""
 RATE_SLACK = 0.5
@@ -27,8 +28,8 @@ QUARTER_DEG = 90.0
 class MeasuredSpan:
     """Ends of what was measured; None where the channel was not recorded.
 
-    `rate_Nm_per_s` is the fastest at which torque moved for more than an instant, `smallest_loop_Nm` the
-    largest torque of the smallest cycle.
+    `rate_Nm_per_s` and `slowest_rate_Nm_per_s` are the fastest and the slowest at which torque moved for more
+    than an instant, `smallest_loop_Nm` the largest torque of the smallest cycle.
     """
 
     torque_Nm: Ends
@@ -36,18 +37,21 @@ class MeasuredSpan:
     rate_Nm_per_s: float | None = None
     temperature_C: Ends | None = None
     input_angle_deg: Ends | None = None
+    slowest_rate_Nm_per_s: float | None = None
 
 
 def span_of(history: History) -> MeasuredSpan:
     """The span of a record."""
     rates = [r for r in (_rates(history, rows) for rows in history.unit_slices) if r is not None]
     fastest = [by_travel(rate, travel, MOST_TRAVEL) for rate, travel in rates]
+    slowest = [by_travel(rate, travel, 1 - MOST_TRAVEL) for rate, travel in rates]
     return MeasuredSpan(
         _ends(history.torque_Nm),
         float(_loops_Nm(history).min()),
         max(fastest) if fastest and max(fastest) > 0 else None,
         None if history.temperature_C is None else _ends(history.temperature_C),
         None if history.input_angle_deg is None else _ends(history.input_angle_deg),
+        min((rate for rate in slowest if rate > 0), default=None),
     )
 
 
@@ -70,6 +74,23 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     if span.input_angle_deg is not None and history.input_angle_deg is not None:
         found["input_angle_deg"] = _turned(history.input_angle_deg, span.input_angle_deg)
     return found
+
+
+def times_slower(span: MeasuredSpan, history: History) -> np.ndarray:
+    """(n,) how many times as slow as the slowest measured each row's torque moves; 1 where not slower, or
+    held."""
+    out = np.ones(len(history))
+    if span.slowest_rate_Nm_per_s is None:
+        return out
+    for rows in history.unit_slices:
+        if (found := _rates(history, rows)) is None:
+            continue
+        rate, travel = found
+        own = np.where(travel > 0, span.slowest_rate_Nm_per_s / np.maximum(rate, 1e-12), 1.0)
+        own[own < 1 + RATE_SLACK] = 1.0
+        out[rows[: len(own)]] = own
+        out[rows[len(own) :]] = own[-1]
+    return out
 
 
 def _loops_Nm(history: History) -> np.ndarray:

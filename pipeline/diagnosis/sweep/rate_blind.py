@@ -19,10 +19,19 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
-from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
+from flexspline.pipeline.diagnosis.measurement.ramps import (
+    FEWEST_HOLD_ROWS,
+    by_travel,
+    cycle_rate,
+    rates_of,
+)
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
+RATES_WITHIN = 1.9
+"""Of the rates in a record at one rate, that nine tenths and one tenth of its travel are slower than. A
+sine's are 2.3 apart, and its loop by the rate is round, by friction pointed. A triangle's are as far apart
+as noise makes them, 1.6 at most: they are taken over steps of eight times the torque's."""
 RATES_APART = 1.2
 """Of the quickest to the slowest cycle: a twist in proportion to the rate then differs by a fifth."""
 FOLLOWS_NATS = 3.0
@@ -39,7 +48,9 @@ def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool
     """Whether a record can tell whose a loop is, friction's or the rate's.
 
     By cycles that differ in rate, or that hold the torque, over which a lag goes on and friction does not; at
-    one rate by the form, where one of the two is enough. Never where time was not recorded (`timed`).
+    one rate by the form, where one of the two is enough: friction, for any loop of a rate on straight ramps
+    is one of friction with thresholds of some spread; either, where the rate changes within the cycle. Never
+    where time was not recorded (`timed`).
     """
     if not timed:
         return False
@@ -48,6 +59,8 @@ def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool
         return True
     owners = best.owners(evidence)
     rubs = FRICTION in owners or evidence.columns.ahead is not None
+    if RATE in owners and rates_apart_within(history) < RATES_WITHIN:
+        return False
     return not (rubs and RATE in owners) and owners.isdisjoint(UNNAMED_LOOPS)
 
 
@@ -70,6 +83,18 @@ def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
     )
     loop = Search(blind, lambda term: term.owner in owners).run([best.terms])
     return best.score - loop.score >= FOLLOWS_NATS
+
+
+def rates_apart_within(history: History) -> float:
+    """The fastest over the slowest rate within units, by travel, without starts and turns; 1 without any."""
+    apart = [1.0]
+    for rows in history.unit_slices:
+        if len(rows) < 2 * FEWEST_HOLD_ROWS:
+            continue
+        found = rates_of(history, rows)
+        slow, fast = (by_travel(np.abs(found.values), found.travel_Nm, s) for s in (0.1, 0.9))
+        apart.append(fast / slow if slow > 0 else 1.0)
+    return max(apart)
 
 
 def at_one_rate(history: History) -> History | None:

@@ -27,7 +27,7 @@ from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
-from flexspline.pipeline.diagnosis.model.span import span_of
+from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, span_of
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 
 PLAIN = ExtendedModel(11.0, 70.0, {"": 5.0}, {}, {})
@@ -94,6 +94,27 @@ def test_half_of_what_a_cause_adds_beyond_the_edge() -> None:
     far = np.abs(RECORD.torque_Nm) > 0.1
     expected = BEYOND_THE_EDGE * 0.2 * (60.0 - highest)
     np.testing.assert_allclose(std(warm, of, model)[far], expected, rtol=1e-9)
+
+
+def test_half_of_what_a_rate_dependence_loses_where_torque_is_slower_than_measured() -> None:
+    """A lag of 2 s with 3 arcsec per N·m/s: 3 arcsec times the rate on a ramp that has gone on for long."""
+    shape = shape_of(
+        "rate_dependence", lag_s=2.0, exponent=1.0, rate_Nm_per_s=1.0, ramp_s=10.0, deadband_Nm=0.0
+    )
+    model = replace(PLAIN, elements={"rate_dependence": (Element(shape, (3.0,)),)})
+    torque, none = np.linspace(0, 10, 401), np.zeros(401, int)
+    of = replace(
+        doubt(np.empty((0, 0)), reading_arcsec=0.0),
+        span=MeasuredSpan((-10.0, 10.0), rate_Nm_per_s=1.0, slowest_rate_Nm_per_s=0.5),
+    )
+    for rate, expected in ((0.5, 0.0), (0.4, 0.0), (0.05, BEYOND_THE_EDGE * 3 * (0.5 - 0.05))):
+        history = History(torque, none, none, time_s=torque / rate)
+        found = deviation_of(model, of, history, ("",))
+        assert found.std_arcsec[-1] == pytest.approx(expected, rel=0.01, abs=1e-9)
+        assert found.rows_beyond == ({} if expected == 0 else {"slow_torque_rate": 401})
+        (*_, words) = ["", *extrapolated(found, of.span, history)]
+        assert ("are slower than measured" in words) == (expected > 0)
+        assert deviation_of(PLAIN, of, history, ("",)).rows_beyond == {}  # it knows no rate
 
 
 STOP = replace(PLAIN, elements={"friction_hysteresis": (Element(

@@ -18,7 +18,12 @@ from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.measurement.ramps import cycle_rate
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
-from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate, follows_rate
+from flexspline.pipeline.diagnosis.sweep.rate_blind import (
+    RATES_WITHIN,
+    at_one_rate,
+    follows_rate,
+    rates_apart_within,
+)
 from flexspline.pipeline.diagnosis.sweep.regressors import design_matrix
 from flexspline.pipeline.diagnosis.sweep.search import Search
 
@@ -111,32 +116,62 @@ def lagging(history: History) -> np.ndarray:
     return out
 
 
-def rubbing(history: History) -> np.ndarray:
-    """(n,) a Coulomb element's loop, 3 arcsec wide, that slips within 0.1 N·m of a turn."""
+def rubbing(history: History, within_Nm: float = 0.1) -> np.ndarray:
+    """(n,) a Coulomb element's loop, 3 arcsec wide, that slips within so much of a turn."""
     state, out = 0.0, np.zeros(len(history))
     for i, step in enumerate(np.diff(history.torque_Nm, prepend=0.0)):
-        state = min(max(state + step / 0.1, -1.0), 1.0)
+        state = min(max(state + step / within_Nm, -1.0), 1.0)
         out[i] = -1.5 * state
     return out
 
 
-def of_sine(added: np.ndarray) -> dict[str, tuple[str, ...]]:
-    """Causes found and their rivals in a sine sweep that reads these angles [arcsec] beside the simulated."""
-    angle = PREDICTION.angle_arcsec(SINE) + added
-    angle = angle + np.random.default_rng(11).normal(0, NOISE, len(angle))
-    record = as_read(SINE, angle)
+def found_in(
+    added: np.ndarray, history: History = SINE, seed: int = 11
+) -> dict[str, tuple[str, ...]]:
+    """Causes found and their rivals in a sweep that reads these angles [arcsec] beside the simulated."""
+    angle = PREDICTION.angle_arcsec(history) + added
+    angle = angle + np.random.default_rng(seed).normal(0, NOISE, len(angle))
+    record = as_read(history, angle)
     return {c.id: c.alternatives for c in diagnose_sweep(record, PREDICTION)[0].causes}
 
 
 def test_at_one_rate_a_loop_that_one_of_the_two_makes_has_its_name() -> None:
     """A lag's loop of a sine is an ellipse; Coulomb friction's is a parallelogram."""
-    assert of_sine(lagging(SINE)) == {"rate_dependence": ()}
-    assert of_sine(rubbing(SINE)) == {"friction_hysteresis": ()}
+    assert found_in(lagging(SINE)) == {"rate_dependence": ()}
+    assert found_in(rubbing(SINE)) == {"friction_hysteresis": ()}
+
+
+RAMPS = replace(SINE, torque_Nm=np.tile(LARGEST * 2 / np.pi * np.arcsin(np.sin(TURN)), 5))
+"""The same as triangles."""
+
+
+def test_rates_within_a_record_tell_a_sine_from_ramps() -> None:
+    """√(1 − 0.1²) over √(1 − 0.9²) = 2.28 of the sine: travel is even over the torque."""
+    assert rates_apart_within(SINE) == pytest.approx(2.28, rel=0.02)
+    assert rates_apart_within(RAMPS) == pytest.approx(1.0, abs=0.02)
+    noise = np.random.default_rng(3).normal(0, 0.01 * LARGEST, len(RAMPS))
+    noisy = rates_apart_within(replace(RAMPS, torque_Nm=RAMPS.torque_Nm + noise))
+    assert noisy < RATES_WITHIN
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("within_Nm", [0.004, 0.1])
+def test_on_straight_ramps_at_one_rate_a_rate_dependence_is_never_without_friction(
+    within_Nm: float, seed: int
+) -> None:
+    """Friction alone, as sharp as a low power of the rate; it was named rate dependence, beyond doubt."""
+    found = found_in(rubbing(RAMPS, within_Nm), RAMPS, seed)
+    assert found.keys() & {"rate_dependence", "friction_hysteresis"}
+    assert found.get("rate_dependence", ("friction_hysteresis",)) == ("friction_hysteresis",)
+
+
+def test_on_straight_ramps_at_one_rate_a_lag_is_not_told_from_friction() -> None:
+    assert found_in(lagging(RAMPS), RAMPS)["rate_dependence"] == ("friction_hysteresis",)
 
 
 def test_at_one_rate_a_loop_that_takes_both_is_either_s() -> None:
     """Friction whose thresholds are spread in some way has this loop by itself."""
-    found = of_sine(lagging(SINE) + rubbing(SINE))
+    found = found_in(lagging(SINE) + rubbing(SINE))
     assert found == {
         "rate_dependence": ("friction_hysteresis",),
         "friction_hysteresis": ("rate_dependence",),
