@@ -154,13 +154,14 @@ def test_rates_within_a_record_tell_a_sine_from_ramps() -> None:
     assert noisy < RATES_WITHIN
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("within_Nm", [0.004, 0.1])
+@pytest.mark.parametrize("seed", range(3))
 def test_on_straight_ramps_at_one_rate_a_rate_dependence_is_never_without_friction(
-    within_Nm: float, seed: int
+    seed: int,
 ) -> None:
-    """Friction alone, as sharp as a low power of the rate; it was named rate dependence, beyond doubt."""
-    found = found_in(rubbing(RAMPS, within_Nm), RAMPS, seed)
+    """Eight springs that slip, on ramps from 10 to 100 % and back: they were named rate dependence, sure."""
+    preloaded = replace(RAMPS, torque_Nm=0.55 * LARGEST + 0.45 * RAMPS.torque_Nm)
+    loops = [rubbing(preloaded, 0.3 * LARGEST / k) for k in range(1, 9)]
+    found = found_in(np.mean(loops, axis=0), preloaded, seed)
     assert found.keys() & {"rate_dependence", "friction_hysteresis"}
     assert found.get("rate_dependence", ("friction_hysteresis",)) == ("friction_hysteresis",)
 
