@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from flexspline.geometry.errors import GeometryError, one_line
+from flexspline.geometry.signals import held_signals
 
 
 class CadKernelError(GeometryError):
@@ -13,14 +14,15 @@ class CadKernelError(GeometryError):
 
 @cache
 def load_kernel() -> None:
-    """Load cadquery.
+    """Load cadquery. An interruption waits: in the middle of loading, VTK and OCCT fail or crash by it.
 
     Raises
     ------
     CadKernelError : a library of the system is missing.
     """
     try:
-        import cadquery  # noqa: F401
+        with held_signals():
+            import cadquery  # noqa: F401
     except ImportError as fault:
         lacks = one_line(str(fault), 200)
         advice = "; on Debian and Ubuntu: apt-get install libgl1" if "libGL" in lacks else ""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import errno
 import os
-import signal
 import stat
-import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from flexspline.geometry.signals import held_signals
 from flexspline.pipeline.temporary_files import unfinished
 
 UMASK = os.umask(0o077)
@@ -49,7 +48,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
             os.chmod(made[folder / name], 0o666 & ~UMASK)
         for path in made:  # before the first is moved: an answer is not half replaced
             refuse_fixed(path)
-        with _not_stopped():
+        with held_signals():
             for path, part in made.items():
                 with _named(path):
                     os.replace(part, path)
@@ -86,23 +85,3 @@ def refuse_fixed(path: Path) -> None:
     if sticky and os.geteuid() not in (0, there.st_uid, above.st_uid):
         reason = "belongs to another user, whose files this folder keeps"
         raise OSError(errno.EPERM, reason, str(path))
-
-
-@contextmanager
-def _not_stopped() -> Iterator[None]:
-    """Requests to end wait; only the main thread hears of them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    before = {
-        each: signal.signal(each, lambda number, _: came.append(number))
-        for each in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield
-    finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
-    if came:
-        signal.raise_signal(came[0])

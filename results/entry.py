@@ -13,6 +13,9 @@ THREADS = {"OPENBLAS_NUM_THREADS": "1", "KMP_BLOCKTIME": "0"}
 """For a command and what it starts, where the user has set nothing. Matrices of BLAS are small, and its
 threads wait for each other in a loop that keeps a core busy; MKL's, of large sparse matrices, would do so for
 0.2 s after each. `flexspline stiffness examples/xb1-40.toml` takes 6.6 s of processor time, 7.6 without."""
+CHARTS = {"MPLBACKEND": "agg"}
+"""For the same, whatever the user has set: matplotlib draws into files here, and refuses to load where the
+variable names a backend that is not installed, as Jupyter's does for the commands that it starts."""
 INTERRUPTED = 130
 TERMINATED = 143
 """Exit statuses, as shells have them: 128 and the signal's number."""
@@ -23,6 +26,7 @@ def main() -> None:
     asked: list[int] = []
     for name, value in THREADS.items():  # before the libraries are loaded, which read it once
         os.environ.setdefault(name, value)
+    os.environ.update(CHARTS)
 
     def end(number: int, frame: object) -> None:
         asked.append(number)
