@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from histories import LARGEST, PREDICTION, sweep
+from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
@@ -91,3 +92,16 @@ def test_wear_that_metals_could_grow_has_a_rival() -> None:
     """6 arcsec: a gear that was 3 K colder at the start needs 2 to 4 arcsec/K."""
     (found,) = diagnosed(6.0).causes
     assert set((found.id, *found.alternatives)) >= {"wear", "thermal_clearance"}
+
+
+@pytest.mark.parametrize(("gap_arcsec", "rivals"), [(45.0, ("thermal_clearance",)), (90.0, ())])
+def test_a_gap_beside_one_temperature_has_a_thermal_rival_that_metals_can_make(
+    gap_arcsec: float, rivals: tuple[str, ...]
+) -> None:
+    """6 K from 20 °C: 7.5 and 15 arcsec/K, of which aluminium at 45° makes 10."""
+    history = sweep(cycles=3, rows=200, hold=0)
+    history = replace(history, temperature_C=np.full(len(history), 26.0), input_angle_deg=None)
+    angle = PREDICTION.angle_arcsec(history) + gap_arcsec / 2 * history.sign
+    angle = angle + np.random.default_rng(5).normal(0, 0.5, len(angle))
+    causes = diagnose_sweep(as_read(history, angle), PREDICTION)[0].causes
+    assert {c.id: c.alternatives for c in causes} == {"clearance_offset": rivals}
