@@ -137,8 +137,8 @@ class Cause(ABC):
         """Whether an element of this shape is all there is of the cause: no second one stands beside it."""
         return False
 
-    def plausible(self, elements: Sequence[Element]) -> bool:
-        """Whether a real gear may have these: asked of what would stand in for another cause."""
+    def plausible(self, elements: Sequence[Element], rig: Rig) -> bool:
+        """Whether a real gear may have these on a record: asked of what would stand in for another cause."""
         return True
 
     def possible(self, shape: Shape) -> bool:

@@ -29,9 +29,9 @@ SWING_SHARE, LEAST_MOST_K = 0.35, 3.0
 a swing of ±A by a time constant of a radian of it the gear is off by up to A/√2, 0.35 of the span. And in
 steady air: what it keeps of the last test or of the night."""
 
-STEADY, STEADY_K = "steady", 2.0
-"""The parameter of a record in which the air changes by less than so much: sensors differ by half of it, and
-a gap that changes with it is not seen to."""
+STEADY_K = 2.0
+"""Air that changes by less in a record is steady: sensors differ by half of it, and no gap is seen to change
+with it."""
 MOST_PER_K = 10.0
 """arcsec/K that a gap may change by: 2·tan α·Δα rad/K, Δα the difference of two metals' expansion, at most
 that of aluminium, 24e-6 /K, and α the flank's angle, at most 45°."""
@@ -58,8 +58,6 @@ class ThermalClearance(Cause):
             return []
         longest = LAGS[-1] * rig.duration_s
         plain: list[Shape] = [{"lag_s": 0.0, "longest_lag_s": longest}]
-        if float(np.ptp(rig.history.temperature_C)) < STEADY_K:
-            plain = [{**plain[0], STEADY: 1.0}]
         if rig.duration_s <= 0:
             return plain
         lagging = [{"lag_s": s * rig.duration_s, "longest_lag_s": longest} for s in LAGS]
@@ -75,10 +73,12 @@ class ThermalClearance(Cause):
         """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""
         return MOST_OFF in shape
 
-    def plausible(self, elements: Sequence[Element]) -> bool:
+    def plausible(self, elements: Sequence[Element], rig: Rig) -> bool:
         """A gap that grows for want of a temperature that no sensor saw, or none saw change, must be one that
         metals can make."""
-        unseen = [e for e in elements if MOST_OFF in e.shape or STEADY in e.shape]
+        air = rig.history.temperature_C
+        steady = air is not None and float(np.ptp(air)) < STEADY_K
+        unseen = [e for e in elements if steady or MOST_OFF in e.shape]
         return all(abs(e.amplitudes[0]) <= MOST_PER_K for e in unseen)
 
     def possible(self, shape: Shape) -> bool:

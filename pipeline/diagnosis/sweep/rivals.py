@@ -50,7 +50,7 @@ def rivals_of(
         if other not in rival.named(evidence) or cancels_itself(evidence, rival, other):
             continue
         fit = fit_regressors(evidence, rival.terms)
-        if not known_causes()[other].plausible(fit.elements()[other]):
+        if not known_causes()[other].plausible(fit.elements()[other], evidence.columns.rig):
             continue
         # a soft wind-up that ends below the least torque recorded: nobody can say that it is no gap
         if (cause, other) == (CLEARANCE, HARDENING) and _is_calibration(fit, other):

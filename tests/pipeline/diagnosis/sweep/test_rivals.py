@@ -60,9 +60,10 @@ def test_no_two_metals_make_a_gap_grow_by_a_temperature_that_none_saw(metals: fl
     per_K = metals * 2 * STEEL_ALUMINIUM * ARCSEC_PER_RAD
     unsettled = {"lag_s": 10.0, "longest_lag_s": 20.0, "colder_K": 1.0, "most_off_K": 3.0}
     seen = {"lag_s": 0.0, "longest_lag_s": 20.0}
-    assert cause.plausible((Element(unsettled, (per_K,)),)) == (metals == 1.0)
-    assert cause.plausible((Element(unsettled, (-per_K,)),)) == (metals == 1.0)
-    assert cause.plausible((Element(seen, (per_K,)),))
+    rig = Rig(PREDICTION, sweep())
+    assert cause.plausible((Element(unsettled, (per_K,)),), rig) == (metals == 1.0)
+    assert cause.plausible((Element(unsettled, (-per_K,)),), rig) == (metals == 1.0)
+    assert cause.plausible((Element(seen, (per_K,)),), rig)
 
 
 def diagnosed(growth_arcsec: float) -> DiagnosisOutcome:
