@@ -9,8 +9,11 @@ from flexspline.results.doubt import NOT_STATED
 from flexspline.results.numbers import grouped
 from flexspline.results.peaks import marked
 from flexspline.results.quantities import QUANTITIES
+from flexspline.results.terminal import row
 
 STD_KEY = "backlash_arcsec.std"
+NAMES = 64
+"""Width of the column of names."""
 
 
 def table(record: dict[str, Any], folder: Path) -> str:
@@ -22,7 +25,7 @@ def table(record: dict[str, Any], folder: Path) -> str:
         for key in entry.key.split("."):
             value = value.get(key) if isinstance(value, dict) else None
         if value is None and entry.key == STD_KEY and "backlash_arcsec" in record:
-            lines.append(f"  {entry.name:<64} {NOT_STATED}")
+            lines += row((entry.name, NOT_STATED), (NAMES,))
         if value is None or entry.key in ("design", "version"):
             continue
         if entry.kind == "text":
@@ -33,20 +36,18 @@ def table(record: dict[str, Any], folder: Path) -> str:
         else:
             mark = marked(record, entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
-        lines.append(f"  {entry.name:<64} {shown}".rstrip())
+        lines += row((entry.name, shown), (NAMES,))
     if terms := record.get("terms_arcsec"):
         from flexspline.results.gear_terms import term_names
 
-        lines.append(
-            f"  Twist between ± {record['terms_torque_Nm']:g} N·m (load.torque_Nm), term by term:"
-        )
+        torque = f"{record['terms_torque_Nm']:g} N·m (load.torque_Nm)"
+        lines += row((f"Twist between ± {torque}, term by term:",), ())
         for term, name in term_names().items():
-            lines.append(f"    {name:<62} {grouped(terms[term], 1)} arcsec")
+            lines += row((name, f"{grouped(terms[term], 1)} arcsec"), (NAMES - 2,), "    ")
     if "assumed" in gear:
         keys = ", ".join(a["key"] for a in gear["assumed"])
-        lines.append(f"  assumed for the whole gear: {keys}")
-    lines += [
-        f"  assumed: {a['key']} = {a['value']:.4g}, {a['why']}" for a in record.get("assumed", ())
-    ]
+        lines += row((f"assumed for the whole gear: {keys}",), ())
+    for a in record.get("assumed", ()):
+        lines += row((f"assumed: {a['key']} = {a['value']:.4g}, {a['why']}",), ())
     lines.append(f"files in {folder}")
     return "\n".join(lines)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from pathlib import Path
 
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -23,28 +22,25 @@ from flexspline.results.diagnosis.words import (
     sure_words,
     title_of,
 )
-
-WIDTH = 96
-"""Letters of a wrapped line; rows of causes reach 107."""
+from flexspline.results.terminal import prose, row
 
 
 def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     """Verdict, causes, gain and what to measure next."""
     outcome = diagnosis.outcome
     lines = [f"{diagnosis.design.name} against {diagnosis.measurement.path.name}"]
-    lines += _wrapped(f"{verdict_heading(diagnosis)} ({outcome.verdict}). {summary(diagnosis)}")
+    lines += prose(f"{verdict_heading(diagnosis)} ({outcome.verdict}). {summary(diagnosis)}")
     for cause in outcome.causes:
-        lines.append(
-            f"  {capital(cause_title(cause)):<62} {magnitude_words(cause):<28} {sure_words(cause)}"
-        )
+        size, sure = magnitude_words(cause), sure_words(cause)
+        lines += row((capital(cause_title(cause)), size, sure), (62, 28))
         if cause.alternatives:
-            lines += _wrapped(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
+            lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
         rms = f"{figures_text(u.rms)} {u.unit} rms"
         left = f"left over in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
-        lines += _wrapped(left, "  ", "    ")
+        lines += prose(left, "  ", "    ")
     if diagnosis.calibration is not None:
-        lines += _wrapped(
+        lines += prose(
             calibrated_sentences(
                 diagnosis.calibration, diagnosis.prediction, bool(outcome.unexplained)
             )
@@ -52,12 +48,10 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
     lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
-        lines += _wrapped(
-            f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind)}"
-        )
+        lines += prose(f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind)}")
     for note in notes(diagnosis):
-        lines += _wrapped(f"note: {note}", "  ", "    ")
-    lines.append(f"  SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}")
+        lines += prose(f"note: {note}", "  ", "    ")
+    lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",), ())
     lines.append(f"files in {folder}")
     return "\n".join(lines)
 
@@ -66,26 +60,19 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
     """Errors on what was held out: between other cycles, then on whole amplitudes, rates and temperatures."""
     lines, gain = [], outcome.gain
     if gain is not None:
-        lines.append(
-            f"  Error on {left_out_words(gain.held_out)}, not used for fitting, in {gain.unit} rms:"
-        )
+        held_out = left_out_words(gain.held_out)
+        lines += row((f"Error on {held_out}, not used for fitting, in {gain.unit} rms:",), ())
         for words, value in (
             ("simulation as it stands", gain.rmse_before),
             (calibrated_words(gain), gain.rmse_calibrated),
             ("with the causes found", gain.rmse_after),
             (noise_words(gain), gain.noise_floor),
         ):
-            lines.append(f"    {words:<60} {figures_text(value)}")
+            lines += row((words, figures_text(value)), (60,), "    ")
     if outcome.gains_at_levels:
-        lines.append(
-            "  Error where a whole level was left out, in arcsec rms, without and with the causes:"
-        )
+        head = "Error where a whole level was left out, in arcsec rms, without and with the causes:"
+        lines += row((head,), ())
     for level in outcome.gains_at_levels:
         before, after = figures_text(level.rmse_before), figures_text(level.rmse_after)
-        lines.append(f"    {left_out_words(level.held_out):<60} {before:<7} {after}")
+        lines += row((left_out_words(level.held_out), before, after), (60, 7), "    ")
     return lines
-
-
-def _wrapped(text: str, first: str = "  ", rest: str | None = None) -> list[str]:
-    after = first if rest is None else rest
-    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=after)
