@@ -31,9 +31,8 @@ def check(found: Sequence[Mark]) -> None:
     assert not missed, "\n".join([table(rows), breakdown(found), failures(found)])
 
 
-@pytest.mark.parametrize("count", [12, pytest.param(24, marks=pytest.mark.long)])
-def test_demands_on_fixed_seeds(count: int) -> None:
-    check(marks(FIXED_SEED, count))
+def test_demands_on_fixed_seeds() -> None:
+    check(marks(FIXED_SEED, 24))
 
 
 @pytest.mark.long
