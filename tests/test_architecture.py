@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -100,7 +101,10 @@ def private_names(path: Path) -> set[str]:
     return {n for n in names if is_private(n)}
 
 
-PRIVATE = frozenset[str]().union(*map(private_names, FILES))
+@cache
+def private() -> frozenset[str]:
+    """Of the whole program; looked for by the tests, not by every process that collects them."""
+    return frozenset[str]().union(*map(private_names, FILES))
 
 
 def private_uses(text: str) -> Iterator[str]:
@@ -109,12 +113,12 @@ def private_uses(text: str) -> Iterator[str]:
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("flexspline"):
                 yield from (alias.name for alias in node.names if is_private(alias.name))
-            elif isinstance(node, ast.Attribute) and node.attr in PRIVATE:
+            elif isinstance(node, ast.Attribute) and node.attr in private():
                 if not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")):
                     yield node.attr
             elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("setattr"):
                 words = [a.value for a in node.args if isinstance(a, ast.Constant)]
-                yield from (w for w in map(str, words) if w.rpartition(".")[2] in PRIVATE)
+                yield from (w for w in map(str, words) if w.rpartition(".")[2] in private())
 
 
 def test_tests_use_no_private_name_of_the_program() -> None:

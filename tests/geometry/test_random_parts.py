@@ -13,7 +13,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.tagged import tagged_surface
 
-SHORT = settings(max_examples=15, deadline=None, derandomize=True)
+SHORT = settings(max_examples=10, deadline=None, derandomize=True)
 LONG = settings(
     max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much]
 )

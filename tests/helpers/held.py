@@ -39,7 +39,8 @@ class HeldWorker:
     async def ask(self, question: str, tables: dict[str, Any]) -> Any:
         while self.studio.hold(question, tables):
             await asyncio.sleep(LOOK_S)
-        asked = f"{question} {json.dumps(tables, sort_keys=True)}"
+        # no figure and no picture has the design's name
+        asked = f"{question} {json.dumps({**tables, 'name': ''}, sort_keys=True)}"
         return await asyncio.to_thread(
             once, self.studio.suite, asked, lambda: answer(question, tables)
         )

@@ -23,7 +23,8 @@ from flexspline.pipeline.diagnosis.measurement.record import Specimens
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPECIMENS = 8
 NOISE = 0.01
-FE_TOLERANCE = 1e-3
+FE_TOLERANCE = 3e-3
+"""Of K: bounds 0.3 % apart, their middle far nearer, beside 1 % of noise in each specimen."""
 Kind = Literal["clean", "softer", "joint", "lobes", "wall", "diaphragm", "length"]
 MODULUS_STD = 0.02
 """As the example designs state."""

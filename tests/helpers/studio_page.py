@@ -38,6 +38,7 @@ class Server:
 
     process: subprocess.Popen[str]
     url: str
+    design: Path
     temporary: Path | None = None
 
     @property
@@ -62,7 +63,7 @@ def start(design: Path, *options: str, temporary: Path | None = None) -> Server:
     )  # fmt: skip
     line = process.stdout.readline()
     assert line.startswith("flexspline studio: http://"), line
-    return Server(process, line.split()[-1], temporary)
+    return Server(process, line.split()[-1], design, temporary)
 
 
 @contextmanager

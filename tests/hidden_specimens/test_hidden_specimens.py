@@ -111,13 +111,22 @@ def judged(found: list[Answer], capsys: pytest.CaptureFixture) -> None:
     assert two >= 0.88
 
 
-def test_right_cause_first(suite_cache: Path, capsys: pytest.CaptureFixture) -> None:
-    """What FE says of the cups is in the suite's cache; of the hats only the wall is looked at."""
-    hats = ("clean", "softer", "wall")
-    sets = [
-        Asked("xb1-40", AS_IN_THE_EXAMPLE, 4),
-        Asked("hat-25", 3, 1, hats, (f"flexspline.{KEYS['wall']}",)),
-    ]
+CUPS = Asked("xb1-40", AS_IN_THE_EXAMPLE, 4)
+"""What FE says of them is in the suite's cache."""
+HATS = Asked("hat-25", 3, 1, ("clean", "softer", "wall"), (f"flexspline.{KEYS['wall']}",))
+"""Only the wall is looked at."""
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        pytest.param([CUPS], id="cups"),
+        pytest.param([CUPS, HATS], id="cups and hats", marks=pytest.mark.long),
+    ],
+)
+def test_right_cause_first(
+    sets: list[Asked], suite_cache: Path, capsys: pytest.CaptureFixture
+) -> None:
     judged(list(answers(suite_cache, sets, np.random.default_rng(20))), capsys)
 
 

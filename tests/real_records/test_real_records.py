@@ -107,7 +107,8 @@ def test_the_joint_s_loops_are_as_the_plot_shows() -> None:
 
 
 @pytest.mark.parametrize(
-    "rows", [pytest.param(LAST_REVERSAL, marks=pytest.mark.long), MIDWAY, len(JOINT)]
+    "rows",
+    [*(pytest.param(n, marks=pytest.mark.long) for n in (LAST_REVERSAL, MIDWAY)), len(JOINT)],
 )
 def test_a_joint_that_rubs_may_rub_or_lag_when_time_was_not_recorded(
     tmp_path: Path, rows: int

@@ -65,15 +65,15 @@ def try_all(seeds: Iterable[int], sources: Path, folder: Path) -> list[Tried]:
     return found
 
 
-def test_twenty_four_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Each kind with every other mutation, by turns."""
+def test_twelve_files(here: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Each kind with two mutations, and each mutation with a kind, by turns."""
     pairs = [(kind, number) for kind in range(len(KINDS)) for number in range(len(MUTATIONS))]
-    seeds = [k * len(MUTATIONS) + n for k, n in pairs if (k + n) % 2 == 0]
+    seeds = [k * len(MUTATIONS) + n for k, n in pairs if (k + n) % 4 == 0]
     found = try_all(seeds, tmp_path_factory.mktemp("sources"), here)
     words = Counter(t.word for t in found)
-    assert len(found) == 24
-    assert words["refused"] > 12
-    assert words["failed"] < 3
+    assert len(found) == 12
+    assert words["refused"] > 6
+    assert words["failed"] < 2
 
 
 @pytest.mark.long

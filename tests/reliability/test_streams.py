@@ -91,7 +91,15 @@ def said(folder: Path, env: dict[str, str], commands: list[list[str]]) -> list[b
     return texts
 
 
-@pytest.mark.parametrize("env", NARROW.values(), ids=NARROW)
+@pytest.mark.parametrize(
+    "env",
+    # those that draw figures stay by default
+    [
+        pytest.param(NARROW[n], marks=[pytest.mark.long] * (n in ("ascii", "cp1252")))
+        for n in NARROW
+    ],
+    ids=NARROW,
+)
 def test_every_quick_command(env: dict[str, str], tmp_path: Path) -> None:
     """Names of files and of the design beyond ASCII, too; what is written is UTF-8 all the same."""
     text = CUP.read_text(encoding="utf-8").replace("XB1-40 cup", "Zähne µ 齿")

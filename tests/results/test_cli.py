@@ -27,14 +27,6 @@ ROOT = Path(__file__).parents[2]
 CUP = ROOT / "examples" / "xb1-40.toml"
 
 
-def flexspline(*words: object, cache: Path | None = None) -> subprocess.CompletedProcess[str]:
-    env = os.environ | ({"FLEXSPLINE_CACHE": str(cache)} if cache else {})
-    return subprocess.run(
-        [sys.executable, "-m", "flexspline.results.cli", *map(str, words)],
-        capture_output=True, text=True, check=False, env=env,
-    )  # fmt: skip
-
-
 def copy_of(source: Path, folder: Path, *changes: tuple[str, str]) -> Path:
     text = source.read_text(encoding="utf-8")
     for old, new in changes:
@@ -73,8 +65,8 @@ def test_series_stiffness_is_near_the_articles(finished_cup) -> None:
 
 
 def test_second_run_reuses_everything(finished_cup, tmp_path: Path) -> None:
-    cache, first = finished_cup.cache, finished_cup.result
-    again = flexspline("run", CUP, "--out", tmp_path, "--json", cache=cache)
+    first = finished_cup.result
+    again = in_process.flexspline("run", CUP, "--out", tmp_path, "--json", folder=tmp_path)
     second = json.loads(again.stdout)
     assert "mesh of" not in again.stderr
     for key, value in first.items():
@@ -83,9 +75,9 @@ def test_second_run_reuses_everything(finished_cup, tmp_path: Path) -> None:
 
 
 def test_changed_clearance_does_not_mesh_again(finished_cup, tmp_path: Path) -> None:
-    cache, first = finished_cup.cache, finished_cup.result
+    first = finished_cup.result
     design = copy_of(CUP, tmp_path, ("flank_clearance_um = 3.0", "flank_clearance_um = 3.5"))
-    done = flexspline("backlash", design, "--json", cache=cache)
+    done = in_process.flexspline("backlash", design, "--json", folder=tmp_path)
     assert "mesh of" not in done.stderr
     assert "CAD" not in done.stderr
     second = json.loads(done.stdout)
@@ -95,16 +87,21 @@ def test_changed_clearance_does_not_mesh_again(finished_cup, tmp_path: Path) -> 
     )
 
 
-def test_damaged_cache_entries_are_discarded_and_said(finished_cup, tmp_path: Path) -> None:
+def test_damaged_cache_entries_are_discarded_and_said(
+    finished_cup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     cache, first = finished_cup.cache, finished_cup.result
     broken = tmp_path / "cache"
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(broken))
     shutil.copytree(cache, broken, ignore=shutil.ignore_patterns(f"{MARK}*"))  # others write
     for entry in (broken / "torsion").glob("*.npz"):
         data = bytearray(entry.read_bytes())
         data[len(data) // 2] ^= 0xFF
         entry.write_bytes(bytes(data))
-    done = flexspline("stiffness", CUP, "--out", tmp_path, "--json", cache=broken)
-    assert done.returncode == 0
+    done = in_process.flexspline(
+        "stiffness", CUP, "--out", tmp_path, "--json", folder=tmp_path / "out"
+    )
+    assert done.status == 0
     assert done.stderr.count("discarded a damaged cache entry") == 2
     # the meshes themselves are whole: the same mesh gives the same K
     K = json.loads(done.stdout)["K_b_Nm_per_rad"]
@@ -113,10 +110,8 @@ def test_damaged_cache_entries_are_discarded_and_said(finished_cup, tmp_path: Pa
 
 @pytest.mark.cad
 def test_export_writes_cad_and_fields(finished_cup, tmp_path: Path) -> None:
-    cache = finished_cup.cache
-    done = flexspline(
-        "export", CUP, "--out", tmp_path, "--format", "msh,vtu", "--deck", "--json", cache=cache
-    )
+    words = ("--format", "msh,vtu", "--deck", "--json")
+    done = in_process.flexspline("export", CUP, "--out", tmp_path, *words, folder=tmp_path)
     names = [Path(f).name for f in json.loads(done.stdout)["files"]]
     fields = {"flexspline_torque.vtu", "shaft_torque.vtu", "wave_generator.vtu"}
     asked = {"flexspline.msh", "shaft.msh", "flexspline.vtu", "shaft.vtu"}
@@ -236,13 +231,17 @@ def test_a_torque_beyond_the_linear_model_is_said(tmp_path: Path) -> None:
     assert any(w.startswith(line) for w in result["warnings"])
 
 
-def test_a_stress_above_the_stated_limit_is_said(tmp_path: Path) -> None:
+def test_a_stress_above_the_stated_limit_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     revolved = without_holes(with_values(load_design(CUP), {LIMIT: 400.0, TOLERANCE: 5.0}))
     path = tmp_path / "design.toml"
     path.write_text(design_text(revolved), encoding="utf-8")
-    cache = tmp_path / "cache"
-    done = flexspline("stiffness", path, "--out", tmp_path, "--json", cache=cache)
-    assert done.returncode == 0, done.stderr
+    monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path / "cache"))
+    done = in_process.flexspline(
+        "stiffness", path, "--out", tmp_path, "--json", folder=tmp_path / "none"
+    )
+    assert done.status == 0, done.stderr
     result = json.loads(done.stdout)
     assert result["wave_generator_peak_mises_MPa"] > 400
     assert result["wave_generator_peak_at_excluded_border"] is True

@@ -98,7 +98,7 @@ def assert_contact(seat: SeatCompliance) -> tuple[np.ndarray, np.ndarray]:
     return force, gap
 
 
-@pytest.mark.parametrize("places", [17, 1000])
+@pytest.mark.parametrize("places", [pytest.param(17, marks=pytest.mark.long), 1000])
 def test_contact_settles_on_a_thin_rim(places: int, monkeypatch) -> None:
     """At every node of this one a primal-dual active set ran in a circle, round after round.
 
@@ -117,7 +117,11 @@ def test_contact_settles_on_a_thin_rim(places: int, monkeypatch) -> None:
     assert len(rounds) <= 25
 
 
-@pytest.mark.parametrize("cup", [SHALLOW, PUBLISHED_CUP], ids=["shallow", "published"])
+@pytest.mark.parametrize(
+    "cup",
+    [SHALLOW, pytest.param(PUBLISHED_CUP, marks=pytest.mark.long)],
+    ids=["shallow", "published"],
+)
 def test_some_places_tell_what_all_nodes_tell(cup: Meridian) -> None:
     mesh = triangulate(cup)
     if cup is PUBLISHED_CUP:
@@ -151,7 +155,11 @@ def test_more_angles_change_little(seat) -> None:
     assert K[0] == pytest.approx(K[1], rel=3e-4)
 
 
-@pytest.mark.parametrize("cup", [EXAMPLE_CUP, PUBLISHED_CUP], ids=["xb1-40", "published"])
+@pytest.mark.parametrize(
+    "cup",
+    [EXAMPLE_CUP, pytest.param(PUBLISHED_CUP, marks=pytest.mark.long)],
+    ids=["xb1-40", "published"],
+)
 def test_contact_lies_between_free_and_held(cup: Meridian) -> None:
     held = lobe_stiffness(cup, STEEL, True, 0.005)
     free = lobe_stiffness(cup, STEEL, False, 0.005)

@@ -28,7 +28,7 @@ CASES = {
 
 
 @pytest.mark.parametrize(
-    "case", [pytest.param(c, marks=[pytest.mark.long] * (i > 1)) for i, c in enumerate(CASES)]
+    "case", [pytest.param(c, marks=[pytest.mark.long] * (i > 0)) for i, c in enumerate(CASES)]
 )
 def test_peak_is_the_meridians(case: str, tmp_path: Path, record) -> None:
     file, changes = CASES[case]

@@ -82,7 +82,9 @@ def agree(found: Solved, known: Solved) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("holes", [3, 4, 5, 8])
+@pytest.mark.parametrize(
+    "holes", [4, 5, *(pytest.param(n, marks=pytest.mark.long) for n in (3, 8))]
+)
 def test_waves_give_what_the_quarter_or_half_gives(holes: int, case: str) -> None:
     model = Model.of(half(holes), STEEL)
     assert repeats_of(model.mesh) == holes
@@ -112,7 +114,7 @@ def test_a_part_with_an_axis(holes: int) -> None:
     agree(lobes(Model.of(own, STEEL), False), lobes(Model.of(larger(mesh), STEEL), False))
 
 
-@pytest.mark.parametrize("supported", [True, False])
+@pytest.mark.parametrize("supported", [pytest.param(True, marks=pytest.mark.long), False])
 def test_repeats_of_a_body_of_revolution_mean_nothing(supported: bool) -> None:
     body = part(0)
     exact = lobe_stiffness(body.meridian, STEEL, supported, 0.002)

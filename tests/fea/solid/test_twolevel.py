@@ -52,7 +52,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", [pytest.param(c, marks=[pytest.mark.long] * (c == "lobes")) for c in CASES]
+)
 def test_iteration_gives_what_factors_give(case: str, quarter: Model) -> None:
     direct: Solved = CASES[case](replace(quarter, solve_by="direct"))
     iterated: Solved = CASES[case](replace(quarter, solve_by="iterative"))

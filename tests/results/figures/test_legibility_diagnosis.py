@@ -110,7 +110,12 @@ RECORDS = {
 }  # fmt: skip
 
 
-SLOW = ("example specimens", "specimens")  # each a set of solves; one more of the kind stays
+SLOW = (
+    "example specimens", "specimens",  # each a set of solves; one more of the kind stays
+    "nothing wrong", "one cycle", "large effect", "thirty units", "example end points",
+    "units in other letters", "end points of many",
+)  # fmt: skip
+"""Of each the like stays by default, with more in it or with longer names."""
 RUNS = [pytest.param(n, marks=[pytest.mark.long] if n in SLOW else []) for n in RECORDS]
 
 

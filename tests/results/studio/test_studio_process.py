@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import in_process
 import pytest
-from studio_page import Page, Server, running, start, write_design
+from studio_page import Page, Server, start
 
 import flexspline
 from flexspline.geometry.keys import without_holes
@@ -155,26 +155,25 @@ def test_a_solid_solve_shows_its_progress_and_ends_by_stop_reload_and_close(
 
 
 def test_a_server_killed_and_started_again_is_found(
-    studio_browser: Browser, tmp_path: Path
+    studio_browser: Browser, studio: Server
 ) -> None:
-    design = write_design(tmp_path / "design.toml")
-    first = start(design)
-    page = Page(studio_browser, first.url)
+    """Last: it ends what the others were served by, and leaves its successor in its place."""
+    page = Page(studio_browser, studio.url)
     try:
         page.quick()
         page.set("flexspline.wall_thickness_mm", "0.47")
         page.quick()
         before = page.value("K_b_Nm_per_rad")
-        first.end(kill=True)
+        studio.end(kill=True)
         page.at("#notice:has-text('Connection lost')").wait_for()
         page.field("flexspline.length_mm").fill("31")
-        with running(design, "--port", str(first.port)) as second:
-            page.at("#notice:has-text('open the address that it printed')").wait_for()
-            page.context.new_page().goto(second.url)  # its cookie is the first tab's too
-            page.at("#notice:has-text('Connected again')").wait_for()
-            page.quick()
-            assert page.field("flexspline.wall_thickness_mm").input_value() == "0.47"
-            assert page.value("K_b_Nm_per_rad") < before  # what was typed meanwhile counts: longer
+        second = start(studio.design, "--port", str(studio.port), temporary=studio.temporary)
+        studio.process = second.process
+        page.at("#notice:has-text('open the address that it printed')").wait_for()
+        page.context.new_page().goto(second.url)  # its cookie is the first tab's too
+        page.at("#notice:has-text('Connected again')").wait_for()
+        page.quick()
+        assert page.field("flexspline.wall_thickness_mm").input_value() == "0.47"
+        assert page.value("K_b_Nm_per_rad") < before  # what was typed meanwhile counts: longer
     finally:
         page.close()
-        first.end(kill=True)

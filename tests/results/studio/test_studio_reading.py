@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -24,6 +24,15 @@ const get = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
   return kind.startsWith("webgl") ? null : get.call(this, kind, ...rest);
 };"""
+
+
+@pytest.fixture(scope="module")
+def kept_tab(studio_browser: Browser) -> Iterator[Page]:
+    """Of `tab`, without the part's picture, which is most of a browser's work: nothing here asks for it but
+    the paper, which has a tab of its own."""
+    page = Page(studio_browser, init=NO_WEBGL)
+    yield page
+    page.close()
 
 
 def test_no_estimate_is_called_guaranteed(tab: Page) -> None:
@@ -142,7 +151,10 @@ def test_by_keyboard_alone(tab: Page, width: int) -> None:
     assert float(tab.field(WALL).input_value()) > float(before)
 
 
-def test_on_paper_are_the_name_the_part_and_every_figure(tab: Page) -> None:
+def test_on_paper_are_the_name_the_part_and_every_figure(
+    held_tabs: Callable[..., Page],
+) -> None:
+    tab = held_tabs()
     tab.at("#name").fill("a cup for paper")
     tab.complete()
     sheet = PdfReader(io.BytesIO(tab.tab.pdf(format="A4")))

@@ -119,7 +119,7 @@ def test_a_port_of_the_system_is_refused_with_advice(monkeypatch: pytest.MonkeyP
         asyncio.run(listen())
 
 
-@pytest.mark.parametrize("host", ["127.0.0.2", "::1"])
+@pytest.mark.parametrize("host", [pytest.param("127.0.0.2", marks=pytest.mark.long), "::1"])
 def test_it_answers_at_the_address_that_it_prints(host: str, tmp_path: Path) -> None:
     try:
         socket.create_server((host, 0), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
@@ -138,7 +138,7 @@ def test_the_drawing_library_stays_out_of_the_server() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("after_s", [0.0, 0.2])
+@pytest.mark.parametrize("after_s", [0.0, pytest.param(0.2, marks=pytest.mark.long)])
 def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
     with subprocess.Popen(
         [sys.executable, "-m", "flexspline.results.cli", "studio", "--no-browser"],

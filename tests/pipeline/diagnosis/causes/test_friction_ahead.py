@@ -117,7 +117,9 @@ def diagnosed(number: int, folder: Path) -> tuple[Diagnosis, float, float]:
     return found, case.truth[0][1], case.units[0].gear.gap
 
 
-@pytest.mark.parametrize("number", [1, 2, 4, 5])
+@pytest.mark.parametrize(
+    "number", [1, 4, *(pytest.param(n, marks=pytest.mark.long) for n in (2, 5))]
+)
 def test_named_with_its_size_and_the_gap(number: int, tmp_path: Path) -> None:
     """The limits asked of a forward model: friction within 14 %, gap within 23 %, and nothing false."""
     found, width, gap = diagnosed(number, tmp_path)

@@ -149,13 +149,17 @@ def test_units_within_are_consistent() -> None:
     assert all(u.p_corrected >= CORRECTED_P_VALUE for u in analysis.units)
 
 
-def test_false_alarms_are_as_rare_as_stated() -> None:
+@pytest.mark.parametrize(
+    ("draws", "least"), [(10, 8), pytest.param(15, 12, marks=pytest.mark.long)]
+)
+def test_false_alarms_are_as_rare_as_stated(draws: int, least: int) -> None:
     rng = np.random.default_rng(4)
     verdicts = [
-        diagnose_end_points(DESIGN, units([0.5], 4, rng), PREDICTION)[0].verdict for _ in range(15)
+        diagnose_end_points(DESIGN, units([0.5], 4, rng), PREDICTION)[0].verdict
+        for _ in range(draws)
     ]
-    # 5 % in expectation: more than 3 of 15 happens once in 180 times
-    assert verdicts.count("consistent") >= 12
+    # 5 % in expectation: more than 2 of 10 happens once in 87 times, more than 3 of 15 once in 180
+    assert verdicts.count("consistent") >= least
     assert "named" not in verdicts
 
 

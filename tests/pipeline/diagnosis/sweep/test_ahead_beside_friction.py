@@ -24,7 +24,9 @@ def play(torque: np.ndarray, width: float) -> np.ndarray:
     return np.array(found)
 
 
-@pytest.mark.parametrize(("ahead", "beside"), [(0.12, 3.0), (0.30, 6.0)])
+@pytest.mark.parametrize(
+    ("ahead", "beside"), [(0.12, 3.0), pytest.param(0.30, 6.0, marks=pytest.mark.long)]
+)
 def test_the_friction_ahead_is_found_beside_slipping_springs(
     tmp_path: Path, ahead: float, beside: float
 ) -> None:

@@ -91,7 +91,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long)])
 @pytest.mark.parametrize("name", CASES)
 def test_creep_is_named_and_nothing_else(name: str, seed: int, tmp_path: Path) -> None:
     kernel, back = CASES[name]

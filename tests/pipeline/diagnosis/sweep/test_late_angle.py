@@ -66,8 +66,15 @@ def rig(
     return prepare(as_read(history, angle), PREDICTION)
 
 
-@pytest.mark.parametrize("periods_s", [ONE_RATE, FOUR_RATES])
-@pytest.mark.parametrize("filter_s", [0.5, 1.5])
+@pytest.mark.parametrize(
+    ("periods_s", "filter_s"),
+    [
+        pytest.param(ONE_RATE, 0.5, id="one rate, quick"),
+        pytest.param(FOUR_RATES, 1.5, id="four rates, slow"),
+        pytest.param(ONE_RATE, 1.5, id="one rate, slow", marks=pytest.mark.long),
+        pytest.param(FOUR_RATES, 0.5, id="four rates, quick", marks=pytest.mark.long),
+    ],
+)
 def test_a_filter_of_the_angle_is_said_with_its_time(
     periods_s: tuple[float, ...], filter_s: float
 ) -> None:

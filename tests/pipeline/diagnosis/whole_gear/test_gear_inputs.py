@@ -55,7 +55,10 @@ def diagnosed(
     return diagnose_file(DESIGN, path, 31_300.0, 44_000.0, chain=chain)
 
 
-@pytest.mark.parametrize(("key", "factor"), [(FLANK, 2.0), (PLAY, 1.6), (STROKE, 1.025)])
+@pytest.mark.parametrize(
+    ("key", "factor"),
+    [pytest.param(FLANK, 2.0, marks=pytest.mark.long), (PLAY, 1.6), (STROKE, 1.025)],
+)
 def test_the_changed_input_is_named_with_its_size(
     chain: Chain, tmp_path: Path, key: str, factor: float
 ) -> None:
