@@ -85,6 +85,7 @@ def pytest_report_header() -> str | None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    os.environ.pop("COLUMNS", None)  # of pytest-xdist: answers would be folded
     if (
         signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     ):  # a shell's `&`; children would inherit it
