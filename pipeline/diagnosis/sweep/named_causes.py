@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
@@ -17,6 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, loop_tells
 
@@ -50,6 +52,8 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
             rivals = tuple(dict.fromkeys((*rivals, LOOPS[c])))
         if c == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
             rivals = tuple(dict.fromkeys((*rivals, SERIES)))
+        if c == DRIFT and zero_moves(explained):
+            rivals = tuple(dict.fromkeys((*rivals, OFFSET)))
         chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
         if c == FRICTION and ahead is not None:
             chance, nats = _probability(ahead.nats), ahead.nats
