@@ -10,7 +10,7 @@ from pathlib import Path
 from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.file_text import text_of
+from flexspline.pipeline.diagnosis.measurement.file_text import FileText, texts_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
 from flexspline.pipeline.diagnosis.measurement.head import Head, Split, head_of, paired
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
@@ -83,8 +83,26 @@ def _of_sheet(path: Path, raw: bytes) -> CellGrid:
     return _grid(path, raw, WORKBOOK, head, rows[head.at :], numbers[head.at :])
 
 
+@dataclass(frozen=True)
+class _Lines:
+    """A text's lines that are neither empty nor comments, where they stand, and which is the head."""
+
+    found: FileText
+    head: Head
+    lines: list[str]
+    numbers: list[int]
+
+
 def _of_text(path: Path, raw: bytes) -> CellGrid:
-    found = text_of(path, raw)
+    # of equals the first encoding is taken
+    read = max((_lines(path, t) for t in texts_of(path, raw)), key=lambda found: found.head.score)
+    head, numbers = read.head, read.numbers
+    _refuse_spaces(path, head, numbers)
+    rows = _parsed(path, read.lines[head.at :], numbers[head.at :], head.separator)
+    return _grid(path, raw, read.found.encoding, head, rows, numbers[head.at :])
+
+
+def _lines(path: Path, found: FileText) -> _Lines:
     lines: list[str] = []
     numbers: list[int] = []
     comments: list[tuple[int, str]] = []
@@ -108,9 +126,7 @@ def _of_text(path: Path, raw: bytes) -> CellGrid:
         raise MeasurementError(
             path, None, "holds no header line; expected columns such as torque_Nm"
         )
-    _refuse_spaces(path, head, numbers)
-    rows = _parsed(path, lines[head.at :], numbers[head.at :], head.separator)
-    return _grid(path, raw, found.encoding, head, rows, numbers[head.at :])
+    return _Lines(found, head, lines, numbers)
 
 
 def _refuse_size(path: Path, rows: Sequence[object]) -> None:

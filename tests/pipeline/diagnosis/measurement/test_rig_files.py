@@ -57,6 +57,7 @@ READ: dict[str, bytes] = {
         "X_Value\tTorque [Nm]\tAngle [arcsec]\tTime [s]\tComment\n"
         + "".join(f"0\t{m}\t{a}\t{t}\t\n" for m, a, t in ROWS)).encode(),
     "Excel's first line": ("sep=;\n" + GERMAN + body(";", comma)).encode("utf-8-sig"),
+    "Czech Excel": ('Krouticí moment [Nm];Úhel ["];Čas [s]\n' + body(";", comma)).encode("cp1250"),
     "UTF-8 with mark": (OURS + body()).encode("utf-8-sig"),
     "UTF-16, little end first":
         ("\ufeff" + GERMAN.replace(";", "\t") + body("\t", comma)).encode("utf-16-le"),
