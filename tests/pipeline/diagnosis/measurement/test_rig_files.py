@@ -221,6 +221,19 @@ def test_what_two_readings_fit_is_refused_in_one_line(name: str, tmp_path: Path)
     assert "\n" not in str(refusal.value)
 
 
+def test_an_encoder_that_passes_a_full_turn_is_told_from_a_wrong_unit(tmp_path: Path) -> None:
+    for unit, turn in (("deg", 360.0), ("rad", math.tau)):
+        per_arcsec = turn / 1_296_000
+        rows = "".join(
+            f"{t},{a * per_arcsec % turn:.9f}\n" for t, a in zip(TORQUE, ANGLE, strict=True)
+        )
+        with pytest.raises(MeasurementError) as refusal:
+            read(tmp_path, f"Torque [Nm],Angle [{unit}]\n{rows}".encode())
+        # the angle is negative from the seventh row on, and 0 in the last
+        said = f":8: Angle [{unit}] jumps by 360° here, the first of 2 times: did the encoder pass"
+        assert said in str(refusal.value)
+
+
 @pytest.mark.parametrize(
     ("begin", "needle"),
     [(b"\xd0\xcf\x11\xe0" + bytes(600), "old Excel file"), (b"TDSm\0\0", "TDMS"), (b"PK\x03\x04zip",
