@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.file_text import FileText, texts_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
 from flexspline.pipeline.diagnosis.measurement.head import Head, Split, head_of, paired
+from flexspline.pipeline.diagnosis.measurement.head_again import heads_again
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
 LARGEST_BYTES = 200_000_000
@@ -33,7 +34,7 @@ class CellGrid:
         `unit_line` where they stand, that of the head for none.
     rows : as many texts each as `head`. line : of each row. separator : "" in a workbook.
     misfit : what is wrong with the first row that has more or fewer cells, None for none. footer : lines of
-        words below the last row.
+        words below the last row. heads_again : lines that repeat the head, or say the columns' data types.
     """
 
     path: Path
@@ -48,6 +49,7 @@ class CellGrid:
     line: list[int]
     misfit: MeasurementError | None = None
     footer: tuple[int, ...] = ()
+    heads_again: tuple[int, ...] = ()
 
     @property
     def separator_name(self) -> str:
@@ -181,6 +183,11 @@ def _grid(
     kept = [i for i, row in enumerate(body) if any(row) and any(c.strip() for c in row)]
     if len(kept) < len(body):
         body, line = [body[i] for i in kept], [line[i] for i in kept]
+    again = heads_again(names, head.units, body)
+    said = tuple(line[i] for i in again)
+    if again:
+        kept = sorted(set(range(len(body))) - set(again))
+        body, line = [body[i] for i in kept], [line[i] for i in kept]
     last = rows_above_footer(names, body)
     body, line, footer = body[:last], line[:last], tuple(line[last:])
     named = max((i + 1 for i, name in enumerate(names) if name), default=0)
@@ -196,7 +203,7 @@ def _grid(
     units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
     return CellGrid(
         path, raw, encoding, head.separator, tuple(names), numbers[0], units, numbers[first - 1],
-        body, line, misfit, footer,
+        body, line, misfit, footer, said,
     )  # fmt: skip
 
 

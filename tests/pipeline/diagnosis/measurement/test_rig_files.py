@@ -11,6 +11,7 @@ import pytest
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.results.diagnosis.reading import reading_notes
 
 TORQUE = [0.0, 0.25, 0.5, 1.125, 0.5, 0.25, -0.25, -0.5, -1.125, -0.5, -0.25, 0.0]
 ANGLE = [11.25 * t + 36 * ((t > 0) - (t < 0)) for t in TORQUE]  # arcsec
@@ -176,6 +177,27 @@ def test_thousands(tmp_path: Path) -> None:
     )
     found = read(tmp_path, (GERMAN + spaced).encode())
     assert found.history.torque_Nm == pytest.approx(1e6 * np.array(TORQUE), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("head", "again", "lines"),
+    [
+        (OURS, OURS, (8,)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\n", "Torque,Angle,Time\n", (9,)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\n", "Torque, Angle,Time,\nN·m,arcsec,s\n", (9, 10)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\nfloat,float,float\n", "", (3,)),
+        (OURS + "double,double,datetime\n", "", (2,)),
+    ],
+)
+def test_the_header_again_is_passed_over_and_said(
+    head: str, again: str, lines: tuple[int, ...], tmp_path: Path
+) -> None:
+    rows = body().splitlines(keepends=True)
+    found = read(tmp_path, (head + "".join(rows[:6]) + again + "".join(rows[6:])).encode())
+    assert found.history.torque_Nm == pytest.approx(TORQUE)
+    assert found.angle_arcsec == pytest.approx(ANGLE, abs=1e-5)
+    assert found.read_as.heads_again == lines
+    assert any(f"passed over: line {lines[0]}" in note for note in reading_notes(found.read_as))
 
 
 REFUSED = {
