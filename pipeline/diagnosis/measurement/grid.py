@@ -210,5 +210,9 @@ def _grid(
 def _misfit(path: Path, line: int, fields: int, wanted: int, separator: str) -> MeasurementError:
     reason = f"{fields} fields where the header has {wanted}"
     if separator == "," and fields in (2 * wanted, 2 * wanted - 1):
-        reason += "; with decimal commas, separate the columns by semicolons"
+        reason += "; with decimal commas, "
+        if wanted == 1:  # not read so: "1,20" may be two columns of which one has no name
+            reason += "put the numbers in quotation marks or write decimal points"
+        else:
+            reason += "separate the columns by semicolons"
     return MeasurementError(path, line, reason)

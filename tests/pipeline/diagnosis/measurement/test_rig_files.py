@@ -11,6 +11,7 @@ import pytest
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.pipeline.diagnosis.measurement.table import read_table
 from flexspline.results.diagnosis.reading import reading_notes
 
 TORQUE = [0.0, 0.25, 0.5, 1.125, 0.5, 0.25, -0.25, -0.5, -1.125, -0.5, -0.25, 0.0]
@@ -200,6 +201,12 @@ def test_the_header_again_is_passed_over_and_said(
     assert any(f"passed over: line {lines[0]}" in note for note in reading_notes(found.read_as))
 
 
+def test_one_column_with_quoted_decimal_commas(tmp_path: Path) -> None:
+    path = tmp_path / "torque.csv"
+    path.write_text('Drehmoment [Nm]\n"1,5"\n"-3"\n', encoding="utf-8")
+    assert read_table(path).numbers["torque_Nm"].tolist() == [1.5, -3]
+
+
 REFUSED = {
     "a thousand or a thousandth":
         (GERMAN + "1,234;5;6\n" * 9, ':2: Drehmoment [Nm] = "1,234" may be 1234 or 1.234'),
@@ -226,6 +233,9 @@ REFUSED = {
         ("torque_Nm,angle_arcsec,temperature_C\n" + "1,2,20\n1,2,\n" * 9, "is empty (so are 9 of 18"),
     "unquoted decimal commas":
         ("torque_Nm,angle_arcsec\n" + "0,5,1,5\n" * 9, "with decimal commas, separate"),
+    "decimal commas in one column":
+        ("Drehmoment [Nm]\n1,5\n-3\n", ":2: 2 fields where the header has 1; with decimal commas, put the "
+         "numbers in quotation marks or write decimal points"),
     "spaces": ("torque_Nm angle_arcsec\n1 2\n", "separated by commas, semicolons or tabs"),
     "a number with its unit": ("torque_Nm;angle_arcsec\n" + "1 Nm;2\n" * 9, '"1 Nm" is not a finite number'),
     "a quoted line break": ('torque_Nm,angle_arcsec,remark\n1,2,"a\nb"\n', ":2: a quoted field goes on"),
