@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 _TYPES = {
     "float", "float32", "float64", "double", "single", "real", "number", "numeric", "decimal", "int", "int16",
-    "int32", "int64", "integer", "long", "uint16", "uint32", "uint64", "bool", "string", "str", "text", "char",
-    "varchar", "datetime", "timestamp", "date", "time",
+    "int32", "int64", "integer", "long", "uint16", "uint32", "uint64", "bool", "string", "str", "text",
+    "char", "varchar", "datetime", "timestamp", "date", "time",
 }  # fmt: skip
 """What programs call the type of a column."""
 
