@@ -18,6 +18,10 @@ _WITH_UNIT = re.compile(
 )
 """A number, and what may be the unit behind it."""
 _VALUE = re.compile(r"=\s*([^#]*)")
+_AGAIN = ("Cannot overwrite", "Cannot declare")
+"""How `tomllib` begins where a key or a table is given twice."""
+_BEGIN = re.compile(r"\s*(?:([\w\-.\"']+)\s*=|(\[[^\[\]]+\]))")
+"""A key before its value, or the head of a table."""
 _COMMA = re.compile(r"=\s*([+-]?\d+),(\d+)\s*(?:#.*)?$")
 _STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'')
 _NO_KEY = re.compile(r"[^\w\-\"' \t.]")
@@ -49,7 +53,9 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
     except RecursionError as fault:
         raise TomlError("is nested too deeply") from fault
     except ValueError as fault:  # also integers of more digits than Python converts
-        raise TomlError(f"is not valid TOML: {fault}{_help(text, fault)}") from fault
+        again = str(fault).startswith(_AGAIN)
+        reason = (again and _twice(text, fault)) or f"{fault}{'' if again else _help(text, fault)}"
+        raise TomlError(f"is not valid TOML: {reason}") from fault
 
 
 def number_help(text: str) -> str:
@@ -59,6 +65,26 @@ def number_help(text: str) -> str:
         return ""
     unit = ": numbers are written without unit, the key's name ends with it" if found[2] else ""
     return f"; write {found[1]}{unit}" if unit else f"; write {found[1]} without quotation marks"
+
+
+def _twice(text: str, fault: ValueError) -> str:
+    """The key or table that is given twice, with both lines; "" where the first is not found."""
+    lines = text.rstrip().split("\n")
+    at = _AT_LINE.search(str(fault))
+    last = min(int(at[1]), len(lines)) if at else len(lines)
+    given = _given(lines[last - 1])
+    for line in range(last - 1, 0, -1):
+        if given and _given(lines[line - 1]) == given:
+            return f"{given} is given twice, in lines {line} and {last}"
+        if not given.startswith("[") and lines[line - 1].lstrip().startswith("["):
+            break
+    return ""
+
+
+def _given(line: str) -> str:
+    """The key that a line gives a value to, or its table's head; "" of other lines."""
+    found = _BEGIN.match(line)
+    return "" if found is None else found[1] or found[2]
 
 
 def _help(text: str, fault: ValueError) -> str:

@@ -8,12 +8,13 @@ machine's, another container's, from before a reboot), they go when nothing in t
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from flexspline.pipeline.process_id import parsed, this_process
@@ -46,6 +47,28 @@ def unfinished(folder: Path, data: bytes) -> Path:
         Path(name).unlink(missing_ok=True)
         raise
     return Path(name)
+
+
+@contextmanager
+def scratch_folder(prefix: str) -> Iterator[Path]:
+    """A folder for temporary files that goes in the end. To write there alone, not answers: a full disk is
+    said to be that of the folder for temporary files.
+
+    Raises
+    ------
+    OSError : with that folder's name where the disk is full; a copy's own fault would name its source.
+    """
+    try:
+        with tempfile.TemporaryDirectory(prefix=prefix) as folder:
+            yield Path(folder)
+    except OSError as fault:
+        above = Path(tempfile.gettempdir())
+        if above.name.startswith(MARK):  # this process's own, which the user does not know
+            above = above.parent
+        if fault.errno not in (errno.ENOSPC, errno.EDQUOT) or fault.filename == str(above):
+            raise  # not full, or said by one within
+        reason = f"{fault.strerror}: the folder for temporary files (TMPDIR) is full"
+        raise OSError(fault.errno, reason, str(above)) from fault
 
 
 def clear(folder: Path) -> list[Path]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.stiffnesses import Stiffnesses
+from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.atomic import write_together
 from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
 from flexspline.results.file_names import CURVE, GEAR_CSV, GEAR_RECORD, LOADS
@@ -46,9 +46,9 @@ def write_gear(folder: Path, curve: GearCurve, record: dict[str, Any]) -> list[P
     for torque, angle in zip(curve.torque_Nm, curve.angle_arcsec, strict=True):
         writer.writerow((f"{torque:.9g}", f"{angle:.9g}"))
     made = {GEAR_CSV: text.getvalue().encode()}
-    with tempfile.TemporaryDirectory(prefix="flexspline-gear-") as scratch:
+    with scratch_folder("flexspline-gear-") as scratch:
         for name, draw in ((CURVE, write_gear_angle), (LOADS, write_gear_loads)):
-            picture = Path(scratch) / f"{name}.png"
+            picture = scratch / f"{name}.png"
             draw(picture, curve)
             made[picture.name] = picture.read_bytes()
     made[GEAR_RECORD] = (as_json(record) + "\n").encode()

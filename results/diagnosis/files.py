@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 from flexspline import __version__
@@ -12,6 +11,7 @@ from flexspline.pipeline.diagnosis.model.design_digest import design_digests
 from flexspline.pipeline.diagnosis.model.model_file import Provenance
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.stiffness_pair import StiffnessPair
+from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.atomic import write_together
 from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.record import Record
@@ -39,8 +39,8 @@ def write_diagnosis(
     made: dict[str, bytes] = {f"{DIAGNOSIS}.json": (as_json(record) + "\n").encode()}
     if diagnosis.model is not None:
         made[EXTENDED_MODEL] = _model(diagnosis, used).encode()
-    with tempfile.TemporaryDirectory(prefix="flexspline-diagnosis-") as scratch:
-        figures = draw_figures(diagnosis, Path(scratch))
+    with scratch_folder("flexspline-diagnosis-") as scratch:
+        figures = draw_figures(diagnosis, scratch)
         made |= {f.path.name: f.path.read_bytes() for f in figures}
         document = diagnosis_document(diagnosis, figures, used, attached)
         made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=DIAGNOSIS)

@@ -55,6 +55,9 @@ def reading_notes(read_as: ReadAs) -> list[str]:
     found = [f"columns read: {columns}", f"file read as {form_words(read_as)}"]
     if read_as.empty:
         found.append(f"columns empty in every row: {heads(read_as.empty)}")
+    if read_as.heads_again:
+        lines = listed(read_as.heads_again, "lines")
+        found.append(f"the header again, or data types, passed over: line {lines}")
     if read_as.footer:
         lines = listed(read_as.footer, "lines")
         found.append(f"words below the last row, left out: line {lines}")

@@ -24,8 +24,8 @@ ROW, ABOVE, BELOW = 0.62, 0.52, 0.62
 """Inches: of a row of the waterfall, above the rows and below them."""
 NAME_LETTERS = 20
 """Of a row's name on one line."""
-VALUES, SHARES = 1.31, 1.36
-"""Where the figures' column ends and the shares' begins, in widths of the waterfall."""
+VALUES, SHARES = 1.31, 1.46
+"""Where the columns of the figures and of their shares end, in widths of the waterfall."""
 POWER_OF_TEN = 1e6
 """arcsec: from there on matplotlib writes multiples of a power (`axes.formatter.limits`)."""
 
@@ -81,13 +81,13 @@ def _simulated(backlash: Backlash, more: bool) -> list[BudgetBar]:
     total, start, rows = backlash.total_arcsec, 0.0, []
     for (term, size), colour in zip(backlash.terms_arcsec.items(), PALETTE, strict=True):
         entry = quantity(f"backlash_arcsec.{term}")
-        share = f"{100 * size / total:.0f} %"
+        share = f"{100 * size / total:.0f}"
         rows.append(BudgetBar(entry.name, start, size, colour, entry.short(size), share))
         start += size
     entry, std = quantity("backlash_arcsec.total"), backlash.std_arcsec
-    spread = "" if std is None else f"± {entry.short(std)}"
+    spread = "" if std is None else f"\n± {entry.short(std)}"
     name = ("Simulated" if more else "Backlash") + (" ± 1σ" if spread else "")
-    rows.append(BudgetBar(name, 0.0, total, SUM, entry.short(total), spread, is_sum=True))
+    rows.append(BudgetBar(name, 0.0, total, SUM, f"{entry.short(total)}{spread}", is_sum=True))
     return rows
 
 
@@ -138,7 +138,7 @@ def _waterfall(axes: Axes, rows: Sequence[BudgetBar], backlash: Backlash) -> Non
 
 
 def _figures(axes: Axes, rows: Sequence[BudgetBar]) -> None:
-    """Each row's value and share in two columns, of one size."""
+    """Each row's value and share in two columns, of one size, under their units; a sum's doubt below it."""
     across = axes.get_yaxis_transform()
     values, shares = [], []
     for i, row in enumerate(rows):
@@ -147,10 +147,16 @@ def _figures(axes: Axes, rows: Sequence[BudgetBar]) -> None:
             VALUES, i, row.value, transform=across, weight=weight, ha="right", va="center"
         ))  # fmt: skip
         shares.append(axes.text(
-            SHARES, i, row.share, transform=across, weight=weight, ha="left", va="center"
+            SHARES, i, row.share, transform=across, weight=weight, ha="right", va="center"
         ))  # fmt: skip
+    heads = ((VALUES, quantity("backlash_arcsec.total").unit), (SHARES, "%"))
+    for at, head in heads[: 2 if any(row.share for row in rows) else 1]:
+        axes.annotate(
+            head, (at, 1), (0, 4), "axes fraction", "offset points",
+            color=MUTED, ha="right", va="bottom",
+        )  # fmt: skip
     fit(values, (VALUES - 1) * axes.bbox.width - 6)
-    fit(shares, 1.02 * (VALUES - 1) * axes.bbox.width)
+    fit(shares, (SHARES - VALUES) * axes.bbox.width - 6)
 
 
 def _sources(axes: Axes, backlash: Backlash) -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
-import tempfile
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 
 from flexspline.geometry.errors import ComputationError, readable
+from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.report.document import Document
 from flexspline.results.report.letters import font_folder, notice, printable
 from flexspline.results.report.payload import payload_of
@@ -29,12 +29,11 @@ def pdf_of(document: Document, pictures: Mapping[str, Path]) -> bytes:
 
     Raises
     ------
-    ReportError : typst refused the document.
+    ReportError : typst refused the document. OSError : the folder for temporary files is full.
     """
     import typst
 
-    with tempfile.TemporaryDirectory(prefix="flexspline-report-") as scratch:
-        root = Path(scratch)
+    with scratch_folder("flexspline-report-") as root:
         (root / TEMPLATE).write_bytes(
             files("flexspline.results.report").joinpath(TEMPLATE).read_bytes()
         )

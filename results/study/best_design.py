@@ -36,7 +36,10 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
     for slot, lines in said[:1]:
         yield from (f"design {slot}: {line}" for line in lines)
     if others := [str(slot) for slot, lines in said[1:] if lines]:
-        yield f"warnings also of design {', '.join(others)}: flexspline run gives them"
+        yield (
+            f"there are warnings of design {', '.join(others)} too: flexspline run says them, of a design "
+            "file with that row's values of study.csv"
+        )
 
 
 def _warnings(result: StudyResult, row: Row) -> Iterable[str]:

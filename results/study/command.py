@@ -29,6 +29,7 @@ def register(app: typer.Typer) -> None:
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimise or tolerance a design; resumable at any moment."""
     with answered(file, RESUMES):
+        from flexspline.geometry.errors import ComputationError
         from flexspline.geometry.load import read_raw, tables_from
         from flexspline.pipeline.study.best import best_field
         from flexspline.pipeline.study.cluster import check_scheduler
@@ -39,6 +40,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.report.attached import Attachment
         from flexspline.results.study.best_design import best_warnings, write_best_design
         from flexspline.results.study.best_stress import draw_best_stress
+        from flexspline.results.study.failures import nothing_built
         from flexspline.results.study.figures import write_figures
         from flexspline.results.study.notes import border_warnings, preloaded
         from flexspline.results.study.progress import Watch
@@ -92,6 +94,8 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         reports = write_study_reports(folder, result, pictures, best, attached, of_best)
         record["files"] += [str(p) for p in (*pictures, *reports)]
         show(as_json(record) if json else words(result, record), json)
+        if nothing := nothing_built(result):
+            raise ComputationError(nothing)
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:

@@ -15,7 +15,7 @@ from flexspline.results.numbers import signed
 from flexspline.results.study.failures import FailureReason, causes, failure_lines
 from flexspline.results.study.labels import entry, published, valued
 from flexspline.results.study.scatter_section import index_text, source_words
-from flexspline.results.study.unbeaten import unbeaten_start
+from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
 from flexspline.results.study.why import disagreement, incomplete, misses
 
 LISTED_DESIGNS = 5
@@ -133,7 +133,8 @@ def words(result: StudyResult, record: dict[str, Any]) -> str:
         lines.append(f"  {incomplete(result)}")
     best = () if result.about_scatter else result.best(LISTED_DESIGNS)
     if best and result.start is not None:
-        lines.append(_line(result, "start", result.start_values, result.start))
+        begun = _line(result, "start", result.start_values, result.start)
+        lines.append("; ".join(filter(None, (begun, start_breaks(result)))))
     lines += [_line(result, f"design {row.slot}", row.values, row.outcome) for row in best]
     lines += [f"  {line}" for line in (*unbeaten_start(result), *misses(result))]
     lines += [f"  {line}" for line in failure_lines(result)]

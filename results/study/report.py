@@ -30,7 +30,7 @@ from flexspline.results.study.failures import TOLD, causes, untold
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.notes import notes
 from flexspline.results.study.scatter_section import scatter_section
-from flexspline.results.study.unbeaten import unbeaten_start
+from flexspline.results.study.unbeaten import start_breaks, unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
     incomplete,
@@ -179,11 +179,14 @@ def _best(result: StudyResult) -> Iterable[Block]:
             lines.append(
                 (q.axis, *(_text(key, f) for f in (*begun, *(r.outcome.figures for r in chosen))))
             )
-    heads = (*("start" for _ in begun), *(f"design {r.slot}" for r in chosen))
+    breaks = start_breaks(result)
+    first = "start (not allowed)" if breaks else "start"
+    heads = (*(first for _ in begun), *(f"design {r.slot}" for r in chosen))
     yield Heading("The best designs")
     yield Table((Column("", grow=1), *(Column(head, "right") for head in heads)), tuple(lines))
     if begun:
-        yield Paragraph("start: the design that the study began with, solved in the same way.")
+        told = "start: the design that the study began with, solved in the same way"
+        yield Paragraph(f"{told}; it {breaks}." if breaks else f"{told}.")
 
 
 def _text(key: str, figures: Mapping[str, float]) -> str:

@@ -1,9 +1,23 @@
-"""Where a study found nothing better than the design that it began with."""
+"""What is said of the design that a study began with: a constraint broken, or nothing found better."""
 
 from __future__ import annotations
 
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.study.labels import entry, valued
+from flexspline.results.study.why import allowed
+
+
+def start_breaks(result: StudyResult) -> str:
+    """Which constraints the design that a study began with breaks, with its figures; "" for none."""
+    if result.start is None:
+        return ""
+    figures = result.start.figures
+    said = [
+        f"{entry(key).name} {valued(key, figures)}, allowed are {allowed(key, limit)}"
+        for key, limit in result.study.file.constraint.items()
+        if key in figures and limit.excess(figures[key]) > 0
+    ]
+    return f"breaks a constraint ({'; '.join(said)})" if said else ""
 
 
 def unbeaten_start(result: StudyResult) -> list[str]:
@@ -12,7 +26,7 @@ def unbeaten_start(result: StudyResult) -> list[str]:
     if start is None or len(file.objective) != 1 or not result.pareto:
         return []
     (key, goal), figures = next(iter(file.objective.items())), start.figures
-    if any(k not in figures or c.excess(figures[k]) > 0 for k, c in file.constraint.items()):
+    if start_breaks(result) or any(k not in figures for k in file.constraint):
         return []
     best = result.pareto[0].outcome.figures[key]
     if key not in figures or figures[key] == best or (figures[key] > best) != (goal == "maximize"):

@@ -66,7 +66,7 @@ def misses(result: StudyResult) -> list[str]:
     for key, limit in result.study.file.constraint.items():
         q = entry(key)
         kept = sum(limit.excess(r.outcome.figures[key]) <= 0 for r in result.built)
-        asked = _allowed(key, limit)
+        asked = allowed(key, limit)
         said.append(
             f"{q.name}: {kept} of {len(result.built)} designs keep to {asked}; the nearest to all "
             f"constraints, design {row.slot}, has {valued(key, row.outcome.figures)}."
@@ -75,7 +75,8 @@ def misses(result: StudyResult) -> list[str]:
     return [*said, f"Design {row.slot}: {at}."]
 
 
-def _allowed(key: str, limit: Limit) -> str:
+def allowed(key: str, limit: Limit) -> str:
+    """What a constraint allows, in words: at least, at most."""
     q = entry(key)
     ends = ((limit.min, "at least"), (limit.max, "at most"))
     return " and ".join(f"{word} {q.with_unit(end)}" for end, word in ends if end is not None)
@@ -104,7 +105,7 @@ def limits(result: StudyResult) -> list[str]:
             q = entry(key)
             said.append(
                 f"Design {best.slot} is held by the constraint on {q.name}: {q.with_unit(value)}, allowed "
-                f"are {_allowed(key, limit)}."
+                f"are {allowed(key, limit)}."
             )
     return said
 

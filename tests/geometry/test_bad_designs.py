@@ -178,7 +178,18 @@ FILES = {
     "UTF-16 without its mark": ('name = "x"'.encode("utf-16-le"), "save it as UTF-8"),
     "latin-1": ('# x\nname = "Zähne"'.encode("latin-1"), r"line 2, byte 13\); save it as UTF-8"),
     "syntax": (b"name = \n[flexspline", "not valid TOML"),
-    "duplicate key": (b'name = "a"\nname = "b"', "not valid TOML"),
+    "duplicate key": (
+        b'name = "a"\nname = "b"',
+        "not valid TOML: name is given twice, in lines 1 and 2$",
+    ),
+    "duplicate number": (
+        b"[gear]\nx = 1\n[load]\nx = 1\n# x = 2\nx=3\ny = 2\n",
+        "x is given twice, in lines 4 and 6$",
+    ),
+    "duplicate table": (
+        b"[load]\nx = 1\n[gear]\nx = 1\n[load]\ny = 2\n",
+        r"\[load\] is given twice, in lines 1 and 5$",
+    ),
     "full-width point": ('name = "a"\nlength_mm = 38。4\n'.encode(), "write length_mm = 38.4"),
     "full-width equals": ("name ＝ “谐波”\n".encode(), 'write name = "谐波"'),
     "decimal comma": (b'name = "a"\nlength_mm = 38,4  # long\n', "write 38.4 with a point"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -14,7 +15,14 @@ import pytest
 
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.process_id import ProcessId, parsed, started, this_process
-from flexspline.pipeline.temporary_files import FORGOTTEN_S, MARK, clear, mark, unfinished
+from flexspline.pipeline.temporary_files import (
+    FORGOTTEN_S,
+    MARK,
+    clear,
+    mark,
+    scratch_folder,
+    unfinished,
+)
 from flexspline.results.atomic import write_bytes
 from flexspline.results.output_folder import folder_of
 from flexspline.results.scratch import own_scratch
@@ -40,6 +48,26 @@ def test_the_next_write_clears_what_a_dead_process_left(of_the_dead: str, tmp_pa
     (tmp_path / f"{of_the_dead}folder" / "in.npz").write_bytes(b"half")
     write_bytes(tmp_path / "result.json", b"{}")
     assert [p.name for p in tmp_path.iterdir()] == ["result.json"]
+
+
+def test_a_full_folder_for_temporary_files_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A copy that does not fit names its source, whose disk is not full."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    said = rf"{tmp_path}'$"
+    with (
+        own_scratch(),
+        pytest.raises(OSError, match=said) as full,
+        scratch_folder("outer-"),
+        scratch_folder("inner-") as folder,
+    ):
+        raise OSError(errno.ENOSPC, "No space left on device", "out/mesh.png", None, str(folder))
+    assert full.value.strerror == (
+        "No space left on device: the folder for temporary files (TMPDIR) is full"
+    )
+    with pytest.raises(OSError, match=r"mesh\.png"), scratch_folder("other-"):
+        raise FileNotFoundError(errno.ENOENT, "No such file or directory", "mesh.png")
 
 
 def test_living_processes_and_other_machines_keep_theirs(tmp_path: Path) -> None:

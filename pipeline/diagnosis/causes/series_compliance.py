@@ -26,7 +26,7 @@ class SeriesCompliance(Cause):
     exact = True
     shape_doubt = 0.0007
     """One and two deviations cover 59 and 90 % of 29 sizes."""
-    vary = "input_angle_deg"
+    vary = "torque_amplitude"
     reveals = "larger torque, and the part suspected (bolts, tooth mesh) clamped or removed"
 
     def title_at(self, magnitude: float) -> str:

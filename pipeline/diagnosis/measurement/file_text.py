@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,8 +41,12 @@ class FileText:
     encoding: str
 
 
-def text_of(path: Path, raw: bytes) -> FileText:
-    """UTF-8 with or without mark, UTF-16 and UTF-32, else Windows' cp1252 (Latin-1 with more letters).
+SINGLE_BYTE = ("cp1252", "cp1250")
+"""Windows' code pages of western and central Europe; nearly any bytes are text in both."""
+
+
+def texts_of(path: Path, raw: bytes) -> tuple[FileText, ...]:
+    """UTF-8 with or without mark, UTF-16 and UTF-32; else each of `SINGLE_BYTE` that the bytes are text in.
 
     Raises
     ------
@@ -51,31 +56,35 @@ def text_of(path: Path, raw: bytes) -> FileText:
         if raw.startswith(begin):
             raise MeasurementError(path, None, f"is {what}")
     found = _decoded(path, raw)
-    if "\0" in found.text:
-        line = found.text[: found.text.index("\0")].count("\n") + 1
+    text = found[0].text
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
         raise MeasurementError(path, line, "holds a NUL byte; save the file as CSV in UTF-8")
     return found
 
 
-def _decoded(path: Path, raw: bytes) -> FileText:
+def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
     for mark, codec, name in MARKS:
         if raw.startswith(mark):
-            return _strict(path, raw[len(mark) :], codec, name)
+            return (_strict(path, raw[len(mark) :], codec, name),)
     begin = raw[:LOOKED_AT]
     for place, codec in ((1, "utf-16-le"), (0, "utf-16-be")):
         half = begin[place::2]
         if len(raw) % 2 == 0 and half and half.count(0) >= SIXTEEN_BIT * len(half):
-            return _strict(path, raw, codec, "UTF-16")
+            return (_strict(path, raw, codec, "UTF-16"),)
     try:
-        return FileText(raw.decode("utf-8"), "UTF-8")
+        return (FileText(raw.decode("utf-8"), "UTF-8"),)
     except UnicodeDecodeError as error:
         byte, line = raw[error.start], raw[: error.start].count(b"\n") + 1
-    try:
-        return FileText(raw.decode("cp1252"), "cp1252")
-    except UnicodeDecodeError:
+    found = []
+    for codec in SINGLE_BYTE:
+        with suppress(UnicodeDecodeError):
+            found.append(FileText(raw.decode(codec), codec))
+    if not found:
         raise MeasurementError(
             path, line, f"byte {byte:#04x} is neither UTF-8 nor Latin-1; save the file as UTF-8"
-        ) from None
+        )
+    return tuple(found)
 
 
 def _strict(path: Path, raw: bytes, codec: str, name: str) -> FileText:

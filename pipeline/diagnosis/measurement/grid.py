@@ -10,9 +10,10 @@ from pathlib import Path
 from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.pipeline.diagnosis.measurement.column_names import column_name
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.file_text import text_of
+from flexspline.pipeline.diagnosis.measurement.file_text import FileText, texts_of
 from flexspline.pipeline.diagnosis.measurement.footer import rows_above_footer
 from flexspline.pipeline.diagnosis.measurement.head import Head, Split, head_of, paired
+from flexspline.pipeline.diagnosis.measurement.head_again import heads_again
 from flexspline.pipeline.diagnosis.measurement.workbook import BEGIN, WORKBOOK, first_sheet
 
 LARGEST_BYTES = 200_000_000
@@ -33,7 +34,7 @@ class CellGrid:
         `unit_line` where they stand, that of the head for none.
     rows : as many texts each as `head`. line : of each row. separator : "" in a workbook.
     misfit : what is wrong with the first row that has more or fewer cells, None for none. footer : lines of
-        words below the last row.
+        words below the last row. heads_again : lines that repeat the head, or say the columns' data types.
     """
 
     path: Path
@@ -48,6 +49,7 @@ class CellGrid:
     line: list[int]
     misfit: MeasurementError | None = None
     footer: tuple[int, ...] = ()
+    heads_again: tuple[int, ...] = ()
 
     @property
     def separator_name(self) -> str:
@@ -83,8 +85,26 @@ def _of_sheet(path: Path, raw: bytes) -> CellGrid:
     return _grid(path, raw, WORKBOOK, head, rows[head.at :], numbers[head.at :])
 
 
+@dataclass(frozen=True)
+class _Lines:
+    """A text's lines that are neither empty nor comments, where they stand, and which is the head."""
+
+    found: FileText
+    head: Head
+    lines: list[str]
+    numbers: list[int]
+
+
 def _of_text(path: Path, raw: bytes) -> CellGrid:
-    found = text_of(path, raw)
+    # of equals the first encoding is taken
+    read = max((_lines(path, t) for t in texts_of(path, raw)), key=lambda found: found.head.score)
+    head, numbers = read.head, read.numbers
+    _refuse_spaces(path, head, numbers)
+    rows = _parsed(path, read.lines[head.at :], numbers[head.at :], head.separator)
+    return _grid(path, raw, read.found.encoding, head, rows, numbers[head.at :])
+
+
+def _lines(path: Path, found: FileText) -> _Lines:
     lines: list[str] = []
     numbers: list[int] = []
     comments: list[tuple[int, str]] = []
@@ -108,9 +128,7 @@ def _of_text(path: Path, raw: bytes) -> CellGrid:
         raise MeasurementError(
             path, None, "holds no header line; expected columns such as torque_Nm"
         )
-    _refuse_spaces(path, head, numbers)
-    rows = _parsed(path, lines[head.at :], numbers[head.at :], head.separator)
-    return _grid(path, raw, found.encoding, head, rows, numbers[head.at :])
+    return _Lines(found, head, lines, numbers)
 
 
 def _refuse_size(path: Path, rows: Sequence[object]) -> None:
@@ -165,6 +183,11 @@ def _grid(
     kept = [i for i, row in enumerate(body) if any(row) and any(c.strip() for c in row)]
     if len(kept) < len(body):
         body, line = [body[i] for i in kept], [line[i] for i in kept]
+    again = heads_again(names, head.units, body)
+    said = tuple(line[i] for i in again)
+    if again:
+        kept = sorted(set(range(len(body))) - set(again))
+        body, line = [body[i] for i in kept], [line[i] for i in kept]
     last = rows_above_footer(names, body)
     body, line, footer = body[:last], line[:last], tuple(line[last:])
     named = max((i + 1 for i, name in enumerate(names) if name), default=0)
@@ -180,12 +203,16 @@ def _grid(
     units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
     return CellGrid(
         path, raw, encoding, head.separator, tuple(names), numbers[0], units, numbers[first - 1],
-        body, line, misfit, footer,
+        body, line, misfit, footer, said,
     )  # fmt: skip
 
 
 def _misfit(path: Path, line: int, fields: int, wanted: int, separator: str) -> MeasurementError:
     reason = f"{fields} fields where the header has {wanted}"
     if separator == "," and fields in (2 * wanted, 2 * wanted - 1):
-        reason += "; with decimal commas, separate the columns by semicolons"
+        reason += "; with decimal commas, "
+        if wanted == 1:  # not read so: "1,20" may be two columns of which one has no name
+            reason += "put the numbers in quotation marks or write decimal points"
+        else:
+            reason += "separate the columns by semicolons"
     return MeasurementError(path, line, reason)

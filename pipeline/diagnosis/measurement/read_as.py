@@ -14,10 +14,11 @@ class ReadAs:
     Attributes
     ----------
     columns : those that are read, in the file's order. ignored : heads of the others. empty : heads of
-        columns without any value. encoding : "UTF-8", "UTF-16", "cp1252", "xlsx". separator : in words.
+        columns without any value. encoding : "UTF-8", "UTF-16", "cp1252", "cp1250", "xlsx".
+    separator : in words.
     decimal_mark : "." or ",". head_line : of the file. unit_row : whether units stand below the head.
     began : the first row's date and time, "" where time is no date. sha256 : of the file's bytes.
-    footer : lines of words below the last row.
+    footer : lines of words below the last row. heads_again : lines that repeat the head, or say data types.
     """
 
     columns: tuple[ReadColumn, ...] = ()
@@ -31,6 +32,7 @@ class ReadAs:
     began: str = ""
     sha256: str = ""
     footer: tuple[int, ...] = ()
+    heads_again: tuple[int, ...] = ()
 
     def column(self, quantity: str) -> ReadColumn | None:
         """The first column of a quantity, such as torque; None where no file has one."""
@@ -48,7 +50,7 @@ class ReadAs:
             c.head in (c.name, f"{c.name.partition('_')[0]}_{c.unit}") for c in self.columns
         )
         form = (self.separator, self.decimal_mark, self.unit_row) == ("comma", ".", False)
-        return plain and form and not self.empty and not self.footer
+        return plain and form and not (self.empty or self.footer or self.heads_again)
 
 
 AS_OURS = ReadAs()

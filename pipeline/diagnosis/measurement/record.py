@@ -12,11 +12,14 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
+from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
 
 HEADS_SHOWN = 12
 """Columns that a message lists."""
 FEWEST_SWEEP_ROWS = 4
 """One more than zero, stiffness and gap."""
+LARGEST_STEP = 0.01
+"""Of a turn, from row to row: 3.6°, far beyond the twist of any gear that is locked, and of its noise."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +133,7 @@ def _sweep(table: MeasuredTable) -> Sweep:
         _refuse_empty(table, "torque_Nm", TORQUE_Nm.low)
     _refuse_empty(table, "angle_arcsec", SMALLEST_ANGLE_arcsec)
     found = history_of(table)
+    _refuse_full_turns(table, found.history.unit)
     return Sweep(
         table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
         table.line, "cycle" in table.numbers, table.read_as,
@@ -146,6 +150,23 @@ def _refuse_empty(table: MeasuredTable, name: str, least: float) -> None:
             f"the largest {name} is {largest:g}: a measurement needs at least {least:g} {unit}; "
             "is the unit right, was the channel connected?",
         )
+
+
+def _refuse_full_turns(table: MeasuredTable, unit: np.ndarray) -> None:
+    """Refuse an encoder that passed its full turn; not unwrapped here, for a drop-out to 0 looks the same."""
+    step = np.where(np.diff(unit) == 0, np.diff(table.numbers["angle_arcsec"]), 0.0)
+    turns = np.round(step / ARCSEC_PER_TURN)
+    jumps = np.flatnonzero(np.abs(turns) == 1)
+    rest = np.abs(step - turns * ARCSEC_PER_TURN)
+    if not len(jumps) or np.any(rest > LARGEST_STEP * ARCSEC_PER_TURN):
+        return
+    column = table.read_as.column("angle_arcsec")
+    more = f", the first of {len(jumps)} times" if len(jumps) > 1 else ""
+    raise table.refuse(
+        int(jumps[0]) + 1,
+        f"{column.head if column else 'the angle'} jumps by 360° here{more}: did the encoder pass a full "
+        "turn? Unwrap it: from each jump on add 360°, or take 360° off",
+    )
 
 
 def _end_points(table: MeasuredTable) -> EndPoints:

@@ -116,6 +116,7 @@ def table_of(grid: CellGrid, counts_per_turn: float | None = None) -> MeasuredTa
             columns, tuple(h for i, h in enumerate(grid.head) if i not in used and h),
             tuple(c.head for c in empty), grid.encoding, grid.separator_name, mark, grid.head_line,
             bool(grid.unit_row), began, hashlib.sha256(grid.raw).hexdigest(), grid.footer,
+            grid.heads_again,
         ),
     )  # fmt: skip
 

@@ -56,6 +56,19 @@ def test_budget(tmp_path, name, measured):
     assert faults(figure) == []
 
 
+def test_figures_of_the_budget_stand_under_their_units(tmp_path):
+    """The total's deviation is an angle, and no share."""
+    gear = next(iter(GEARS.values()))
+    with drawn_figures() as found:
+        write_budget(tmp_path / "b.png", gear.backlash)
+    texts = {t.get_text(): t.xy[0] if hasattr(t, "xy") else t.get_position()[0]
+             for t in found[0].axes[0].texts}  # fmt: skip
+    spread = next(text for text in texts if "±" in text)
+    assert texts[spread] == texts["arcsec"]
+    shares = [text for text in texts if texts[text] == texts["%"] and text not in ("", "%")]
+    assert sum(map(int, shares)) == pytest.approx(100, abs=2)
+
+
 @pytest.mark.parametrize("name", GEARS)
 def test_torque_angle(tmp_path, name):
     gear = GEARS[name]

@@ -1,14 +1,19 @@
 """Designs of a study that cannot be built: by cause, with a count and an example, each part's own reason."""
 
+import json
 import tomllib
 from pathlib import Path
 
+from typer.testing import CliRunner
+
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.figures import USUAL_FIGURES
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.result import StudyResult
+from flexspline.results.cli import app
 from flexspline.results.report.payload import payload_of
-from flexspline.results.study.failures import TOLD, causes, failure_lines
+from flexspline.results.study.failures import TOLD, causes, failure_lines, nothing_built
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
@@ -81,3 +86,33 @@ def test_many_causes_are_cut_and_counted() -> None:
 def test_no_word_of_constraints_where_there_are_none() -> None:
     result = result_of(Outcome({"K_b_Nm_per_rad": 1.0}))
     assert "constraint" not in words(result, summary(result) | {"files": []})
+
+
+def test_a_study_in_which_nothing_is_built_names_the_commonest_cause() -> None:
+    nothing = nothing_built(result_of(outcome(0.7, 0.5), outcome(0.4, 3.0), outcome(0.4, 4.0)))
+    assert nothing.startswith(
+        "none of 3 designs could be built and solved; commonest cause (2 ×): shaft.fillet_mm: design 1"
+    )
+    assert "must be from 0 to 1 mm" in nothing
+    assert not nothing_built(
+        result_of(outcome(0.7, 0.5), Outcome(dict.fromkeys(USUAL_FIGURES, 1.0)))
+    )
+
+
+def test_a_study_in_which_nothing_is_built_ends_with_status_1(tmp_path: Path) -> None:
+    (tmp_path / "gear.toml").write_text(
+        (EXAMPLES / "xb1-40.toml").read_text(encoding="utf-8"), "utf-8"
+    )
+    file = tmp_path / "short.toml"
+    file.write_text(
+        f'design = "gear.toml"\n[vary]\n"{WALL}" = {{ values = [2.0, 3.0] }}\n[run]\nmethod = "grid"\n'
+        "workers = 1\n",
+        "utf-8",
+    )
+    done = CliRunner().invoke(app, ["study", str(file), "--json"])
+    assert done.exit_code == 1
+    assert done.stderr.splitlines()[-1].startswith(
+        f"flexspline: {file}: none of 2 designs could be built"
+    )
+    assert json.loads(done.stdout)["failed"] == 2
+    assert (tmp_path / "short.out" / "study.csv").exists()

@@ -17,6 +17,7 @@ from flexspline.results.report.payload import payload_of
 from flexspline.results.report.pdf import pdf_of
 from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
+from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
@@ -78,6 +79,19 @@ def test_a_start_that_nothing_beats_is_said(K_start: float, stress: float, said:
     text = str(payload_of(study_document(began, ())))
     assert ("No design is better than the start" in text) is said
     assert bool(unbeaten_start(began)) is said
+
+
+@pytest.mark.parametrize(("stress", "broken"), [(300.0, False), (311.0, True)])
+def test_a_start_that_is_not_allowed_is_marked(stress: float, broken: bool) -> None:
+    result = result_of(STUDY.replace("300.0", "310.0"))
+    began = replace(result, start=Outcome({K: 3.2e4, STRESS: stress, TOTAL: 85.0}))
+    line = next(
+        t for t in words(began, summary(began) | {"files": []}).split("\n") if "start:" in t
+    )
+    report = str(payload_of(study_document(began, ())))
+    assert ("breaks a constraint" in line and "311" in line) is broken
+    assert ("breaks a constraint" in report) is broken
+    assert ("start (not allowed)" in report) is broken
 
 
 def test_a_constraint_that_holds_is_said_with_its_limit() -> None:

@@ -11,6 +11,8 @@ import pytest
 
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.pipeline.diagnosis.measurement.table import read_table
+from flexspline.results.diagnosis.reading import reading_notes
 
 TORQUE = [0.0, 0.25, 0.5, 1.125, 0.5, 0.25, -0.25, -0.5, -1.125, -0.5, -0.25, 0.0]
 ANGLE = [11.25 * t + 36 * ((t > 0) - (t < 0)) for t in TORQUE]  # arcsec
@@ -57,6 +59,7 @@ READ: dict[str, bytes] = {
         "X_Value\tTorque [Nm]\tAngle [arcsec]\tTime [s]\tComment\n"
         + "".join(f"0\t{m}\t{a}\t{t}\t\n" for m, a, t in ROWS)).encode(),
     "Excel's first line": ("sep=;\n" + GERMAN + body(";", comma)).encode("utf-8-sig"),
+    "Czech Excel": ('Krouticí moment [Nm];Úhel ["];Čas [s]\n' + body(";", comma)).encode("cp1250"),
     "UTF-8 with mark": (OURS + body()).encode("utf-8-sig"),
     "UTF-16, little end first":
         ("\ufeff" + GERMAN.replace(";", "\t") + body("\t", comma)).encode("utf-16-le"),
@@ -177,6 +180,33 @@ def test_thousands(tmp_path: Path) -> None:
     assert found.history.torque_Nm == pytest.approx(1e6 * np.array(TORQUE), rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("head", "again", "lines"),
+    [
+        (OURS, OURS, (8,)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\n", "Torque,Angle,Time\n", (9,)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\n", "Torque, Angle,Time,\nN·m,arcsec,s\n", (9, 10)),
+        ("Torque,Angle,Time\nN·m,arcsec,s\nfloat,float,float\n", "", (3,)),
+        (OURS + "double,double,datetime\n", "", (2,)),
+    ],
+)
+def test_the_header_again_is_passed_over_and_said(
+    head: str, again: str, lines: tuple[int, ...], tmp_path: Path
+) -> None:
+    rows = body().splitlines(keepends=True)
+    found = read(tmp_path, (head + "".join(rows[:6]) + again + "".join(rows[6:])).encode())
+    assert found.history.torque_Nm == pytest.approx(TORQUE)
+    assert found.angle_arcsec == pytest.approx(ANGLE, abs=1e-5)
+    assert found.read_as.heads_again == lines
+    assert any(f"passed over: line {lines[0]}" in note for note in reading_notes(found.read_as))
+
+
+def test_one_column_with_quoted_decimal_commas(tmp_path: Path) -> None:
+    path = tmp_path / "torque.csv"
+    path.write_text('Drehmoment [Nm]\n"1,5"\n"-3"\n', encoding="utf-8")
+    assert read_table(path).numbers["torque_Nm"].tolist() == [1.5, -3]
+
+
 REFUSED = {
     "a thousand or a thousandth":
         (GERMAN + "1,234;5;6\n" * 9, ':2: Drehmoment [Nm] = "1,234" may be 1234 or 1.234'),
@@ -203,6 +233,9 @@ REFUSED = {
         ("torque_Nm,angle_arcsec,temperature_C\n" + "1,2,20\n1,2,\n" * 9, "is empty (so are 9 of 18"),
     "unquoted decimal commas":
         ("torque_Nm,angle_arcsec\n" + "0,5,1,5\n" * 9, "with decimal commas, separate"),
+    "decimal commas in one column":
+        ("Drehmoment [Nm]\n1,5\n-3\n", ":2: 2 fields where the header has 1; with decimal commas, put the "
+         "numbers in quotation marks or write decimal points"),
     "spaces": ("torque_Nm angle_arcsec\n1 2\n", "separated by commas, semicolons or tabs"),
     "a number with its unit": ("torque_Nm;angle_arcsec\n" + "1 Nm;2\n" * 9, '"1 Nm" is not a finite number'),
     "a quoted line break": ('torque_Nm,angle_arcsec,remark\n1,2,"a\nb"\n', ":2: a quoted field goes on"),
@@ -218,6 +251,19 @@ def test_what_two_readings_fit_is_refused_in_one_line(name: str, tmp_path: Path)
         read(tmp_path, data.encode())
     assert needle in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def test_an_encoder_that_passes_a_full_turn_is_told_from_a_wrong_unit(tmp_path: Path) -> None:
+    for unit, turn in (("deg", 360.0), ("rad", math.tau)):
+        per_arcsec = turn / 1_296_000
+        rows = "".join(
+            f"{t},{a * per_arcsec % turn:.9f}\n" for t, a in zip(TORQUE, ANGLE, strict=True)
+        )
+        with pytest.raises(MeasurementError) as refusal:
+            read(tmp_path, f"Torque [Nm],Angle [{unit}]\n{rows}".encode())
+        # the angle is negative from the seventh row on, and 0 in the last
+        said = f":8: Angle [{unit}] jumps by 360° here, the first of 2 times: did the encoder pass"
+        assert said in str(refusal.value)
 
 
 @pytest.mark.parametrize(

@@ -39,8 +39,9 @@ def test_a_plan_is_not_better_for_its_length() -> None:
     assert most_telling(plans, [PLAIN, WARM], 0.4).vary == "temperature_C"
 
 
-def sliding_record(periods_s: tuple[float, ...]) -> Sweep:
-    """Triangles of 2 N·m, a period each: a line, a gap, and a block that slips at 0.2 N·m, 5 arcsec wide."""
+def sliding_record(periods_s: tuple[float, ...], slope: float = 10.0, width: float = 5.0) -> Sweep:
+    """Triangles of 2 N·m, a period each: a line [arcsec per N·m], a gap, and a block that slips at 0.2 N·m,
+    `width` arcsec wide."""
     phase = (np.arange(100 * len(periods_s)) + 0.5) / 100
     torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * phase))
     start = np.r_[0.0, np.cumsum(periods_s)]
@@ -50,7 +51,7 @@ def sliding_record(periods_s: tuple[float, ...]) -> Sweep:
         at = min(max(at, q - 0.2), q + 0.2)
         block[k] = at
     noise = np.random.default_rng(4).normal(0, 0.3, len(torque))
-    angle = 10.0 * torque + 30.0 * np.sign(torque) - 2.5 * (torque - block) / 0.2 + noise
+    angle = slope * torque + 30.0 * np.sign(torque) - width / 2 * (torque - block) / 0.2 + noise
     cycle = phase.astype(int)
     history = History(torque, np.zeros(len(torque), int), cycle, time)
     numbers = (tuple(np.unique(cycle) + 1.0),)
@@ -73,6 +74,15 @@ def test_what_the_record_has_is_not_asked_for(
     after = outcome.next_measurement
     assert after is not None
     assert (after.aim, after.vary, after.doing) == ("confirm", vary, doing)
+
+
+def test_a_part_left_out_is_confirmed_by_larger_torques() -> None:
+    """What is to be varied is what the words beside it speak of."""
+    outcome, _ = diagnose_sweep(sliding_record((60.0,) * 4, slope=16.0, width=0.0), PREDICTION)
+    assert [c.id for c in outcome.causes] == ["series_compliance"]
+    after = outcome.next_measurement
+    assert after is not None
+    assert (after.aim, after.vary) == ("confirm", "torque_amplitude")
 
 
 def test_other_rates_lie_beyond_those_of_the_record() -> None:
