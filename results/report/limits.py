@@ -26,7 +26,9 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         [
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
-            "mounting face is held, so the bolted joint between them counts as rigid.",
+            "mounting face is held, so the bolted joint between them counts as rigid. The shaft’s is its "
+            "whole first face. A hat’s flange touches only the outer part of it, and K_e is then too large: "
+            "by 9 and 19 % on two shafts, against the same with their first 0.5 mm hollowed to the flange.",
         ],
         ["Teeth", _teeth(content)],
         [

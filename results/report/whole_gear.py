@@ -111,9 +111,9 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         ),
         rows=tuple(rows),
         caption="The backlash sum beside the whole gear. The whole gear’s flexspline wind-up includes "
-        "teeth and bearing; the angle of a clearance is by how much the free angle is smaller without that "
-        "clearance. The gap without any clearance: balls, race and rim yield, so that the teeth do not "
-        "reach full depth; the sum has no such term.",
+        "teeth and bearing; the angle of a clearance is what the free angle loses when first the flanks’ "
+        "clearance is taken away, then the bearing’s too. The gap without any clearance: balls, race and "
+        "rim yield, so that the teeth do not reach full depth; the sum has no such term.",
         strong=len(rows) - 1,
     )  # fmt: skip
 
