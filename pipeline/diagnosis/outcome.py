@@ -112,6 +112,7 @@ DoingKind = Literal[
     "compare_channels",
     "compare_channels_and_cell",
     "weigh_torque_cell",
+    "read_torque_zero",
     "same_ends",
     "other_ends",
     "closed_sweep",

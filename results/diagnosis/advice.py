@@ -59,6 +59,8 @@ DOING: Mapping[DoingKind, str] = {
     "hysteresis of the torque cell opens as wide as before",
     "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
     "both ways",
+    "read_torque_zero": "take the load off the torque cell before and after the record, and every few "
+    "cycles, and write down what it reads",
     "same_ends": f"the same end points {TIMES_OVER} times over",
     "other_ends": "end points at ± {torques} N·m",
     "closed_sweep": "a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",
@@ -94,8 +96,9 @@ def _of_sweep(after: NextMeasurement) -> str:
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
         return f"to confirm {cause.title}: {doing}"
     titles = _one_from_others(after)
-    if after.doing is None:
-        return f"to tell {titles}: {cause.reveals}"
+    if after.doing is None or not after.separation:  # nothing was computed
+        doing = cause.reveals if after.doing is None else doing_words(after.doing)
+        return f"to tell {titles}: {doing}"
     apart = f"their predictions then differ by {after.separation:.0f} times the noise"
     return f"{doing_words(after.doing)}: {apart}; it tells {titles}"
 

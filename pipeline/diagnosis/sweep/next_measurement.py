@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import Decision
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
@@ -157,6 +158,8 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
             vary, doing = "torque_amplitude", LARGER
         if rivals == (SERIES,):  # a loop shrinks with its amplitude, a spring does not
             vary, doing = "torque_amplitude", LARGER
+        if rivals == (OFFSET,):  # the torque cell's zero, which it shows by itself
+            vary, doing = "torque_Nm", Doing("read_torque_zero")
         return NextMeasurement(vary, aim, (cause, *rivals), doing)
     noise = explained.prepared.noise.std_arcsec
     best = most_telling(plans(explained.prepared), models, noise)

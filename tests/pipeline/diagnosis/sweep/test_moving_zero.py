@@ -10,6 +10,7 @@ from histories import LARGEST, PREDICTION, sweep
 from read_sweep import as_read
 
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.results.diagnosis.advice import why
 
 NOISE = 0.5  # arcsec
 GEAR = replace(sweep(cycles=5, rows=240, hold=0), temperature_C=None, input_angle_deg=None)
@@ -29,6 +30,8 @@ def test_where_the_gap_is_crossed_tells_whose_zero_moves(
     if not of_torque:
         angle = angle - PREDICTION.compliance * zero_Nm
     angle = angle + np.random.default_rng(seed).normal(0, NOISE, len(angle))
-    causes = diagnose_sweep(as_read(read, angle), PREDICTION)[0].causes
-    drift = next(c for c in causes if c.id == "sensor_drift")
+    found = diagnose_sweep(as_read(read, angle), PREDICTION)[0]
+    drift = next(c for c in found.causes if c.id == "sensor_drift")
     assert drift.alternatives == rivals
+    assert found.next_measurement is not None
+    assert ("torque cell" in why(found.next_measurement, "sweep")) == of_torque
