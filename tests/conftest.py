@@ -39,7 +39,7 @@ SLOWEST = (
     "test_studio_design", "test_hidden_specimens", "test_swept", "test_legibility_diagnosis",
     "test_studio_widths", "test_cyclic", "test_files", "test_gear_command", "test_contact_on_the_seat",
     "test_gear_inputs", "test_mesher", "test_studio_reading", "test_ahead_beside_friction",
-    "test_twolevel",
+    "test_twolevel", "test_kills", "test_model_doubt", "test_no_network", "test_diagnose_rig_files",
 )  # fmt: skip
 """Files that take twelve seconds of a processor or more, begun first so that no worker is left alone with one
 at the end. The first makes the run that others read; the second the solves that the hidden specimens read,
