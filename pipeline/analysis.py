@@ -91,14 +91,15 @@ def stiffnesses(
         if wanted:
             part.refuse_settings()
     found = _Figures()
-    others: list[Callable[[], Attempts]] = []
-    if shaft:
-        others.append(partial(found.solve_part, "K_e", shaft_part, solved))
+    tasks: list[Callable[[], Attempts]] = [
+        partial(found.solve_part, name, part, solved)
+        for name, part, wanted in (("K_b", rim_part, flexspline), ("K_e", shaft_part, shaft))
+        if wanted
+    ]
     if flexspline and rim:
-        others += found.rim_tasks(rim_part)
-    with beside(context.progress, others) as rest:
-        own = [found.solve_part("K_b", rim_part, solved)] if flexspline else []
-        tried = [*own, *rest()]
+        tasks += found.rim_tasks(rim_part)
+    with beside(context.progress, tasks[1:]) as rest:
+        tried = [*(task() for task in tasks[:1]), *rest()]
     return Stiffnesses(
         in_order(found.K),
         found.peaks.get("wave_generator_peak"),

@@ -41,13 +41,13 @@ def table(record: dict[str, Any], folder: Path) -> str:
         from flexspline.results.gear_terms import term_names
 
         torque = f"{record['terms_torque_Nm']:g} N·m (load.torque_Nm)"
-        lines += row((f"Twist between ± {torque}, term by term:",), ())
+        lines += row((f"Twist between ± {torque}, term by term:",))
         for term, name in term_names().items():
             lines += row((name, f"{grouped(terms[term], 1)} arcsec"), (NAMES - 2,), "    ")
     if "assumed" in gear:
         keys = ", ".join(a["key"] for a in gear["assumed"])
-        lines += row((f"assumed for the whole gear: {keys}",), ())
+        lines += row((f"assumed for the whole gear: {keys}",))
     for a in record.get("assumed", ()):
-        lines += row((f"assumed: {a['key']} = {a['value']:.4g}, {a['why']}",), ())
+        lines += row((f"assumed: {a['key']} = {a['value']:.4g}, {a['why']}",))
     lines.append(f"files in {folder}")
     return "\n".join(lines)

@@ -87,7 +87,7 @@ class RunDrawings:
         self.add(of_field(self.context, name, field))
 
     def add(self, drawings: Iterable[Drawing]) -> None:
-        """Draw these after what was asked before."""
+        """Begin to draw these, in this order, when what was asked before has begun."""
         for drawing in drawings:
             self._asked.append((drawing, self._threads.submit(self._drawn, drawing)))
 

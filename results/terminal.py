@@ -21,26 +21,21 @@ def width() -> int:
     return max(shutil.get_terminal_size((UNBOUNDED, 24)).columns, LEAST_WIDTH)
 
 
-def prose(text: str, first: str = "  ", rest: str | None = None) -> list[str]:
+def prose(
+    text: str, first: str = "  ", rest: str | None = None, most: int = TEXT_WIDTH
+) -> list[str]:
     """Lines of a paragraph that begin with `first`, and with `rest` after the first one."""
     after = first if rest is None else rest
-    return textwrap.wrap(
-        text, min(TEXT_WIDTH, width()), initial_indent=first, subsequent_indent=after
-    )
+    return textwrap.wrap(text, min(most, width()), initial_indent=first, subsequent_indent=after)
 
 
-def row(cells: Sequence[str], widths: Sequence[int], indent: str = "  ") -> list[str]:
+def row(cells: Sequence[str], widths: Sequence[int] = (), indent: str = "  ") -> list[str]:
     """Cells side by side, each but the last in a column that wide; where too long, one below the other."""
     padded = [f"{cell:<{w}}" for cell, w in zip(cells, widths, strict=False)]
     line = (indent + " ".join([*padded, *cells[len(widths) :]])).rstrip()
     if len(line) <= width():
         return [line]
     first, *others = cells
-    below = (part for cell in others for part in _cut(cell, indent + DEEPER))
-    return [*_cut(first, indent, indent + DEEPER), *below]
-
-
-def _cut(text: str, first: str, rest: str | None = None) -> list[str]:
-    return textwrap.wrap(
-        text, width(), initial_indent=first, subsequent_indent=first if rest is None else rest
-    )
+    deeper = indent + DEEPER
+    below = (part for cell in others for part in prose(cell, deeper, most=UNBOUNDED))
+    return [*prose(first, indent, deeper, UNBOUNDED), *below]

@@ -51,7 +51,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         lines += prose(f"Measure next ({channel_words(after.vary)}): {why(after, diagnosis.kind)}")
     for note in notes(diagnosis):
         lines += prose(f"note: {note}", "  ", "    ")
-    lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",), ())
+    lines += row((f"SHA-256 of the measurement: {diagnosis.measurement.read_as.sha256}",))
     lines.append(f"files in {folder}")
     return "\n".join(lines)
 
@@ -61,7 +61,7 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
     lines, gain = [], outcome.gain
     if gain is not None:
         held_out = left_out_words(gain.held_out)
-        lines += row((f"Error on {held_out}, not used for fitting, in {gain.unit} rms:",), ())
+        lines += row((f"Error on {held_out}, not used for fitting, in {gain.unit} rms:",))
         for words, value in (
             ("simulation as it stands", gain.rmse_before),
             (calibrated_words(gain), gain.rmse_calibrated),
@@ -71,7 +71,7 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
             lines += row((words, figures_text(value)), (60,), "    ")
     if outcome.gains_at_levels:
         head = "Error where a whole level was left out, in arcsec rms, without and with the causes:"
-        lines += row((head,), ())
+        lines += row((head,))
     for level in outcome.gains_at_levels:
         before, after = figures_text(level.rmse_before), figures_text(level.rmse_after)
         lines += row((left_out_words(level.held_out), before, after), (60, 7), "    ")

@@ -1,7 +1,8 @@
 """Drawing in a process of its own: a graphics driver that crashes ends that process, not the program.
 
-The process is started for the first picture and draws all others, so that VTK is loaded once. What is to
-be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers are lines of JSON.
+The process is started for the first picture and draws more after it, so that VTK is loaded once; who draws
+much has two. What is to be drawn goes there as `pipeline.packing` writes it, in a file; questions and answers
+are lines of JSON.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,6 +60,18 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
     span = np.maximum(t[width:] - t[:-width], 1e-12)
     return Rates(width, moved / span, travel)
+
+
+def moving_rates(history: History, rows: np.ndarray) -> Rates | None:
+    """`rates_of`, their values without sign; None without time, or where too few rows say."""
+    if (
+        history.time_s is None
+        or len(rows) < 2 * FEWEST_HOLD_ROWS
+        or np.ptp(history.time_s[rows]) == 0
+    ):
+        return None
+    found = rates_of(history, rows)
+    return replace(found, values=np.abs(found.values))
 
 
 def by_travel(values: np.ndarray, travel_Nm: np.ndarray, share: float) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import FEWEST_HOLD_ROWS, by_travel, rates_of
+from flexspline.pipeline.diagnosis.measurement.ramps import by_travel, moving_rates
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 Ends = tuple[float, float]
@@ -42,9 +42,11 @@ class MeasuredSpan:
 
 def span_of(history: History) -> MeasuredSpan:
     """The span of a record."""
-    rates = [r for r in (_rates(history, rows) for rows in history.unit_slices) if r is not None]
-    fastest = [by_travel(rate, travel, MOST_TRAVEL) for rate, travel in rates]
-    slowest = [by_travel(rate, travel, 1 - MOST_TRAVEL) for rate, travel in rates]
+    rates = [r for rows in history.unit_slices if (r := moving_rates(history, rows)) is not None]
+    fastest, slowest = (
+        [by_travel(r.values, r.travel_Nm, share) for r in rates]
+        for share in (MOST_TRAVEL, 1 - MOST_TRAVEL)
+    )
     return MeasuredSpan(
         _ends(history.torque_Nm),
         float(_loops_Nm(history).min()),
@@ -66,7 +68,8 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     room = RANGE_SLACK * largest + 3 * torque_noise_Nm(history)
     found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
     if span.rate_Nm_per_s is not None and history.time_s is not None:
-        found["torque_rate"] = _doublings(history, span.rate_Nm_per_s * (1 + RATE_SLACK))
+        measured_Nm_per_s = span.rate_Nm_per_s * (1 + RATE_SLACK)
+        found["torque_rate"] = np.log2(np.maximum(_row_rates(history) / measured_Nm_per_s, 1.0))
     if span.temperature_C is not None and history.temperature_C is not None:
         wide = max(float(np.ptp(span.temperature_C)), LEAST_RANGE_K)
         out = _outside(history.temperature_C, span.temperature_C, RANGE_SLACK * wide)
@@ -79,17 +82,11 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
 def times_slower(span: MeasuredSpan, history: History) -> np.ndarray:
     """(n,) how many times as slow as the slowest measured each row's torque moves; 1 where not slower, or
     held."""
-    out = np.ones(len(history))
     if span.slowest_rate_Nm_per_s is None:
-        return out
-    for rows in history.unit_slices:
-        if (found := _rates(history, rows)) is None:
-            continue
-        rate, travel = found
-        own = np.where(travel > 0, span.slowest_rate_Nm_per_s / np.maximum(rate, 1e-12), 1.0)
-        own[own < 1 + RATE_SLACK] = 1.0
-        out[rows[: len(own)]] = own
-        out[rows[len(own) :]] = own[-1]
+        return np.ones(len(history))
+    rate = _row_rates(history)
+    out = np.where(rate > 0, span.slowest_rate_Nm_per_s / np.maximum(rate, 1e-12), 1.0)
+    out[out < 1 + RATE_SLACK] = 1.0
     return out
 
 
@@ -134,26 +131,13 @@ def _turned(angle_deg: np.ndarray, ends: Ends) -> np.ndarray:
     return np.where(out > RANGE_SLACK * QUARTER_DEG, out / QUARTER_DEG, 0.0)
 
 
-def _rates(history: History, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Rate [N·m/s] and travel [N·m] from each row of a unit on, or None without time."""
-    if (
-        history.time_s is None
-        or len(rows) < 2 * FEWEST_HOLD_ROWS
-        or np.ptp(history.time_s[rows]) == 0
-    ):
-        return None
-    found = rates_of(history, rows)
-    return np.abs(found.values), found.travel_Nm
-
-
-def _doublings(history: History, measured_Nm_per_s: float) -> np.ndarray:
+def _row_rates(history: History) -> np.ndarray:
+    """(n,) |torque rate| [N·m/s] of each row; 0 in holds, and in units without time."""
     out = np.zeros(len(history))
     for rows in history.unit_slices:
-        if (found := _rates(history, rows)) is None:
+        if (found := moving_rates(history, rows)) is None:
             continue
-        rate, travel = found
-        moving = np.where(travel > 0, rate, 0.0)
-        own = np.log2(np.maximum(moving / measured_Nm_per_s, 1.0))
+        own = np.where(found.travel_Nm > 0, found.values, 0.0)
         out[rows[: len(own)]] = own
         out[rows[len(own) :]] = own[-1]
     return out

@@ -9,9 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
-from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
-from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.torque_offset import crossing
+from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, crossing_of
 
 PARTS = 3
 """Of a unit's rows: the place of the crossing in the first is held against that in the last."""
@@ -24,24 +22,15 @@ MADE_SHARE = 0.5
 def zero_moves(explained: ExplainedSweep) -> bool:
     """Whether, in some unit, the gap's crossing has moved by as much torque as would make the drift found."""
     fit, prepared = explained.identified.fit, explained.prepared
-    history, rig = prepared.rig.history, fit.measured_rig()
-    left = fit.residual() + history.sign * rig.gap_arcsec / 2
-    drift = fit.added(DRIFT)
-    for unit in history.unit_slices:
-        rows = unit[~prepared.outlier[unit]]
-        parts = np.array_split(rows, PARTS)
-        first, last = (
-            crossing(
-                history.torque_Nm[part], left[part], rig.gap_arcsec, prepared.noise.std_arcsec,
-                torque_noise_Nm(history),
-            )
-            for part in (parts[0], parts[-1])
-        )  # fmt: skip
+    compliance, drift = fit.measured_rig().compliance, fit.added(DRIFT)
+    for unit in prepared.rig.history.unit_slices:
+        begin, *_, end = np.array_split(unit[~prepared.outlier[unit]], PARTS)
+        first, last = (crossing_of(prepared, fit, rows) for rows in (begin, end))
         if first is None or last is None:
             continue
         moved = last.offset_Nm - first.offset_Nm
-        drifted = float(drift[parts[-1]].mean() - drift[parts[0]].mean())
+        drifted = float(drift[end].mean() - drift[begin].mean())
         sure = abs(moved) > MOVED_SIGMAS * float(np.hypot(first.std_Nm, last.std_Nm))
-        if sure and -moved * rig.compliance * np.sign(drifted) > MADE_SHARE * abs(drifted):
+        if sure and -moved * compliance * np.sign(drifted) > MADE_SHARE * abs(drifted):
             return True
     return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import hypot
 
 import numpy as np
@@ -47,19 +48,13 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     ahead = explained.ahead
     found = []
     for c in identified.named:
-        rivals = identified.rivals[c]
-        if c in LOOPS and not told and not (c == FRICTION and timed and ahead):
-            rivals = tuple(dict.fromkeys((*rivals, LOOPS[c])))
-        if c == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
-            rivals = tuple(dict.fromkeys((*rivals, SERIES)))
-        if c == DRIFT and zero_moves(explained):
-            rivals = tuple(dict.fromkeys((*rivals, OFFSET)))
+        rivals = (*identified.rivals[c], *_other_rivals(explained, c, told, timed))
         chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
         if c == FRICTION and ahead is not None:
             chance, nats = _probability(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
         found.append(NamedCause(
-            c, chance, rivals, magnitude[c], std[c], known_causes()[c].unit, nats,
+            c, chance, tuple(dict.fromkeys(rivals)), magnitude[c], std[c], known_causes()[c].unit, nats,
             identified.rms[c], _own_units(explained, c), _ahead_Nm(explained, c),
             identified.fit.widest_loop_arcsec() if c == FRICTION else None,
         ))  # fmt: skip
@@ -74,6 +69,17 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
             abs(slope * explained.offset_Nm),
         ))  # fmt: skip
     return tuple(found)
+
+
+def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool) -> Iterator[str]:
+    """Rivals that no race of explanations shows; `told`, `timed`: as `loop_tells` has them."""
+    identified = explained.identified
+    if cause in LOOPS and not told and not (cause == FRICTION and timed and explained.ahead):
+        yield LOOPS[cause]
+    if cause == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
+        yield SERIES
+    if cause == DRIFT and zero_moves(explained):
+        yield OFFSET
 
 
 def _stands_for_springs(identified: Identification) -> bool:

@@ -126,7 +126,7 @@ def run_race(prepared: PreparedSweep) -> ExplainedSweep:
         # nor creep in its place, where there was none beside it
         in_vain = {RATE, CREEP} - (identified.best.named(search.evidence) - {RATE})
         return run_race(replace(begun, columns=begun.columns.less(in_vain)))
-    seen = _crossing(prepared, identified.fit)
+    seen = crossing_of(prepared, identified.fit, np.flatnonzero(~prepared.outlier))
     return ExplainedSweep(prepared, identified, seen, prepared.offset_Nm)
 
 
@@ -213,13 +213,12 @@ def _changes(noise: Noise, again: Noise) -> tuple[float, float]:
     return log(again.variance / noise.variance), log(again.slow_power / noise.slow_power)
 
 
-def _crossing(prepared: PreparedSweep, fit: SweepFit) -> Crossing | None:
-    """The crossing as read, with everything but the gap taken off the measured angle."""
+def crossing_of(prepared: PreparedSweep, fit: SweepFit, rows: np.ndarray) -> Crossing | None:
+    """The crossing as read in some rows (k,), with everything but the gap taken off the measured angle."""
     history = prepared.rig.history
     gap = fit.measured_rig().gap_arcsec
-    good = ~prepared.outlier
     left = fit.residual() + history.sign * gap / 2
     return crossing(
-        history.torque_Nm[good] + prepared.offset_Nm, left[good], gap,
+        history.torque_Nm[rows] + prepared.offset_Nm, left[rows], gap,
         prepared.noise.std_arcsec, torque_noise_Nm(history),
     )  # fmt: skip

@@ -19,12 +19,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
-from flexspline.pipeline.diagnosis.measurement.ramps import (
-    FEWEST_HOLD_ROWS,
-    by_travel,
-    cycle_rate,
-    rates_of,
-)
+from flexspline.pipeline.diagnosis.measurement.ramps import by_travel, cycle_rate, moving_rates
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.search import Candidate, Search
 
@@ -89,10 +84,9 @@ def rates_apart_within(history: History) -> float:
     """The fastest over the slowest rate within units, by travel, without starts and turns; 1 without any."""
     apart = [1.0]
     for rows in history.unit_slices:
-        if len(rows) < 2 * FEWEST_HOLD_ROWS:
+        if (found := moving_rates(history, rows)) is None:
             continue
-        found = rates_of(history, rows)
-        slow, fast = (by_travel(np.abs(found.values), found.travel_Nm, s) for s in (0.1, 0.9))
+        slow, fast = (by_travel(found.values, found.travel_Nm, share) for share in (0.1, 0.9))
         apart.append(fast / slow if slow > 0 else 1.0)
     return max(apart)
 
