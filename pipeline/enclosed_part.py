@@ -37,9 +37,10 @@ def may_answer(model: PartModel) -> bool:
 def enclosure_of(model: PartModel, solve: Solve, expected: float = inf) -> Stiffness:
     """K_b of a part that `has_enclosure`; `solve` solves a load case of a body of revolution.
 
-    `expected` is the half-width of another load case: where it is near the tolerance, the bodies are solved
-    at once as finely as that takes. Where half of the distance is more than the tolerance, `shortfall` says
-    why; where it is more than FAR_HALF_WIDTHS tolerances, they are solved no finer than to FIRST_BOUNDS_PCT.
+    `expected` is the half-width of another load case, 0 where a fine solution costs little: where it is near
+    the tolerance, the bodies are solved at once as finely as that takes. Where half of the distance is more
+    than the tolerance, `shortfall` says why; where it is more than FAR_HALF_WIDTHS tolerances, they are
+    solved no finer than to FIRST_BOUNDS_PCT.
 
     Raises
     ------

@@ -24,7 +24,7 @@ from flexspline.pipeline.enclosed_part import (
     may_answer,
 )
 from flexspline.pipeline.enclosure import answered_within
-from flexspline.pipeline.part_stiffness import revolved_stiffness
+from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
 from flexspline.pipeline.revolved import contact, lobes
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
@@ -82,7 +82,7 @@ def rim_stiffness(flexspline: PartModel, case: RimCase) -> Stiffness:
 
 def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     """The enclosure; where it is too wide the solid model's K within it, if there is such a model."""
-    torsion = enclosure_if_any(flexspline, revolved_stiffness)  # a fraction of a second, and kept
+    torsion = torsion_enclosure(flexspline)  # a fraction of a second, and kept
     expected = torsion.half_width if torsion else inf
     if asked.solid is None:
         return enclosure_of(flexspline, asked.revolved, expected)

@@ -60,8 +60,13 @@ def revolved_stiffness(model: PartModel) -> Stiffness:
     return model.context.cache.get("axisymmetric", model.revolved_key, make, is_lasting)[0]
 
 
+def torsion_enclosure(model: PartModel) -> Stiffness | None:
+    """`enclosure_if_any` of the turned part; its bodies take 0.1 s each, as fine as is asked."""
+    return enclosure_if_any(model, revolved_stiffness, expected=0.0)
+
+
 def _solid_stiffness(model: PartModel) -> Stiffness:
-    enclosure = enclosure_if_any(model, revolved_stiffness)
+    enclosure = torsion_enclosure(model)
     if enclosure is not None and may_answer(model):
         tolerance = model.tolerance
         if enclosure.half_width <= tolerance and model.mesher == "auto" and by_fTetWild(model):
@@ -78,7 +83,7 @@ def twisted_part(model: PartModel) -> TwistedPart:
 
     Where the enclosure meets it, one mesh is enough, unless that mesh's bounds and the enclosure are apart.
     """
-    enclosure = enclosure_if_any(model, revolved_stiffness) if may_answer(model) else None
+    enclosure = torsion_enclosure(model) if may_answer(model) else None
     tolerance = model.tolerance
     one_mesh = enclosure is not None and enclosure.half_width <= tolerance
 
