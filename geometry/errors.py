@@ -119,6 +119,11 @@ def readable(text: str) -> str:
     )
 
 
+def why_of(fault: OSError, where: str = "") -> str:
+    """`fault` by its file's name, or `where` it has none, and the system's own words."""
+    return f"{f'{fault.filename}: ' if fault.filename else where}{fault.strerror or fault}"
+
+
 def one_line(text: str, limit: int = 600) -> str:
     """Printable text on one line: control characters are written as escapes."""
     text = readable(text[: limit + 1])

@@ -46,7 +46,7 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
 
     `interrupted`: what to add where a user stops the command.
     """
-    from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError
+    from flexspline.geometry.errors import ComputationError, DesignError, DesignFileError, why_of
     from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
     from flexspline.results.folder_lock import held_until_the_end
 
@@ -67,8 +67,7 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
         tell(f"flexspline: {where}{error}")
         raise typer.Exit(1) from None
     except OSError as error:
-        named = f"{error.filename}: " if error.filename else where
-        tell(f"flexspline: {named}{error.strerror or error}")
+        tell(f"flexspline: {why_of(error, where)}")
         raise typer.Exit(1) from None
     except MemoryError as error:
         tell(f"flexspline: {where}not enough memory: {error}")

@@ -21,7 +21,7 @@ from threading import Lock, Timer
 from typing import Any
 
 from flexspline.fea.child_python import child_command
-from flexspline.geometry.errors import ComputationError, one_line
+from flexspline.geometry.errors import ComputationError, one_line, why_of
 from flexspline.pipeline.packing import packed, unpacked
 from flexspline.results.renders.opengl import ADVICE
 from flexspline.results.streams import private_stdout
@@ -76,8 +76,7 @@ class DrawingProcess:
         try:
             return self._drawn(name, arguments)
         except OSError as fault:  # a full disk, say
-            where = f"{fault.filename}: " if fault.filename else "the folder for temporary files: "
-            raise NotDrawnError(f"{where}{fault.strerror or fault}") from fault
+            raise NotDrawnError(why_of(fault, "the folder for temporary files: ")) from fault
 
     def _drawn(self, name: str, arguments: tuple[Any, ...]) -> bytes:
         if self._folder is None:

@@ -34,18 +34,28 @@ _DESIGN, _MEASURED, _OUT = "design.toml", "measured.csv", "out"
 
 @dataclass
 class StudioJob:
-    """One running command; `say` gets its lines of progress. `process`: the command, once it has begun."""
+    """One running command; `say` gets its lines of progress.
+
+    Attributes
+    ----------
+    process : the command, once it has begun.
+    folder : where it works, made by `run`.
+    """
 
     kind: Kind
     say: Callable[[str], Awaitable[None]]
     process: asyncio.subprocess.Process | None = None
+    folder: tempfile.TemporaryDirectory[str] | None = None
     _stopped: bool = False
-    folder: tempfile.TemporaryDirectory[str] = field(
-        default_factory=lambda: tempfile.TemporaryDirectory(prefix="flexspline-studio-")
-    )
 
     async def run(self, design: Design, measured: bytes = b"") -> Done:
-        """Start the command, pass its progress on, and wait for its end."""
+        """Start the command, pass its progress on, and wait for its end.
+
+        Raises
+        ------
+        OSError : its folder cannot be written, or the command cannot be started.
+        """
+        self.folder = tempfile.TemporaryDirectory(prefix="flexspline-studio-")
         at = Path(self.folder.name)
         if self.kind == "solid" and not left_out(design):
             # "auto" would solve it as a body of revolution again
@@ -72,6 +82,7 @@ class StudioJob:
 
     async def _listen(self) -> list[str]:
         """The lines on stderr, the folder's own name taken out."""
+        assert self.folder is not None
         assert self.process is not None
         assert self.process.stderr is not None
         lines: list[str] = []
@@ -100,19 +111,22 @@ class StudioJob:
 
     def files(self) -> list[str]:
         """Names that a tab may fetch, figures in the order in which they were made."""
+        if self.folder is None:
+            return []
         made = sorted((Path(self.folder.name) / _OUT).glob("*"), key=lambda p: p.stat().st_mtime_ns)
         return [p.name for p in made if p.suffix in SERVED and p.is_file()]
 
     def read(self, name: str) -> bytes | None:
         """A file's bytes, if its name is one of `files`."""
-        if name not in self.files():
+        if self.folder is None or name not in self.files():
             return None
         return (Path(self.folder.name) / _OUT / name).read_bytes()
 
     def close(self) -> None:
         """Stop, and take the folder away."""
         self.stop()
-        self.folder.cleanup()
+        if self.folder is not None:
+            self.folder.cleanup()
 
 
 def _terminate_tree(pid: int) -> None:

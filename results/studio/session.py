@@ -8,7 +8,7 @@ from typing import Any
 
 from aiohttp import web
 
-from flexspline.geometry.errors import DesignError
+from flexspline.geometry.errors import DesignError, why_of
 from flexspline.results.studio.fields import received
 from flexspline.results.studio.job_summary import job_summary
 from flexspline.results.studio.jobs import Done, Kind, StudioJob
@@ -82,14 +82,17 @@ class Session:
         self._tasks[kind] = asyncio.create_task(after())
 
     async def _run(self, job: StudioJob, tables: dict[str, Any]) -> None:
+        answer: dict[str, Any] = {}
         try:
             design = received(tables)
-        except DesignError as fault:
-            ended, answer = Done("failed", str(fault)), {"text": str(fault)}
-        else:
             ended = await job.run(design, self.measured if job.kind == "diagnose" else b"")
-            done = ended.state == "done"
-            answer = job_summary(job.kind, design, ended.text) if done else {"text": ended.text}
+            if ended.state == "done":
+                answer = job_summary(job.kind, design, ended.text)
+        except DesignError as fault:
+            ended = Done("failed", str(fault))
+        except OSError as fault:
+            ended = Done("failed", why_of(fault))
+        answer = answer or {"text": ended.text}
         if self._jobs[job.kind] is job:
             await self._send({"is": "ended", "kind": job.kind, "state": ended.state,
                               "files": ended.files, **answer})  # fmt: skip

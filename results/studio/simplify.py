@@ -24,7 +24,8 @@ def simplified(rim: np.ndarray, seen: np.ndarray) -> np.ndarray:
 def _chains(rim: np.ndarray) -> list[np.ndarray]:
     """Nodes of each connected run; a closed one begins and ends at the same node."""
     after = dict(rim.tolist())
-    starts = [a for a in after if a not in set(after.values())]
+    ends = set(after.values())
+    starts = [node for node in after if node not in ends]
     found = []
     while after:
         node = starts.pop() if starts else next(iter(after))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import json
 import os
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ import aiohttp
 import aiohttp.test_utils
 import pytest
 from in_process import flexspline
-from studio_client import heard, with_client
+from studio_client import TABLES, heard, with_client
 from studio_page import running, write_design
 
 from flexspline.geometry.errors import DesignError
@@ -150,3 +152,22 @@ def test_ctrl_c_ends_it_in_silence(after_s: float) -> None:
         os.killpg(studio.pid, signal.SIGINT)  # as a terminal does: to all of them
         _, said = studio.communicate(timeout=60)
     assert (studio.returncode, said) == (0, "stop with Ctrl-C\n")
+
+
+def test_a_job_that_cannot_begin_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*anything: object) -> str:
+        raise OSError(errno.ENOSPC, "No space left on device", "/tmp")
+
+    async def check(client: aiohttp.test_utils.TestClient) -> None:
+        async with client.ws_connect("/live") as socket:
+            await heard(socket)
+            with monkeypatch.context() as disk:
+                disk.setattr(tempfile, "mkdtemp", full)
+                await socket.send_str(json.dumps({"do": "job", "kind": "step", "tables": TABLES}))
+                said = await heard(socket)
+            assert said == {"is": "ended", "kind": "step", "state": "failed", "files": [],
+                            "text": "/tmp: No space left on device"}  # fmt: skip
+            await socket.send_str("no message")  # and the tab is still served
+            assert (await heard(socket))["is"] == "refused"
+
+    with_client(check)
