@@ -11,7 +11,8 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 
 HARDENING = "stiffness_hardening"
 """This cause's id."""
-LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5}
+LAWS = {"knee": 0, "tanh": 1, "power": 2, "cubic": 3, "rational": 4, "two knees": 5,
+        "cubic spring": 6}  # fmt: skip
 """Numbers of the laws in an extended model's file; a number once given stays."""
 TWO_KNEES = ((0.12, 0.4), (0.12, 0.65), (0.2, 0.5), (0.2, 0.75), (0.35, 0.7))
 """Of the catalogues' K1, K2, K3: shares of the largest torque at which the stiffness steps up."""
@@ -22,6 +23,9 @@ SCALES = (0.12, 0.2, 0.3, 0.45, 0.65)
 """Of the smooth laws, the same."""
 POWERS = (0.5, 0.6, 0.72)
 """Of torque, below 1: the twist levels off; refined within LIMITS."""
+CUBIC_SHARES = (1.0, 5.0)
+"""Of a spring T = k1·θ + k3·θ³ (Tuttle, Seering 1996): its cubic torque over its linear one at the largest
+twist; refined within LIMITS."""
 SHARES = (0.35, 0.65)
 """Of the soft twist that ends at the first of two knees: the lesser and the greater part; refined."""
 LIMITS = {
@@ -31,6 +35,7 @@ LIMITS = {
     3: (1.0, 1.0),
     4: (0.1, 0.7),
     5: (0.08, 0.5),
+    6: (0.3, 20.0),
 }
 """Of the parameter, by law."""
 MOST_SECOND = 0.9
@@ -44,8 +49,8 @@ class StiffnessHardening(Cause):
     """Odd, concave twist a·g(|T|)·sign T [arcsec], g = 1 at the largest torque, a ≥ 0.
 
     Laws: a knee (K1, K2), two knees (K1, K2, K3), tanh, a power below 1, the linear less the cubic,
-    rational. Real soft wind-up may leave the stiffness as simulated at full load (`held` 0), on the
-    chord (1), or at zero (2): that slope is taken off.
+    rational, a spring with a cubic term. Real soft wind-up may leave the stiffness as simulated at full
+    load (`held` 0), on the chord (1), or at zero (2): that slope is taken off.
     """
 
     id = HARDENING
@@ -67,6 +72,7 @@ class StiffnessHardening(Cause):
         laws = [("knee", s) for s in KNEES] + [("tanh", s) for s in SCALES]
         laws += [("power", p) for p in POWERS] + [("cubic", 1.0)]
         laws += [("rational", s) for s in SCALES]
+        laws += [("cubic spring", c) for c in CUBIC_SHARES]
         found: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.torque_Nm}
             for law, p in laws
@@ -95,7 +101,9 @@ class StiffnessHardening(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
-        slope = {0: 0.0, 1: 1.0, 2: self._slope_at_zero(shape)}[int(shape["held"])]
+        slope = (self._slope_at_the_largest, lambda shape: 1.0, self._slope_at_zero)[
+            int(shape["held"])
+        ](shape)
         return ((self._law(shape, x) - slope * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
@@ -124,11 +132,21 @@ class StiffnessHardening(Cause):
                 return x**p
             case 3:
                 return 1.5 * x - 0.5 * x**3
+            case 6:  # x (1 + p) = q + p q³, by Cardano
+                return (
+                    2 / np.sqrt(3 * p) * np.sinh(np.arcsinh(1.5 * np.sqrt(3 * p) * (1 + p) * x) / 3)
+                )
             case 5:
                 q, share = shape["second"], shape["share"]
                 return share * np.minimum(x, p) / p + (1 - share) * np.minimum(x, q) / q
             case _:
                 return x * (1 + p) / (x + p)
+
+    @staticmethod
+    def _slope_at_the_largest(shape: Shape) -> float:
+        """Of a spring that goes on to stiffen; the other laws level off."""
+        p = shape["parameter"]
+        return (1 + p) / (1 + 3 * p) if int(shape["law"]) == LAWS["cubic spring"] else 0.0
 
     @staticmethod
     def _slope_at_zero(shape: Shape) -> float:
@@ -140,6 +158,8 @@ class StiffnessHardening(Cause):
                 return float(1 / p / np.tanh(1 / p))
             case 3:
                 return 1.5
+            case 6:
+                return 1 + p
             case 5:
                 return shape["share"] / p + (1 - shape["share"]) / shape["second"]
             case _:

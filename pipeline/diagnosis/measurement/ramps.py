@@ -36,13 +36,14 @@ class Rates:
 
 
 def rates_of(history: History, rows: np.ndarray) -> Rates:
-    """Rates along one unit's rows, over the fewest rows in which a ramp moves clear of the torque's noise."""
+    """Rates along a unit's or a cycle's rows, over the fewest in which a ramp moves clear of torque noise."""
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history)
     widest = max(1, len(rows) // 20)
     # a ramp's step, from moves over a small part of a cycle
-    coarse = max(1, len(rows) // (CYCLE_PARTS * (int(history.cycle[rows].max()) + 1)))
+    cycles = int(np.ptp(history.cycle[rows])) + 1
+    coarse = max(1, len(rows) // (CYCLE_PARTS * cycles))
     far = np.abs(torque[coarse:] - torque[:-coarse])
     far = far[far > NOISE_MOVES * noise]
     step = np.quantile(far, FAST_QUANTILE) / coarse if len(far) else 0.0
