@@ -83,6 +83,7 @@ def run(
             tell_all(model_warnings(measured, job.design))
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+        from flexspline.results.limit_words import load_beyond
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
         from flexspline.results.report.build import write_run_page, write_run_report
@@ -91,7 +92,7 @@ def run(
             with kept(job, json):
                 result = run_chain(job.context, drawings.add_field)
             warn(job.design, result.stiffnesses, result.fields)
-            tell_all(result.linear_limit.passed(job.design))
+            tell_all(load_beyond(result.linear_limit, job.design))
             for line in result.gear.notes if result.gear else ():
                 tell(f"note: {line}")
             extended = None

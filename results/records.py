@@ -12,6 +12,7 @@ from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.gear_quantities import GEAR_QUANTITIES
+from flexspline.results.limit_words import reason
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -129,7 +130,7 @@ def peak_record(name: str, peak: StressPeak) -> Record:
 
 def linear_limit_record(limit: LinearLimit) -> Record:
     """Beyond which torque the linear model is not valid."""
-    return {"linear_torque_limit_Nm": limit.torque_Nm, "linear_torque_limit_reason": limit.reason}
+    return {"linear_torque_limit_Nm": limit.torque_Nm, "linear_torque_limit_reason": reason(limit)}
 
 
 def mass_record(design: Design) -> Record:

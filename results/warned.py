@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.results.limit_words import load_beyond
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
@@ -34,7 +35,7 @@ def all_warnings(result: RunResult) -> tuple[str, ...]:
     """Of a run: the design's own, then those of the figures."""
     return (
         *result.warnings,
-        *result.linear_limit.passed(result.design),
+        *load_beyond(result.linear_limit, result.design),
         *shortfalls(result.design, result.stiffnesses, result.fields),
         *(f"whole gear: {line}" for line in (result.gear.warnings if result.gear else ())),
     )
