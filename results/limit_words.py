@@ -1,4 +1,4 @@
-"""Limits in words: up to which torque the linear model means anything."""
+"""Limits in words: what a peak stress passes, and up to which torque the linear model means anything."""
 
 from __future__ import annotations
 
@@ -9,10 +9,33 @@ from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTw
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
+    from flexspline.pipeline.stress_limits import PassedLimit
 
 NOT_SOLVED = (
     "without the peak stress of notches, which `flexspline run` solves and which may end it earlier"
 )
+
+
+def beside_figure(passed: PassedLimit) -> str:
+    """What is passed, where the peak's figure stands already."""
+    if passed.key:
+        return f"above the fatigue limit of {passed.limit_MPa:g} MPa"
+    return (
+        f"beyond {passed.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model "
+        "does not hold"
+    )
+
+
+def passed_line(passed: PassedLimit) -> str:
+    """On its own, as a warning."""
+    figure = f"{passed.name}_mises_MPa = {passed.peak.mises_MPa:.4g}"
+    if passed.peak.at_excluded_border:
+        far = passed.peak.exclusion_mm
+        place = "at" if far is None else f"{far:.3g} mm from"
+        figure += f" ({place} an edge towards which the stress still rises)"
+    if passed.key:
+        return f"{figure} is above {passed.key} = {passed.limit_MPa:g}"
+    return f"{figure} is {beside_figure(passed)}"
 
 
 def reason(limit: LinearLimit) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
-from flexspline.results.limit_words import load_beyond
+from flexspline.results.limit_words import load_beyond, passed_line
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
@@ -24,7 +24,7 @@ def shortfalls(
     missing, and why."""
     peaks = _peaks(found, fields or {})
     return (
-        *(passed.line for passed in limits_passed(design, peaks)),
+        *map(passed_line, limits_passed(design, peaks)),
         *_wide(design, found),
         *_unsettled(peaks),
         *_missing(found),
