@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.results.gear_words import gear_warnings
 from flexspline.results.limit_words import load_beyond, passed_line
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
@@ -37,7 +38,7 @@ def all_warnings(result: RunResult) -> tuple[str, ...]:
         *result.warnings,
         *load_beyond(result.linear_limit, result.design),
         *shortfalls(result.design, result.stiffnesses, result.fields),
-        *(f"whole gear: {line}" for line in (result.gear.warnings if result.gear else ())),
+        *(f"whole gear: {line}" for line in (gear_warnings(result.gear) if result.gear else ())),
     )
 
 
