@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from flexspline.geometry.design import Design
     from flexspline.geometry.errors import FlexsplineError
     from flexspline.geometry.load import load_design
-    from flexspline.pipeline.face import (
+    from flexspline.pipeline.api import (
         backlash,
         gear,
         sensitivity,
@@ -29,14 +29,14 @@ _PLACE = {
     "Design": "geometry.design",
     "FlexsplineError": "geometry.errors",
     "load_design": "geometry.load",
-    "backlash": "pipeline.face",
+    "backlash": "pipeline.api",
     "diagnose": "pipeline.measured",
-    "gear": "pipeline.face",
+    "gear": "pipeline.api",
     "predict": "pipeline.measured",
-    "sensitivity": "pipeline.face",
-    "stiffness": "pipeline.face",
-    "stress": "pipeline.face",
-    "study": "pipeline.face",
+    "sensitivity": "pipeline.api",
+    "stiffness": "pipeline.api",
+    "stress": "pipeline.api",
+    "study": "pipeline.api",
 }
 
 __all__ = [

@@ -15,7 +15,6 @@ from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.backlash import Backlash, backlash
-from flexspline.pipeline.beside import beside
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.ellipse_peak import (
     PEAK_STRESS_TOLERANCE,
@@ -33,6 +32,7 @@ from flexspline.pipeline.rim_case import RimCase, figure_of
 from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
+from flexspline.pipeline.two_threads import beside
 from flexspline.pipeline.wave_generator import sharp_edges
 
 

@@ -26,6 +26,7 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
 from flexspline.pipeline.gear_model import CONFORMITY
 from flexspline.pipeline.gear_notes import both_press_N, notes, of_play, of_torques, warnings
+from flexspline.pipeline.gear_remarks import GearNote, GearWarning
 from flexspline.pipeline.gear_terms import FREE_ANGLE_TERMS, gear_terms, play_effect, small_torque
 from flexspline.pipeline.largest_torques import largest_torques, tube_of, two_digits
 from flexspline.pipeline.part_stiffness import part_stiffness
@@ -57,7 +58,7 @@ class GearCurve:
         has no angle of its own.
     compliance_shares : of flexspline, shaft, teeth and bearing in dθ/dT at rated torque; they add up to 1.
     assumed : each value that the design file does not state.
-    warnings : one line each; `notes` : what was simplified.
+    warnings : what makes it another gear than was meant; `notes` : what was simplified.
     preload_tooth_force_N : largest force of a pair of teeth without torque, where both flanks press; else 0.
     tooth_angle_deg, tooth_force_N : teeth within reach of one lobe at rated torque, front less back flank.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
@@ -80,8 +81,8 @@ class GearCurve:
     torque_Nm: tuple[float, ...]
     angle_arcsec: tuple[float, ...]
     assumed: tuple[Assumed, ...]
-    warnings: tuple[str, ...]
-    notes: tuple[str, ...]
+    warnings: tuple[GearWarning, ...]
+    notes: tuple[GearNote, ...]
     preload_tooth_force_N: float
     tooth_angle_deg: tuple[float, ...]
     tooth_force_N: tuple[float, ...]
@@ -129,19 +130,17 @@ def gear_curve(context: AnalysisContext) -> GearCurve:
             limit = Engagement(chain.model).limit(rated_in_proportion(design.gear.pitch_radius_mm))
         tube = tube_of(design)
         full = chain.model.wave_generator.deflection == design.gear.centre_distance_mm
-        said = [
-            of_torques(load.torque_Nm, LOST_MOTION_SHARE * rated),
-            of_play(terms, play, full),
-            largest_torques(limit, tube, rated),
-        ]
+        of_load = of_torques(load.torque_Nm, LOST_MOTION_SHARE * rated)
+        play_warned, play_noted = of_play(terms, play, full)
+        end_warned, end_noted = largest_torques(limit, tube, rated)
         return replace(
             curve,
             terms_arcsec=terms,
             terms_torque_Nm=load.torque_Nm,
             buckling_torque_Nm=None if tube is None else two_digits(tube.lower_edge_Nm),
             ratcheting_torque_Nm=limit and two_digits(limit),  # found to 5 %
-            warnings=(*curve.warnings, *(line for warned, _ in said for line in warned)),
-            notes=(*curve.notes, *(line for _, noted in said for line in noted)),
+            warnings=(*curve.warnings, *play_warned, *end_warned),
+            notes=(*curve.notes, *of_load, *play_noted, *end_noted),
         )
 
     depends_on = {

@@ -15,8 +15,25 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import even
+from flexspline.pipeline.gear_remarks import (
+    CuttingFlanks,
+    GearNote,
+    GearWarning,
+    HalvedBalls,
+    JointClearances,
+    LoadBeyondRated,
+    LoadedLastPair,
+    LowRatio,
+    LowRim,
+    PressingFlanks,
+    RelievedFlanks,
+    ShapedFaces,
+    StraightFlanks,
+    TightFlanks,
+    TwoTorques,
+    WrongStroke,
+)
 from flexspline.pipeline.gear_terms import PlayEffect
-from flexspline.pipeline.largest_torques import rounded
 
 LOW_RIM = 0.05
 """Of the stroke: a rim that stands off by more takes clearance from teeth off the major axis."""
@@ -48,137 +65,97 @@ def both_press_N(model: GearModel, unloaded: Equilibrium) -> float:
     return float(model.flank_forces(unloaded).max())
 
 
-def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[str]:
+def warnings(design: Design, model: GearModel, unloaded: Equilibrium) -> list[GearWarning]:
     """What makes the gear another one than was meant."""
-    lines = []
-    preload_N = both_press_N(model, unloaded)
-    if preload_N:
-        lines.append(
-            f"teeth press on both flanks without torque, up to {rounded(preload_N)} N each: "
-            f"{_why_both_press(design, model, unloaded)}"
-        )
+    found: list[GearWarning] = []
+    if preload_N := both_press_N(model, unloaded):
+        found.append(_pressing(preload_N, design, model, unloaded))
     if cuts := _cuts_in(model.mesh):
-        lines.append(cuts)
+        found.append(cuts)
     rated, _ = rated_torque(design)
     if design.load.torque_Nm > BEYOND_RATED * rated:
-        lines.append(
-            f"load.torque_Nm = {design.load.torque_Nm:g} is {design.load.torque_Nm / rated:.3g} times the "
-            "rated torque: teeth and rim are not elastic there"
-        )
-    return lines
+        found.append(LoadBeyondRated(design.load.torque_Nm, rated))
+    return found
 
 
-def _cuts_in(mesh: Mesh) -> str | None:
+def _cuts_in(mesh: Mesh) -> CuttingFlanks | None:
     """Where flanks that are not relieved overlap within the working depth."""
     phi = np.linspace(0, mesh.reach, GAP_STEPS)
     front = mesh.free_gaps(phi, mesh.stroke)[0] + mesh.relief(phi)[0]
     if front.min() >= -LEAST_OVERLAP:
         return None
     clear = phi[np.flatnonzero(front < 0)[0]]
-    least = degrees(phi[front.argmin()])
-    depth = mesh.stroke * (1 - np.cos(2 * clear))
-    shallow = f", or make the working depth less than {depth:.3g} mm"
-    return (
-        f"{mesh.flanks} flanks cut into each other from {degrees(clear):.0f}° off the major axis on, by up "
-        f"to {rounded(-1e3 * front.min())} µm at {least:.0f}°: take the relieved shape or more clearance"
-        + (shallow if depth > SHALLOWEST * mesh.stroke else "")
+    depth = float(mesh.stroke * (1 - np.cos(2 * clear)))
+    return CuttingFlanks(
+        mesh.flanks,
+        degrees(clear),
+        float(-1e3 * front.min()),
+        degrees(phi[front.argmin()]),
+        depth if depth > SHALLOWEST * mesh.stroke else None,
     )
 
 
-def _why_both_press(design: Design, model: GearModel, unloaded: Equilibrium) -> str:
+def _pressing(
+    preload_N: float, design: Design, model: GearModel, unloaded: Equilibrium
+) -> PressingFlanks:
     stroke, full = model.wave_generator.deflection, design.gear.centre_distance_mm
     play = design.bearing.radial_clearance_mm / 2
     if abs(stroke / full - 1) > LOW_RIM:
-        return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
+        return PressingFlanks(preload_N, WrongStroke(stroke, full))
     if play > LOW_RIM * stroke:
-        return (
-            f"half the play, {play:.3g} mm, lowers the rim's stroke of {stroke:.3g} mm, and teeth off the "
-            "major axis no longer clear"
-        )
+        return PressingFlanks(preload_N, LowRim(play, stroke))
     if _cuts_in(model.mesh):
-        return "the flanks cut into each other"
+        return PressingFlanks(preload_N, "flanks_cut")
     front, back = model.flank_forces(unloaded)
     ahead, behind = (degrees(model.tooth_angles[each.argmax()]) for each in (front, back))
-    return (
-        f"front flanks press at {ahead:.0f}°, back flanks at {behind:.0f}° from the major axis; the "
-        "clearance is too small there"
-    )
+    return PressingFlanks(preload_N, TightFlanks(ahead, behind))
 
 
-def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[str]:
+def notes(design: Design, model: GearModel, teeth: np.ndarray) -> list[GearNote]:
     """What was simplified; `teeth` (t,) [N]: forces at rated torque."""
-    lines = []
+    found: list[GearNote] = []
     balls = flexible_bearing(design).ball_count
     if even(balls) != balls:
-        lines.append(f"{balls} balls are computed as {even(balls)}, half of them in each lobe")
+        found.append(HalvedBalls(balls, even(balls)))
     if design.gear.ratio < LOW_RATIO:
-        lines.append(
-            f"below a ratio of {LOW_RATIO} the model is too stiff: with thicknesses in proportion to the "
-            "pitch radius catalogues' gears of ratio 30 are about half as stiff (docs/whole-gear.md)"
-        )
+        found.append(LowRatio(LOW_RATIO))
     mesh = model.mesh
     if mesh.flanks == "relieved" and mesh.largest_relief > LEAST_RELIEF:
-        lines.append(
-            f"straight flanks come closer again beyond {degrees(mesh.relieved_from):.0f}° from the major "
-            f"axis: relieved flanks are assumed, {rounded(1e3 * mesh.largest_relief)} µm of each removed at "
-            f"{degrees(mesh.reach):.0f}°"
-        )
+        removed_um = 1e3 * mesh.largest_relief
+        found.append(RelievedFlanks(degrees(mesh.relieved_from), removed_um, degrees(mesh.reach)))
     if mesh.face == "relieved":
         outwards, along = model.rim.cone(mesh.stroke)
         off = np.abs(mesh.closing(model.tooth_angles[:, None], outwards, along)).max()
-        lines.append(
-            "the rim opens as a cone: teeth that are shaped for it along their face are assumed, up to "
-            f'{rounded(1e3 * off)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
-        )
+        found.append(ShapedFaces(float(1e3 * off)))
     if design.flexspline.teeth == "drawn" and mesh.flanks != "drawn":
-        lines.append(
-            f"gaps are those of straight flanks of {design.gear.pressure_angle_deg:g}°, not of the drawn "
-            'ones; gear.flanks = "drawn" takes those'
-        )
+        found.append(StraightFlanks(design.gear.pressure_angle_deg))
     size = np.abs(teeth)
     if max(size[0], size[-1]) > AT_THE_END * size.max():
-        lines.append(
-            f"the last pair of teeth within the working depth, {degrees(model.tooth_angles[-1]):.0f}° from "
-            "the major axis, carries much: the figures depend on gear.working_depth_mm"
-        )
-    return lines
+        found.append(LoadedLastPair(degrees(model.tooth_angles[-1])))
+    return found
 
 
-def of_torques(load_Nm: float, lost_motion_Nm: float) -> tuple[list[str], list[str]]:
-    """No warning, and a note where terms and lost motion are not of one torque."""
+def of_torques(load_Nm: float, lost_motion_Nm: float) -> list[GearNote]:
+    """A note where terms and lost motion are not of one torque."""
     if abs(load_Nm / lost_motion_Nm - 1) <= SAME_TORQUE:
-        return [], []
-    return [], [
-        f"the terms are at load.torque_Nm = {load_Nm:g}, the lost motion at {lost_motion_Nm:.4g} N·m, 4 % of "
-        "rated torque: the terms' sum is not the lost motion"
-    ]
+        return []
+    return [TwoTorques(load_Nm, lost_motion_Nm)]
 
 
 def of_play(
     terms_arcsec: Mapping[str, float], play: PlayEffect, full_stroke: bool
-) -> tuple[list[str], list[str]]:
+) -> tuple[list[GearWarning], list[GearNote]]:
     """Warnings and notes where the bearing's play does not simply open the mesh.
 
     `full_stroke`: the plug's stroke is m(z2 - z1)/2.
     """
-    warned, noted = [], []
-    if play.last_tenth < -LEAST_ANGLE:
-        warned.append(
-            "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
-            "teeth beside the major axis touch first. The gear is no better for it: reduce the play"
-        )
+    warned: list[GearWarning] = ["play_closes_gap"] if play.last_tenth < -LEAST_ANGLE else []
+    noted: list[GearNote] = []
     term = terms_arcsec["bearing_play"]
     if term < -LEAST_ANGLE and not full_stroke:
-        noted.append(
-            "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: read "
-            "bearing_play and tight_gear together"
-        )
+        noted.append("play_beside_stroke")
     elif term >= -LEAST_ANGLE and abs(play.whole - term) > max(
         LEAST_ANGLE, ACT_TOGETHER * abs(play.whole)
     ):
-        noted.append(
-            f"flank clearance and bearing play act together: without play alone the free angle is "
-            f"{rounded(play.whole)} arcsec smaller; the terms take the flank clearance away first, and "
-            f"leave {rounded(term)} arcsec to the play"
-        )
+        noted.append(JointClearances(play.whole, term))
     return warned, noted

@@ -53,34 +53,15 @@ class TabledPeak:
 
 @dataclass(frozen=True)
 class PassedLimit:
-    """A limit [MPa] that a peak passes; `key`: where the design states it, "" for HIGHEST_STRENGTH_MPA."""
+    """A limit [MPa] that a peak passes; `key`: where the design states it, "" for HIGHEST_STRENGTH_MPA.
+
+    `results/limit_words.py` says it.
+    """
 
     name: str
     peak: Peak
     limit_MPa: float
     key: str = ""
-
-    @property
-    def words(self) -> str:
-        """Beside the figure."""
-        if self.key:
-            return f"above the fatigue limit of {self.limit_MPa:g} MPa"
-        return (
-            f"beyond {self.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model "
-            "does not hold"
-        )
-
-    @property
-    def line(self) -> str:
-        """On its own, as a warning."""
-        figure = f"{self.name}_mises_MPa = {self.peak.mises_MPa:.4g}"
-        if self.peak.at_excluded_border:
-            far = self.peak.exclusion_mm
-            place = "at" if far is None else f"{far:.3g} mm from"
-            figure += f" ({place} an edge towards which the stress still rises)"
-        if self.key:
-            return f"{figure} is above {self.key} = {self.limit_MPa:g}"
-        return f"{figure} is {self.words}"
 
 
 def share_of_limit(peak: StressPeak, material: Material) -> float | None:

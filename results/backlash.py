@@ -7,6 +7,7 @@ from flexspline.pipeline.backlash import backlash, series_stiffness
 from flexspline.pipeline.linear_limit import linear_limit
 from flexspline.pipeline.stiffness_pair import given_pair, stiffness_pair
 from flexspline.results.job import Job, tell_all, warn
+from flexspline.results.limit_words import load_beyond
 from flexspline.results.records import (
     Record,
     backlash_record,
@@ -35,5 +36,5 @@ def backlash_answer(job: Job, K_b: float | None, K_e: float | None) -> Record:
     K_b, K_e = used.K_b_Nm_per_rad, used.K_e_Nm_per_rad
     K = record["K_series_Nm_per_rad"] = series_stiffness(K_b, K_e)
     limit = linear_limit(design, K)
-    record["warnings"] += tell_all(limit.passed(design))
+    record["warnings"] += tell_all(load_beyond(limit, design))
     return record | backlash_record(backlash(design, K_b, K_e)) | linear_limit_record(limit)

@@ -83,6 +83,8 @@ def run(
             tell_all(model_warnings(measured, job.design))
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
+        from flexspline.results.gear_words import gear_notes
+        from flexspline.results.limit_words import load_beyond
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
         from flexspline.results.report.build import write_run_page, write_run_report
@@ -91,8 +93,8 @@ def run(
             with kept(job, json):
                 result = run_chain(job.context, drawings.add_field)
             warn(job.design, result.stiffnesses, result.fields)
-            tell_all(result.linear_limit.passed(job.design))
-            for line in result.gear.notes if result.gear else ():
+            tell_all(load_beyond(result.linear_limit, job.design))
+            for line in gear_notes(result.gear) if result.gear else ():
                 tell(f"note: {line}")
             extended = None
             if measured is not None:
@@ -156,13 +158,14 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
         from flexspline.pipeline.analysis import stiffnesses
         from flexspline.pipeline.gear import gear_curve
         from flexspline.results.gear import gear_record, write_gear
+        from flexspline.results.gear_words import gear_notes, gear_warnings
 
         curve = gear_curve(job.context)
         shaft = stiffnesses(job.context, flexspline=False)
-        for line in curve.notes:
+        for line in gear_notes(curve):
             tell(f"note: {line}")
         warn(job.design, shaft)
-        tell_all(curve.warnings)
+        tell_all(gear_warnings(curve))
         record = gear_record(job.design, curve, shaft, job.wall_s)
         write_gear(job.folder, curve, record)
         present(job.folder, record, json)

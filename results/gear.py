@@ -15,6 +15,7 @@ from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.atomic import write_together
 from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
 from flexspline.results.file_names import CURVE, GEAR_CSV, GEAR_RECORD, LOADS
+from flexspline.results.gear_words import gear_warnings
 from flexspline.results.records import as_json, gear_figures, heading
 from flexspline.results.warned import shortfalls
 
@@ -27,7 +28,7 @@ def gear_record(
         **heading(design),
         **gear_figures(curve),
         "wall_s": round(wall_s, 3),
-        "warnings": [*warnings(design), *curve.warnings, *shortfalls(design, shaft)],
+        "warnings": [*warnings(design), *gear_warnings(curve), *shortfalls(design, shaft)],
     }
 
 

@@ -12,6 +12,8 @@ from flexspline.geometry.mass import masses
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.stress_limits import PEAK_OF
 from flexspline.results.gear_quantities import GEAR_QUANTITIES
+from flexspline.results.gear_words import gear_notes, gear_warnings
+from flexspline.results.limit_words import reason
 from flexspline.results.quantities import bounds_kind
 from flexspline.results.warned import all_warnings, shortfalls
 
@@ -129,7 +131,7 @@ def peak_record(name: str, peak: StressPeak) -> Record:
 
 def linear_limit_record(limit: LinearLimit) -> Record:
     """Beyond which torque the linear model is not valid."""
-    return {"linear_torque_limit_Nm": limit.torque_Nm, "linear_torque_limit_reason": limit.reason}
+    return {"linear_torque_limit_Nm": limit.torque_Nm, "linear_torque_limit_reason": reason(limit)}
 
 
 def mass_record(design: Design) -> Record:
@@ -179,8 +181,8 @@ def gear_figures(curve: GearCurve) -> Record:
         "compliance_shares": dict(curve.compliance_shares),
         "terms_arcsec": dict(curve.terms_arcsec),
         "assumed": [{"key": a.key, "value": a.value, "why": a.why} for a in curve.assumed],
-        "notes": list(curve.notes),
-        "warnings": list(curve.warnings),
+        "notes": gear_notes(curve),
+        "warnings": gear_warnings(curve),
     }
 
 

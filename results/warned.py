@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from flexspline.pipeline.stress_limits import PEAK_OF, limits_passed
+from flexspline.results.gear_words import gear_warnings
+from flexspline.results.limit_words import load_beyond, passed_line
 from flexspline.results.numbers import beyond
 from flexspline.results.quantities import quantity
 
@@ -23,7 +25,7 @@ def shortfalls(
     missing, and why."""
     peaks = _peaks(found, fields or {})
     return (
-        *(passed.line for passed in limits_passed(design, peaks)),
+        *map(passed_line, limits_passed(design, peaks)),
         *_wide(design, found),
         *_unsettled(peaks),
         *_missing(found),
@@ -34,9 +36,9 @@ def all_warnings(result: RunResult) -> tuple[str, ...]:
     """Of a run: the design's own, then those of the figures."""
     return (
         *result.warnings,
-        *result.linear_limit.passed(result.design),
+        *load_beyond(result.linear_limit, result.design),
         *shortfalls(result.design, result.stiffnesses, result.fields),
-        *(f"whole gear: {line}" for line in (result.gear.warnings if result.gear else ())),
+        *(f"whole gear: {line}" for line in (gear_warnings(result.gear) if result.gear else ())),
     )
 
 

@@ -23,6 +23,8 @@ ONLY_IN = {
     "aiohttp": "results", "meshio": "results", "h5py": "results", "pyarrow": "results",
 }  # fmt: skip
 FILES = sorted(p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
+TINY = 1e-9
+"""Below every tolerance of the pipeline in any unit: a number that is less guards a division."""
 
 
 def room_of(module: str) -> str:
@@ -71,6 +73,28 @@ def test_no_two_classes_have_one_name() -> None:
                 places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     twice = {name: files for name, files in places.items() if len(files) > 1}
     assert not twice
+
+
+def tiny_numbers(text: str) -> set[float]:
+    """Numbers in functions that stand for 0, without a name that says their unit and reason."""
+    found: set[float] = set()
+    for node in ast.walk(parsed(text)):
+        if isinstance(node, ast.FunctionDef | ast.Lambda):
+            values = [n.value for n in ast.walk(node) if isinstance(n, ast.Constant)]
+            found |= {v for v in values if isinstance(v, float) and 0 < v < TINY}
+    return found
+
+
+def test_numbers_of_the_pipeline_that_stand_for_0_have_a_name() -> None:
+    for path in sorted((ROOT / "pipeline").rglob("*.py")):
+        found = tiny_numbers(path.read_text(encoding="utf-8"))
+        assert not found, f"{path.relative_to(ROOT)}: {found}"
+
+
+def test_the_check_sees_a_number_that_stands_for_0() -> None:
+    named, bare = "LEAST_S = 1e-12\n", "def f(x):\n    return 1 / max(x, 1e-12)\n"
+    assert tiny_numbers(named + bare) == {1e-12}
+    assert not tiny_numbers(named)
 
 
 def programs(text: str) -> Iterator[ast.Module]:

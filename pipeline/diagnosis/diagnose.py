@@ -14,7 +14,6 @@ Each kind of measurement goes the same way, in a folder of its own; its `diagnos
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -24,12 +23,7 @@ from flexspline.pipeline.diagnosis.calibration import Calibration
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
-from flexspline.pipeline.diagnosis.measurement.record import (
-    EndPoints,
-    Specimens,
-    Sweep,
-    read_measurement,
-)
+from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import (
     DiagnosisOutcome,
@@ -97,30 +91,6 @@ class Diagnosis:
     def causes(self) -> tuple[NamedCause, ...]:
         """What the simulation leaves out, the largest first."""
         return self.outcome.causes
-
-
-def diagnose_file(
-    design: Design,
-    csv: Path,
-    K_b: float,
-    K_e: float,
-    K_error: float = 0.0,
-    context: AnalysisContext | None = None,
-    counts_per_turn: float | None = None,
-    chain: Chain | None = None,
-    given: tuple[str, ...] = (),
-) -> Diagnosis:
-    """Read a measurement and diagnose it, as `diagnose_measurement` does.
-
-    `counts_per_turn` of the encoder, where a column is in counts.
-
-    Raises
-    ------
-    MeasurementError : the file cannot be accepted.
-    EquilibriumError, BearingPlayDomainError : as of `diagnose_measurement`.
-    """
-    measurement = read_measurement(csv, counts_per_turn)
-    return diagnose_measurement(design, measurement, K_b, K_e, K_error, context, chain, given)
 
 
 def diagnose_measurement(

@@ -1,4 +1,4 @@
-"""dK/dp of every dimension of one design: solved once (`two_ways`), then read from the cache."""
+"""dK/dp of every dimension of one design: solved once (`stiffness_slopes`), then read from the cache."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     cache = Cache(cache_folder(), say)
 
     def solve() -> Slopes:
-        from flexspline.pipeline.study.two_ways import slopes  # the solvers take a second to load
+        from flexspline.pipeline.study.stiffness_slopes import (
+            slopes,  # the solvers take a second to load
+        )
 
         return slopes(design, say)
 

@@ -6,6 +6,7 @@ from flexspline.geometry.part_name import PART_NAMES
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
+from flexspline.results.limit_words import reason
 from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.quantities import quantity
@@ -132,8 +133,8 @@ def _linear(content: ReportContent, limit: LinearLimit) -> str:
     least = quantity("linear_torque_limit_Nm").with_unit(limit.torque_Nm)
     return (
         f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
-        f"{limit.reason}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and the "
-        "bolts may end it earlier, and so may the wave generator's stress, which is there at no torque; "
+        f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and "
+        "the bolts may end it earlier, and so may the wave generator's stress, which is there at no torque; "
         "they are not in this figure."
     )
 

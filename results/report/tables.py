@@ -7,6 +7,7 @@ from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
+from flexspline.results.limit_words import beside_figure
 from flexspline.results.numbers import beyond, grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
 from flexspline.results.quantities import bounds_kind, quantity
@@ -135,7 +136,7 @@ def _stress_rows(content: ReportContent) -> list[Row]:
         (quantity("shaft_torque_peak_mises_MPa"), "shaft_torque_peak", content.shaft_peak),
     ):
         if peak is not None:
-            passed = [p.words for p in limits_passed(content.design, {name: peak})]
+            passed = [beside_figure(p) for p in limits_passed(content.design, {name: peak})]
             part, (x, y, z) = PART_OF[name], peak.at_mm
             said = [f"{part}, r = {(x * x + y * y) ** 0.5:.2f} mm, z = {z:.2f} mm"]
             if peak.at_excluded_border:

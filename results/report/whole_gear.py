@@ -9,6 +9,7 @@ from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.gear_terms import TIGHT
 from flexspline.results.file_names import CURVE, LOADS
 from flexspline.results.gear_terms import term_names
+from flexspline.results.gear_words import gear_notes, gear_warnings
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantities_of, quantity
 from flexspline.results.quantity import Quantity
@@ -122,9 +123,9 @@ def _assumed(curve: GearCurve) -> Iterable[Block]:
     each = "; ".join(f"{a.key} = {a.value:.4g} ({a.why})" for a in curve.assumed)
     yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
     if curve.warnings:
-        yield Callout("amber", items=_sentences(curve.warnings))
+        yield Callout("amber", items=_sentences(gear_warnings(curve)))
     if curve.notes:
-        yield Callout("blue", items=_sentences(curve.notes))
+        yield Callout("blue", items=_sentences(gear_notes(curve)))
 
 
 def _sentences(lines: Iterable[str]) -> tuple[str, ...]:

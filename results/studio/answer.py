@@ -22,6 +22,7 @@ from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_l
 from flexspline.pipeline.study.figures import GIVEN_BY
 from flexspline.results.doubt import NOT_STATED, SOURCES, spread_text
 from flexspline.results.figures.torque_angle import DRAWN_RATIO, band
+from flexspline.results.limit_words import load_beyond
 from flexspline.results.peaks import BORDER, marked
 from flexspline.results.quantities import bounds_kind, quantities_of, quantity
 from flexspline.results.records import backlash_record, peak_of
@@ -58,7 +59,7 @@ def message(design: Design, found: Found) -> Message:
         shown = {
             "budget": _budget(total),
             "line": _line(design, total, K_b, K_e),
-            "beyond": list(limit.passed(design)),
+            "beyond": list(load_beyond(limit, design)),
         }
     if "gear" in found:
         shown["gear"] = _gear(found["gear"])

@@ -12,6 +12,7 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.atomic import write_bytes
 from flexspline.results.file_names import BEST_DESIGN
+from flexspline.results.limit_words import passed_line
 from flexspline.results.study.labels import at_border
 from flexspline.results.study.record import LISTED_DESIGNS
 
@@ -47,7 +48,7 @@ def _warnings(result: StudyResult, row: Row) -> Iterable[str]:
     design = result.design_of(row)
     known = set(warnings(result.study.design))
     yield from (line for line in warnings(design) if line not in known)
-    yield from (passed.line for passed in limits_passed(design, _peaks(row)))
+    yield from map(passed_line, limits_passed(design, _peaks(row)))
 
 
 def _peaks(row: Row) -> dict[str, Peak]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.geometry.assumed import Assumed
 from flexspline.pipeline.gear import LOADING, GearCurve
+from flexspline.pipeline.gear_remarks import HalvedBalls
 from flexspline.pipeline.gear_terms import TIGHT
 
 TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play", TIGHT)
@@ -23,7 +24,7 @@ def gear_curve(torque: float, angle: float, force: float, softening: float = 0.6
         0.1 * angle, 32, {"flexspline": 0.6, "shaft": 0.2, "teeth": 0.1, "bearing": 0.1},
         tuple((torque * loop).tolist()), tuple((angle * turned).tolist()),
         (Assumed("wave_generator.ball_count", 23.0, "usual"),), (),
-        ("23 balls are computed as 24",), 0.0,
+        (HalvedBalls(23, 24),), 0.0,
         tuple(phi.tolist()), tuple((force * np.cos(np.radians(phi)) ** 4).tolist()),
         tuple(np.arange(0.0, 180.0, 15.0).tolist()), tuple([force] * 12),
         dict.fromkeys(TERMS, angle / 10) | {"total": angle / 2},

@@ -22,13 +22,15 @@ def diagnose(case: Case) -> dict:
     `again` : (n,) how far each row of the second measurement is from what the extended model predicts, in the
     deviations that it states; of what was named only.
     """
-    from flexspline.pipeline.diagnosis.diagnose import diagnose_file
+    from flexspline.pipeline.diagnosis.diagnose import diagnose_measurement
+    from flexspline.pipeline.diagnosis.measurement.record import read_measurement
     from flexspline.results.diagnosis.record import diagnosis_record
 
     with tempfile.TemporaryDirectory() as folder:
         csv = Path(folder) / "measured.csv"
         csv.write_text(case.csv, encoding="utf-8")
-        found = diagnose_file(design_from(tomllib.loads(case.design)), csv, case.K_b, case.K_e)
+        design, measurement = design_from(tomllib.loads(case.design)), read_measurement(csv)
+        found = diagnose_measurement(design, measurement, case.K_b, case.K_e)
         record = diagnosis_record(found)
         if found.verdict == "named" and case.again:
             csv.write_text(case.again, encoding="utf-8")

@@ -21,7 +21,7 @@ JUNK = ("__pycache__", ".pyc", ".out/", ".egg-info", "_cache/", ".hypothesis", "
 
 
 def sources() -> set[str]:
-    """Files of the four rooms and the face, less what Python leaves beside them."""
+    """Files of the four rooms and of the package itself, less what Python leaves beside them."""
     return {"__init__.py", "py.typed"} | {
         str(p.relative_to(ROOT))
         for room in ROOMS

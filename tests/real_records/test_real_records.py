@@ -9,9 +9,10 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from diagnosed_file import diagnose_file
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.shortage import Leaping
 from flexspline.pipeline.diagnosis.structure import Slip
 from flexspline.pipeline.diagnosis.sweep.slip import slip_of

@@ -11,7 +11,7 @@ from page_text import letters, pdf_letters, read_page
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
-from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passed, share_of_limit
 from flexspline.results.console import table
@@ -91,7 +91,9 @@ def test_reports_carry_mark_alarm_seat_and_torque(tmp_path: Path) -> None:
         wave_generator_peak=peak(600.0, border=True),
         flexspline_peak=peak(30.0, border=True),
         half_seat_peak=peak(450.0, border=False),
-        linear_limit=LinearLimit(88.1, "the stress of the diaphragm reaches its limit"),
+        linear_limit=LinearLimit(
+            88.1, ReachedStress("flexspline", "diaphragm", 9.0, 500.0, is_fatigue_limit=True)
+        ),
     )
     write_report(tmp_path / "r.pdf", said)
     page, *_ = read_page(page_of(run_document(said), {}, {}).decode())
@@ -99,7 +101,7 @@ def test_reports_carry_mark_alarm_seat_and_torque(tmp_path: Path) -> None:
         for words in (
             BORDER, "no measure of the part", "above the fatigue limit of 500 MPa",
             "as wide as the toothed ring, 8 mm", "4 mm in the ring's middle", "450", "-25 %",
-            "Beyond 88.1", "T_L is 0.57 % of that", "the diaphragm reaches its limit",
+            "Beyond 88.1", "T_L is 0.57 % of that", "the diaphragm at r = 9 mm reaches the fatigue limit",
         ):  # fmt: skip
             assert letters(words.replace("T_L", "")) in letters(text.replace("T_L", "")), words
         assert letters("% of the stated fatigue limit") not in letters(text)

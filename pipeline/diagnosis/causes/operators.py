@@ -7,9 +7,14 @@ from itertools import pairwise
 import numpy as np
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
+
+LEAST_TO_COME = 1e-12
+"""Of friction's largest, or of a power of that share: what is still to come is never less, so that neither a
+power nor a root of it overflows."""
 
 
 def stops(
@@ -67,7 +72,7 @@ def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:
 
 def play(history: History, width_Nm: float) -> np.ndarray:
     """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone."""
-    width = np.array([max(width_Nm, 1e-12)])
+    width = np.array([max(width_Nm, LEAST_TORQUE_Nm)])
     key = ("play", float(width[0]))
     if key not in history.memo:
         state = stops(history, history.torque_Nm, width, np.zeros(1))[:, 0]
@@ -92,7 +97,9 @@ def within_cycle(history: History) -> np.ndarray:
         starts = np.flatnonzero(np.diff(history.cycle[rows], prepend=-1) != 0)
         ends = np.append(t[starts[1:]], t[-1] + (t[-1] - t[0]) / max(1, len(t) - 1))
         number = np.searchsorted(starts, np.arange(len(t)), side="right") - 1
-        out[rows] = (t - t[starts[number]]) / np.maximum(ends[number] - t[starts[number]], 1e-12)
+        out[rows] = (t - t[starts[number]]) / np.maximum(
+            ends[number] - t[starts[number]], ABOVE_ZERO
+        )
     return out
 
 
@@ -136,9 +143,9 @@ def dahl(
         for first, last in _one_way(steps):
             side = np.sign(steps[first:last].sum())
             way = np.cumsum(np.abs(steps[first:last]))[:, None] / stiffness_Nm
-            rest = np.maximum(1 - state * side, 1e-12)
+            rest = np.maximum(1 - state * side, LEAST_TO_COME)
             # y = 1 − z·sign dT falls as dy/dx = −y^i: y^(1−i) grows by (i − 1)·x
-            power = np.maximum(rest**-safe + safe * way, 1e-12) ** (-1 / safe)
+            power = np.maximum(rest**-safe + safe * way, LEAST_TO_COME) ** (-1 / safe)
             block[first:last] = side * (1 - np.where(straight, rest * np.exp(-way), power))
             if side == 0:
                 block[first:last] = state

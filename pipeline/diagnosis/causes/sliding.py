@@ -9,6 +9,7 @@ from scipy.special import wrightomega
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.robust import rms
@@ -33,6 +34,8 @@ WAY, STRAIGHT = 5, 0.02
 top of a sine on it is three times that."""
 CLEAR = 4.0
 """Of the deadband, which is two deviations of the torque's noise: what a way must be longer than."""
+LEAST_STIFFNESS_RATIO = 1e-6
+"""A bearing that is softer against the gear carries nothing; by it Wright's ω is divided."""
 
 
 def carried_share(
@@ -49,7 +52,8 @@ def carried_share(
     """
     torque = steadied(_held_still(history), deadband_Nm)
     out = np.empty(len(torque))
-    friction, kappa = max(friction_Nm, 1e-12), max(stiffness_ratio, 1e-6)
+    friction = max(friction_Nm, LEAST_TORQUE_Nm)
+    kappa = max(stiffness_ratio, LEAST_STIFFNESS_RATIO)
 
     def to_come(left: float, travel_Nm: np.ndarray) -> np.ndarray:
         """y after a travel, from y₀ = `left`."""

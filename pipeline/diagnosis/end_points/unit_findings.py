@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 
 RESOLUTIONS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of an angle reading that a file may show [arcsec]: round steps of displays; finer count as none."""
+LARGEST_P_VALUE = 1 - 1e-15
+"""The last double but a few below 1, where the logarithm of 1 − p still is a number."""
 
 
 def unit_deviations(
@@ -72,7 +74,7 @@ def unit_findings(
         )
         found.append(UnitFinding(
             name, of.torque_Nm, float(total[i]), of.total_arcsec, of.std_arcsec, float(deviations.mid[i]),
-            z, p, float(-np.expm1(looked * np.log1p(-min(p, 1 - 1e-15)))),
+            z, p, float(-np.expm1(looked * np.log1p(-min(p, LARGEST_P_VALUE)))),
             of.explanation(float(total[i])),
         ))  # fmt: skip
     return tuple(found)

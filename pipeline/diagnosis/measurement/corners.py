@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import CYCLE_PARTS, ramp_rate, rates_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -68,7 +69,7 @@ def _sudden(
         taken = {side: np.zeros(len(time_s), bool) for side in (-1.0, 1.0)}
         for i in np.flatnonzero(found):
             taken[float(np.sign(found[i]))][max(0, i - 2 * width) : i + 2 * width + 1] = True
-        span = np.maximum(time_s[width:] - time_s[:-width], 1e-12)
+        span = np.maximum(time_s[width:] - time_s[:-width], LEAST_TIME_S)
         rate = (torque_s[width:] - torque_s[:-width]) / span
         change, doubt = np.zeros(len(time_s)), np.full(len(time_s), np.inf)
         change[width:-width] = rate[width:] - rate[:-width]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import (
     CLEAR_SIGMAS,
@@ -53,7 +54,7 @@ def _holds(history: History) -> list[np.ndarray]:
         rates = rates_of(history, rows)
         width, rate = rates.width, np.abs(rates.values)
         t = history.time_s[rows]
-        floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], 1e-12)
+        floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
         limit = np.minimum(np.maximum(HOLD_RATE_SHARE * fast, floor), MOVING * fast)
         torque = history.torque_Nm[rows]
         for i, j in _joined(runs(rate < limit), torque, t, width, noise, fast):

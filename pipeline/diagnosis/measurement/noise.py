@@ -24,6 +24,8 @@ GROUPS_PER_LOG = 5.0
 """Groups of lags for each factor e: within one of them an exponential of its length falls by a fifth."""
 LAG_0_WEIGHT = 3.0
 """Of the variance against the autocovariances, in matching: it has the largest value and the least error."""
+LEAST_LAG_1 = 1e-12
+"""Of the moving average's variance: a covariance of neighbours that is less is rounding."""
 MEMORIES = 16
 """Correlation times tried, in even steps of their log: up to 50 rows they are 36 % apart."""
 
@@ -68,7 +70,7 @@ class Noise:
         # (1 + θ²)s² and −θs² are the moving average's covariances at lags 0 and 1
         zero = total * (1 + rho**2) - 2 * rho * rho * self.coloured
         one = rho * (self.coloured - total)  # = −ρ·white
-        ratio = -zero / (2 * one) if one < -1e-12 * zero else np.inf
+        ratio = -zero / (2 * one) if one < -LEAST_LAG_1 * zero else np.inf
         theta = ratio - np.sqrt(ratio**2 - 1) if np.isfinite(ratio) else 0.0
         s2 = -one / theta if theta > 0 else zero
         starts = np.array([s.start for s in stretches])

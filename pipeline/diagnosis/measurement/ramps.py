@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
@@ -47,7 +48,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     far = np.abs(torque[coarse:] - torque[:-coarse])
     far = far[far > NOISE_MOVES * noise]
     step = np.quantile(far, FAST_QUANTILE) / coarse if len(far) else 0.0
-    fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, 1e-12)), 1, widest))
+    fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, LEAST_TORQUE_Nm)), 1, widest))
     width = 1  # a ramp may be shorter than that part
     while width < fewest:
         moved = np.abs(torque[width:] - torque[:-width])
@@ -59,7 +60,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
         width = min(2 * width, fewest)
     moved = torque[width:] - torque[:-width]
     travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
-    span = np.maximum(t[width:] - t[:-width], 1e-12)
+    span = np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
     return Rates(width, moved / span, travel)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
@@ -41,6 +42,6 @@ def _robust_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
         coefficients = np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0]
         fitted = basis @ coefficients
         off = np.abs(y - fitted)
-        scale = SIGMA_PER_MAD * np.median(off) + 1e-12
+        scale = SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC
         weight = 1 / np.maximum(1, off / (3 * scale))
     return fitted

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
@@ -74,7 +75,7 @@ def _spikes(angle: np.ndarray) -> np.ndarray:
     if len(angle) < 5:
         return np.zeros(len(angle), bool)
     off = angle[1:-1] - (angle[:-2] + angle[2:]) / 2
-    scale = SIGMA_PER_MAD * np.median(np.abs(off - np.median(off))) + 1e-12
+    scale = SIGMA_PER_MAD * np.median(np.abs(off - np.median(off))) + LEAST_ANGLE_ARCSEC
     far = np.zeros(len(angle), bool)
     far[1:-1] = np.abs(off - np.median(off)) > SPIKE * scale
     # a spike pulls its neighbours' differences too: only the largest of three is the spike

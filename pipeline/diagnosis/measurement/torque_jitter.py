@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -91,7 +92,7 @@ def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: 
     inside = near < last[:, None]
     near = np.minimum(near, n - 1)
     x = t[near] - t[:, None]
-    x /= np.maximum(np.abs(np.where(inside, x, 0.0)).max(axis=1, keepdims=True), 1e-12)
+    x /= np.maximum(np.abs(np.where(inside, x, 0.0)).max(axis=1, keepdims=True), LEAST_TIME_S)
     basis = np.stack([np.ones_like(x), x, x * x], axis=2) * inside[:, :, None]
     gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
     right = np.einsum("nwi,nw->ni", basis, torque[near])

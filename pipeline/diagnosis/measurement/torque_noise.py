@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
 
@@ -42,7 +43,7 @@ def _torque_noise_Nm(history: History) -> float:
         if len(torque) < FEWEST_FOR_NOISE:
             continue
         t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
-        span = np.maximum(t[2:] - t[:-2], 1e-12)
+        span = np.maximum(t[2:] - t[:-2], ABOVE_ZERO)
         share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
         off = torque[1:-1] - (1 - share) * torque[:-2] - share * torque[2:]
         line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA

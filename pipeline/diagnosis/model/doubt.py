@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.friction_memory import (
@@ -112,7 +113,7 @@ def deviation_of(
         variance += ((columns @ doubt.covariance) * columns).sum(axis=1)
     carried = true.torque_Nm - read.torque_Nm
     unsure = np.hypot(doubt.torque_noise_Nm, CARRIED_UNSURE * np.abs(carried))
-    wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, 1e-12))
+    wrong = ndtr(-np.abs(true.torque_Nm) / np.maximum(unsure, LEAST_TORQUE_Nm))
     # in the middle of the gap a reading is half of it off, beyond it all of it on the wrong side
     variance += model.gap_arcsec**2 * np.where(true.torque_Nm == 0, 1 / 4, wrong)
     smaller = np.zeros(len(history), bool)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.ramps import by_travel, moving_rates
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -20,6 +21,8 @@ RATE_SLACK = 0.5
 """Rates are taken over steps of eight times the torque's noise: three deviations of √2/8."""
 LEAST_RANGE_K = 10.0
 """Temperatures that differ by less are one: beyond it, distances are told in this."""
+LEAST_RATE_Nm_per_s = 1e-12
+"""A rate of less is rounding of a hold: by it no rate is divided."""
 QUARTER_DEG = 90.0
 """Of a turn of the wave generator: its strongest error, two a turn, goes from peak to zero in 45°."""
 
@@ -64,7 +67,7 @@ def beyond(span: MeasuredSpan, history: History) -> dict[str, np.ndarray]:
     quarter turn, whole turns taken off.
     """
     low, high = span.torque_Nm
-    largest = max(abs(low), abs(high), 1e-12)
+    largest = max(abs(low), abs(high), LEAST_TORQUE_Nm)
     room = RANGE_SLACK * largest + 3 * torque_noise_Nm(history)
     found = {"torque_Nm": _outside(history.torque_Nm, (low, high), room) / largest}
     if span.rate_Nm_per_s is not None and history.time_s is not None:
@@ -85,7 +88,9 @@ def times_slower(span: MeasuredSpan, history: History) -> np.ndarray:
     if span.slowest_rate_Nm_per_s is None:
         return np.ones(len(history))
     rate = _row_rates(history)
-    out = np.where(rate > 0, span.slowest_rate_Nm_per_s / np.maximum(rate, 1e-12), 1.0)
+    out = np.where(
+        rate > 0, span.slowest_rate_Nm_per_s / np.maximum(rate, LEAST_RATE_Nm_per_s), 1.0
+    )
     out[out < 1 + RATE_SLACK] = 1.0
     return out
 

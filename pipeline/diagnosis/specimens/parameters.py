@@ -30,6 +30,8 @@ UNNAMED_SPREAD = 0.07
 """Of ln K, for structure without a name."""
 CAUSE_KINDS = 4
 """Modulus, dimension, fixture, load zone: even odds."""
+LEAST_rad_per_Nm = 1e-30
+"""Of a specimen's compliance, for its logarithm: one that is tried as less is as bad as any."""
 UNNAMED_NATS = -3.0
 """Log prior odds of all structure without a name, 1 in 20: a fifth of one of CAUSE_KINDS."""
 
@@ -168,4 +170,4 @@ def log_compliance(
                 assert term.column is not None
                 column = column - value * term.column
     total = fe.flexspline * np.exp(rim) + fe.shaft * np.exp(shaft) + added
-    return np.log(np.maximum(total, 1e-30)) + column
+    return np.log(np.maximum(total, LEAST_rad_per_Nm)) + column

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
+
 SPLINE = 6
 """Degree of a smooth function over a channel, Legendre polynomials: up to five turns. More turns are
 waves and ripples, which begin with 3 half periods."""
 FEW_LEVELS, MANY_LEVELS = 8, 40
 """Columns of one nuisance term at most. Each costs evidence: few find a weak scatter; a strong one needs one
 for each cycle or position, as what neighbours that share a level leave passes for slow noise."""
+
+
+def to_one(columns: np.ndarray, least: float = ABOVE_ZERO) -> np.ndarray:
+    """(n,) or (n, k) each over its largest size; a column of 0, or of less than `least`, stays small."""
+    return columns / np.maximum(np.abs(columns).max(axis=0), least)
 
 
 def smooth(x: np.ndarray, degree: int = SPLINE) -> np.ndarray:

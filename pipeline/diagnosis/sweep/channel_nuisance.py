@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.sweep.basis_functions import (
     MANY_LEVELS,
     levels,
     smooth,
+    to_one,
     wave,
 )
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
@@ -105,7 +106,7 @@ def over_temperature(rig: Rig) -> Made:
     if temperature is None or np.ptp(temperature) < STEADY_K:
         return
     torque = rig.history.torque_Nm / rig.torque_Nm
-    warm = (temperature - REFERENCE_C) / max(np.abs(temperature - REFERENCE_C).max(), 1e-9)
+    warm = to_one(temperature - REFERENCE_C)
     centred = 2 * (temperature - temperature.min()) / np.ptp(temperature) - 1
     yield "temperature_C", UnnamedForm("changing_zero"), warm[:, None]
     yield "temperature_C", UnnamedForm("changing_zero"), smooth(centred, 3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.evidence import column_indices
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
@@ -49,7 +50,8 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
         taken = inverse @ (model.T @ tried)
         left = np.linalg.norm(tried - model @ taken, axis=0)
         doubt = SHAPE_MISFIT * known_causes()[cause].shape_doubt * size
-        moved = (taken * scale[:, None])[~mine] * np.minimum(1.0, doubt / np.maximum(left, 1e-12))
+        share = np.minimum(1.0, doubt / np.maximum(left, LEAST_ANGLE_ARCSEC))
+        moved = (taken * scale[:, None])[~mine] * share
         for other in found:
             if other != cause:
                 error = slopes[other][~mine] @ moved

@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
+from flexspline.pipeline.diagnosis.sweep.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.torque_nuisance import Made
 
 YIELDS = (0.4, 0.55, 0.7, 0.85)
@@ -67,8 +68,7 @@ def _own(way: np.ndarray, load: np.ndarray) -> np.ndarray:
         [np.cumsum(np.where(load == k, steps, 0.0)) for k in range(int(load.max()) + 1)]
     )
     moved = np.abs(own).max(axis=0)
-    own = own[:, moved > 1e-9 * moved.max()]
-    return own / np.maximum(np.abs(own).max(axis=0), ABOVE_ZERO)
+    return to_one(own[:, moved > 1e-9 * moved.max()])
 
 
 def _loads(history: History, limit_Nm: float) -> np.ndarray:
@@ -123,7 +123,7 @@ def ringing(rig: Rig) -> Made:
             [np.quantile(np.diff(history.time_s[r]), FINEST_PART) for r in history.unit_slices]
         )
     )
-    shortest = FEWEST_PERIOD_ROWS * max(spacing, 1e-12)
+    shortest = FEWEST_PERIOD_ROWS * max(spacing, LEAST_TIME_S)
     longest = max(LONGEST_PERIOD * ramp, LONGEST_HELD_PERIOD * hold_s(history))
     for damping, ratio in DAMPED:
         if longest <= shortest:

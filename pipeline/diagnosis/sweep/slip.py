@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.structure import Slip
 
@@ -44,7 +45,7 @@ def slip_of(history: History, angle_arcsec: np.ndarray) -> Slip | None:
         return None
     springs = (1 - LOADED_SHARE) / (2 * LOADED_SHARE) * float(np.median(chords))
     up, down = (float(np.median(way)) for way in ways.values())
-    times = max(up, down) / max(springs, 1e-12)
+    times = max(up, down) / max(springs, LEAST_ANGLE_ARCSEC)
     if times < MOST_TIMES or min(up, down) < BACK_RATIO * springs:
         return None
     return Slip(max(up, down), times)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import (
     direction_of_loading,
     steadied,
@@ -13,6 +14,7 @@ from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmo
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+from flexspline.pipeline.diagnosis.sweep.basis_functions import to_one
 from flexspline.pipeline.diagnosis.sweep.lagging import lagging_torque
 
 MOST_ZEROS = 40
@@ -30,6 +32,8 @@ SINGULAR_SHARE = 1e-12
 The equations take a fifth of the time of a decomposition of 3000 rows, and a guess needs no more digits."""
 ROBUST_DEVIATIONS = 4.0
 """Standard deviations: beyond, a row weighs less (Huber's weights); of normal noise, one row in 16 000."""
+CONSTANT = 1e-12
+"""Of a cycle's number, or K: a temperature that does not change is off its mean by rounding, some 1e-14."""
 
 TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
 """Thresholds of ordinary friction that may act at every place tried: only the step decides."""
@@ -63,7 +67,7 @@ def zeros_of_cycles(history: History) -> list[np.ndarray]:
     passed = np.zeros(len(history))
     for rows in history.unit_slices:
         t = history.time_s[rows]
-        passed[rows] = (t - t[0]) / max(float(np.ptp(t)), 1e-12)
+        passed[rows] = (t - t[0]) / max(float(np.ptp(t)), ABOVE_ZERO)
     return [*zeros, passed, np.sqrt(passed)]
 
 
@@ -88,8 +92,7 @@ def changing_heights(history: History) -> np.ndarray:
     if history.temperature_C is not None:
         found.append(history.temperature_C)
     columns = np.column_stack(found)
-    columns -= columns.mean(axis=0)
-    return columns / np.maximum(np.abs(columns).max(axis=0), 1e-12)
+    return to_one(columns - columns.mean(axis=0), CONSTANT)
 
 
 def step_misfit(

@@ -27,6 +27,8 @@ BOTH_P_VALUE = 1e-5
 """Product of both p-values: with `EITHER_P_VALUE` for each, by chance in one record of 30 000."""
 CORRELATED = 1.5
 """Times the variance of a mean of squared steps: neighbours share a row, 1 + 2·¼ of white noise."""
+LEAST_LOG_VARIANCE = 1e-12
+"""Of the logarithm of a ratio of squared steps: steps that are all alike scatter by rounding alone."""
 
 
 def stuck_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
@@ -97,7 +99,7 @@ def _moves_more(
         if calm <= 0 or lively <= 0:
             continue
         doubt = CORRELATED * (_spread(rest) / len(rest) + _spread(motion) / len(motion))
-        found.append(np.log(lively / calm) / np.sqrt(max(doubt, 1e-12)))
+        found.append(np.log(lively / calm) / np.sqrt(max(doubt, LEAST_LOG_VARIANCE)))
     return min(1.0, len(found) * float(ndtr(-max(found)))) if found else 1.0
 
 

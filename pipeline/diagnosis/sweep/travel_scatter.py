@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
@@ -91,7 +92,7 @@ def _slope(
         second = first + k + 1
         alike = np.exp(way[first] - way[second])
         passed = time[second] - time[first]
-        passed = passed / max(float(passed.mean()), 1e-12) - 1
+        passed = passed / max(float(passed.mean()), ABOVE_ZERO) - 1
         of_time = np.vander(passed, TIME_DEGREE + 1)
         alike -= of_time @ np.linalg.lstsq(of_time, alike, rcond=SINGULAR_RATIO)[0]
         total += float(alike @ (left[first] * left[second]))

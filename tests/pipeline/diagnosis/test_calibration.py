@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 
@@ -14,7 +15,6 @@ from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Rig
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.sweep.calibrated import ALLOWED, calibrated_residual, less_zero

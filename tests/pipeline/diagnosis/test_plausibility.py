@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from hidden.case import Case
 from hidden.cases import draw_case
 from mislabelled import ABSURD, NONE, STRANGE, Fault, mislabelled
 
 from flexspline.geometry.load import design_from
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import read_measurement
 from flexspline.pipeline.diagnosis.plausibility import refuse_absurd

@@ -6,13 +6,13 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from diagnosed_file import diagnose_file
 from hidden.cases import draw_case
 from mislabelled import NONE, Fault, mislabelled
 from typer.testing import CliRunner
 
 from flexspline.geometry.load import design_from, load_design
 from flexspline.pipeline.diagnosis.bend import Bend
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
 from flexspline.pipeline.diagnosis.outcome import NamedCause

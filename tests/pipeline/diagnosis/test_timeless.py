@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from histories import sweep
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.span import span_of

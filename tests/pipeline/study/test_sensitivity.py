@@ -20,10 +20,10 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.study import two_ways
+from flexspline.pipeline.study import stiffness_slopes
 from flexspline.pipeline.study.sensitivity import sensitivities
 from flexspline.pipeline.study.slope import Slope, Slopes
-from flexspline.pipeline.study.two_ways import slope_with_field_held
+from flexspline.pipeline.study.stiffness_slopes import slope_with_field_held
 
 
 @cache
@@ -117,7 +117,7 @@ def solves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
     asked: list[Design] = []
     monkeypatch.setenv("FLEXSPLINE_CACHE", str(tmp_path))
     monkeypatch.setattr(
-        two_ways,
+        stiffness_slopes,
         "slopes",
         lambda design, say: asked.append(design) or Slopes(FOUND, {"shaft.grip_length_mm": "none"}),
     )
@@ -148,7 +148,7 @@ def test_what_more_memory_would_find_is_not_kept(
     solves: list[Design], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     short = Slopes((), {"shaft.fillet_mm": f"{NOT_FINISHED} not enough memory"})
-    monkeypatch.setattr(two_ways, "slopes", lambda design, say: short)
+    monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: short)
     assert sensitivities(DESIGN, lambda line: None) == ()
-    monkeypatch.setattr(two_ways, "slopes", lambda design, say: Slopes(FOUND, {}))
+    monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: Slopes(FOUND, {}))
     assert sensitivities(DESIGN, lambda line: None) == FOUND

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from legibility import drawn_figures, faults
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.figures.diagnosis.overview import write_overview

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from hidden.cases import draw_case
 from histories import PREDICTION, sweep
 
@@ -16,7 +17,7 @@ from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE, Doubt, deviation_of
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.diagnose import diagnose_end_points
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.finding import CORRECTED_P_VALUE

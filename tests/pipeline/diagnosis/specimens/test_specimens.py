@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from specimen_truth import EXAMPLE_FILE as DRAWN
 
 from flexspline.geometry.keys import (
@@ -17,7 +18,7 @@ from flexspline.geometry.keys import (
 )
 from flexspline.geometry.load import design_from, load_design, read_toml
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 from flexspline.pipeline.diagnosis.prediction import prediction_of

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from creep_test import CreepTest, Kernel, logarithmic, standard_solid, written
+from diagnosed_file import diagnose_file
 from hidden.gear import draw_gear, draw_rig
 
 from flexspline.geometry.load import design_from
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_rate

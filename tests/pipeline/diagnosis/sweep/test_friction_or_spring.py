@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from diagnosed_file import diagnose_file
+
 from flexspline.geometry.load import load_design
-from flexspline.pipeline.diagnosis.diagnose import Diagnosis, diagnose_file
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 
 ROOT = Path(__file__).parents[4]
 K_B, K_E = 31_300.0, 44_000.0

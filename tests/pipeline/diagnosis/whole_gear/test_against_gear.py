@@ -7,12 +7,12 @@ from pathlib import Path
 import in_process
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 
 import flexspline
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.bend import Bend
-from flexspline.pipeline.diagnosis.diagnose import diagnose_file
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError, ModelFileError
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash

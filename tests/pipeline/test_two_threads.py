@@ -8,8 +8,8 @@ from functools import partial
 
 import pytest
 
-from flexspline.pipeline.beside import beside
 from flexspline.pipeline.progress import Progress, Stopped
+from flexspline.pipeline.two_threads import beside
 
 
 def test_stages_of_two_threads_are_not_inside_each_other() -> None:

@@ -1,0 +1,160 @@
+"""What is said of the whole gear's figures, as facts; `results/gear_words.py` puts them into words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class WrongStroke:
+    """The plug's stroke is not m(z2 − z1)/2."""
+
+    stroke_mm: float
+    full_mm: float
+
+
+@dataclass(frozen=True)
+class LowRim:
+    """Half the play lowers the rim's stroke."""
+
+    half_play_mm: float
+    stroke_mm: float
+
+
+@dataclass(frozen=True)
+class TightFlanks:
+    """Where front and back flanks press most, from the major axis; the clearance is too small there."""
+
+    front_deg: float
+    back_deg: float
+
+
+@dataclass(frozen=True)
+class PressingFlanks:
+    """Teeth press on both flanks without torque, the most loaded with that force."""
+
+    force_N: float
+    why: WrongStroke | LowRim | Literal["flanks_cut"] | TightFlanks
+
+
+@dataclass(frozen=True)
+class CuttingFlanks:
+    """Flanks overlap from an angle off the major axis on, by the most at another.
+
+    `clear_depth_mm`: the working depth within which they do not; None where it is too shallow.
+    """
+
+    shape: str
+    from_deg: float
+    overlap_um: float
+    most_deg: float
+    clear_depth_mm: float | None
+
+
+@dataclass(frozen=True)
+class LoadBeyondRated:
+    """Far beyond, where nothing is elastic."""
+
+    load_Nm: float
+    rated_Nm: float
+
+
+@dataclass(frozen=True)
+class EarlyEnd:
+    """An estimate below rated torque."""
+
+    end: Literal["ratchets", "buckles"]
+    torque_Nm: float
+    rated_Nm: float
+
+
+GearWarning = (
+    PressingFlanks | CuttingFlanks | LoadBeyondRated | EarlyEnd | Literal["play_closes_gap"]
+)
+"""What makes the gear another one than was meant; that more play makes the free angle smaller."""
+
+
+@dataclass(frozen=True)
+class HalvedBalls:
+    """As many balls as are computed, half of them in each lobe."""
+
+    count: int
+    computed: int
+
+
+@dataclass(frozen=True)
+class LowRatio:
+    """Below that ratio the model is too stiff."""
+
+    limit: float
+
+
+@dataclass(frozen=True)
+class RelievedFlanks:
+    """Assumed where straight ones come closer again, beyond an angle from the major axis."""
+
+    from_deg: float
+    removed_um: float
+    end_deg: float
+
+
+@dataclass(frozen=True)
+class ShapedFaces:
+    """Teeth shaped for the rim's cone, up to so much at the ends of their face."""
+
+    removed_um: float
+
+
+@dataclass(frozen=True)
+class StraightFlanks:
+    """Gaps are those of straight flanks, not of the drawn ones."""
+
+    pressure_angle_deg: float
+
+
+@dataclass(frozen=True)
+class LoadedLastPair:
+    """The last pair of teeth within the working depth carries much."""
+
+    at_deg: float
+
+
+@dataclass(frozen=True)
+class TwoTorques:
+    """Terms and lost motion are not of one torque."""
+
+    load_Nm: float
+    lost_motion_Nm: float
+
+
+@dataclass(frozen=True)
+class JointClearances:
+    """Free angle that the play alone opens, and what the terms leave to it, as flanks come first."""
+
+    play_alone_arcsec: float
+    play_term_arcsec: float
+
+
+@dataclass(frozen=True)
+class BucklingTube:
+    """Torque and shear stress at which it buckles."""
+
+    torque_Nm: float
+    stress_MPa: float
+
+
+GearNote = (
+    HalvedBalls
+    | LowRatio
+    | RelievedFlanks
+    | ShapedFaces
+    | StraightFlanks
+    | LoadedLastPair
+    | TwoTorques
+    | JointClearances
+    | BucklingTube
+    | Literal["play_beside_stroke", "no_ratcheting", "ratcheting_is_upper"]
+)
+"""What was simplified; that play makes the free angle smaller as the stroke is not full, that the gear
+ratchets at no torque, or that the torque at which it does is an upper limit."""

@@ -1,0 +1,160 @@
+"""Warnings and notes of the whole gear in words, a line each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+from flexspline.pipeline.gear_remarks import (
+    BucklingTube,
+    CuttingFlanks,
+    EarlyEnd,
+    GearNote,
+    GearWarning,
+    HalvedBalls,
+    JointClearances,
+    LoadBeyondRated,
+    LoadedLastPair,
+    LowRatio,
+    LowRim,
+    PressingFlanks,
+    RelievedFlanks,
+    ShapedFaces,
+    StraightFlanks,
+    TightFlanks,
+    TwoTorques,
+    WrongStroke,
+)
+from flexspline.pipeline.largest_torques import two_digits
+
+if TYPE_CHECKING:
+    from flexspline.pipeline.gear import GearCurve
+
+ENDS = {"ratchets": "the gear ratchets", "buckles": "the flexspline's tube buckles"}
+
+
+def gear_warnings(curve: GearCurve) -> list[str]:
+    """What makes the gear another one than was meant."""
+    return [_warning(each) for each in curve.warnings]
+
+
+def gear_notes(curve: GearCurve) -> list[str]:
+    """What was simplified."""
+    return [_note(each) for each in curve.notes]
+
+
+def _warning(warning: GearWarning) -> str:
+    match warning:
+        case PressingFlanks(force):
+            return (
+                f"teeth press on both flanks without torque, up to {_rounded(force)} N each: "
+                f"{_why_pressing(warning)}"
+            )
+        case CuttingFlanks(shape, start, overlap, most, depth):
+            said = (
+                f"{shape} flanks cut into each other from {start:.0f}° off the major axis on, by up "
+                f"to {_rounded(overlap)} µm at {most:.0f}°: take the relieved shape or more clearance"
+            )
+            if depth is None:
+                return said
+            return f"{said}, or make the working depth less than {depth:.3g} mm"
+        case LoadBeyondRated(load, rated):
+            return (
+                f"load.torque_Nm = {load:g} is {load / rated:.3g} times the "
+                "rated torque: teeth and rim are not elastic there"
+            )
+        case EarlyEnd(end, torque, rated):
+            return f"{ENDS[end]} at some {_rounded(torque)} N·m, below the rated torque of {rated:.4g} N·m"
+        case "play_closes_gap":
+            return (
+                "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
+                "teeth beside the major axis touch first. The gear is no better for it: reduce the play"
+            )
+        case _:
+            assert_never(warning)
+
+
+def _why_pressing(pressing: PressingFlanks) -> str:
+    match pressing.why:
+        case WrongStroke(stroke, full):
+            return f"the plug's stroke of {stroke:.3g} mm is not m(z2 - z1)/2 = {full:.3g} mm"
+        case LowRim(half_play, stroke):
+            return (
+                f"half the play, {half_play:.3g} mm, lowers the rim's stroke of {stroke:.3g} mm, and teeth "
+                "off the major axis no longer clear"
+            )
+        case "flanks_cut":
+            return "the flanks cut into each other"
+        case TightFlanks(front, back):
+            return (
+                f"front flanks press at {front:.0f}°, back flanks at {back:.0f}° from the major axis; the "
+                "clearance is too small there"
+            )
+        case _:
+            assert_never(pressing.why)
+
+
+def _note(note: GearNote) -> str:
+    match note:
+        case HalvedBalls(count, computed):
+            return f"{count} balls are computed as {computed}, half of them in each lobe"
+        case LowRatio(limit):
+            return (
+                f"below a ratio of {limit:g} the model is too stiff: with thicknesses in proportion to the "
+                "pitch radius catalogues' gears of ratio 30 are about half as stiff (docs/whole-gear.md)"
+            )
+        case RelievedFlanks(start, removed, end):
+            return (
+                f"straight flanks come closer again beyond {start:.0f}° from the major axis: relieved flanks "
+                f"are assumed, {_rounded(removed)} µm of each removed at {end:.0f}°"
+            )
+        case ShapedFaces(removed):
+            return (
+                "the rim opens as a cone: teeth that are shaped for it along their face are assumed, up to "
+                f'{_rounded(removed)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
+            )
+        case StraightFlanks(angle):
+            return (
+                f"gaps are those of straight flanks of {angle:g}°, not of the drawn "
+                'ones; gear.flanks = "drawn" takes those'
+            )
+        case LoadedLastPair(at):
+            return (
+                f"the last pair of teeth within the working depth, {at:.0f}° from "
+                "the major axis, carries much: the figures depend on gear.working_depth_mm"
+            )
+        case TwoTorques(load, lost_motion):
+            return (
+                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {lost_motion:.4g} N·m, 4 % "
+                "of rated torque: the terms' sum is not the lost motion"
+            )
+        case JointClearances(alone, term):
+            return (
+                f"flank clearance and bearing play act together: without play alone the free angle is "
+                f"{_rounded(alone)} arcsec smaller; the terms take the flank clearance away first, and "
+                f"leave {_rounded(term)} arcsec to the play"
+            )
+        case BucklingTube(torque, stress):
+            return (
+                f"the flexspline's tube buckles at some {_rounded(torque)} N·m, the lower edge of tests, at "
+                f"a shear stress of {_rounded(stress)} MPa; a wall whose yield stress is lower fails earlier"
+            )
+        case "play_beside_stroke":
+            return (
+                "bearing play makes the free angle smaller here, as the plug's stroke is not m(z2 - z1)/2: "
+                "read bearing_play and tight_gear together"
+            )
+        case "no_ratcheting":
+            return "no torque was found at which the gear ratchets"
+        case "ratcheting_is_upper":
+            return (
+                "the ratcheting torque is an upper limit: only elastic parts yield in it; catalogues' gears "
+                "ratchet at a fiftieth (ratio 30) to a fifth (ratio 160) of it, and at 0.3 to 0.8 of the "
+                "torque at which they buckle"
+            )
+        case _:
+            assert_never(note)
+
+
+def _rounded(value: float) -> str:
+    """Two digits: it is an estimate."""
+    return f"{two_digits(value):g}"

@@ -1,0 +1,80 @@
+"""Limits in words: what a peak stress passes, and up to which torque the linear model means anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, assert_never
+
+from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
+
+if TYPE_CHECKING:
+    from flexspline.geometry.design import Design
+    from flexspline.pipeline.stress_limits import PassedLimit
+
+NOT_SOLVED = (
+    "without the peak stress of notches, which `flexspline run` solves and which may end it earlier"
+)
+
+
+def beside_figure(passed: PassedLimit) -> str:
+    """What is passed, where the peak's figure stands already."""
+    if passed.key:
+        return f"above the fatigue limit of {passed.limit_MPa:g} MPa"
+    return (
+        f"beyond {passed.limit_MPa:g} MPa, where no metal used in gears is elastic: the linear model "
+        "does not hold"
+    )
+
+
+def passed_line(passed: PassedLimit) -> str:
+    """On its own, as a warning."""
+    figure = f"{passed.name}_mises_MPa = {passed.peak.mises_MPa:.4g}"
+    if passed.peak.at_excluded_border:
+        far = passed.peak.exclusion_mm
+        place = "at" if far is None else f"{far:.3g} mm from"
+        figure += f" ({place} an edge towards which the stress still rises)"
+    if passed.key:
+        return f"{figure} is above {passed.key} = {passed.limit_MPa:g}"
+    return f"{figure} is {beside_figure(passed)}"
+
+
+def reason(limit: LinearLimit) -> str:
+    """Why the linear model is not valid beyond the limit, a clause."""
+    why = limit.why
+    match why:
+        case ToothTwist(teeth):
+            said = f"the twist reaches one tooth, 360°/{teeth}"
+        case ReachedStress():
+            said = f"{_place(why)} reaches {_stress(why)}"
+        case _:
+            assert_never(why)
+    return said if limit.peaks_solved else f"{said} ({NOT_SOLVED})"
+
+
+def load_beyond(limit: LinearLimit, design: Design) -> Iterator[str]:
+    """A line where the load torque is beyond the limit."""
+    if design.load.torque_Nm > limit.torque_Nm:
+        yield (
+            f"load.torque_Nm = {design.load.torque_Nm:g} is beyond {limit.torque_Nm:.3g} N·m, where "
+            f"{reason(limit)}: the linear model is not valid there"
+        )
+
+
+def _place(why: ReachedStress) -> str:
+    match why.place:
+        case "tube":
+            return f"the stress of the {why.part}'s tube"
+        case "diaphragm":
+            return f"the stress of the diaphragm at r = {why.size_mm:g} mm"
+        case "shaft":
+            return f"the stress of the shaft of {why.size_mm:g} mm"
+        case "peak":
+            return f"the {why.part}'s peak stress"
+        case _:
+            assert_never(why.place)
+
+
+def _stress(why: ReachedStress) -> str:
+    if why.is_fatigue_limit:
+        return f"the fatigue limit of {why.limit_MPa:g} MPa"
+    return f"{why.limit_MPa:g} MPa, above the strength of any metal used in gears"

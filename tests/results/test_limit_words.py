@@ -1,0 +1,45 @@
+"""Limits in words, each with the figures that it carries."""
+
+from __future__ import annotations
+
+import pytest
+from hand_made_gear import design
+
+from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
+from flexspline.results.limit_words import load_beyond, reason
+
+
+@pytest.mark.parametrize(
+    ("why", "said"),
+    [
+        (ToothTwist(200), "the twist reaches one tooth, 360°/200"),
+        (
+            ReachedStress("flexspline", "tube", None, 500.0, is_fatigue_limit=True),
+            "the stress of the flexspline's tube reaches the fatigue limit of 500 MPa",
+        ),
+        (
+            ReachedStress("flexspline", "diaphragm", 9.0, 500.0, is_fatigue_limit=True),
+            "the stress of the diaphragm at r = 9 mm reaches the fatigue limit of 500 MPa",
+        ),
+        (
+            ReachedStress("shaft", "shaft", 7.0, 2000.0, is_fatigue_limit=False),
+            "the stress of the shaft of 7 mm reaches 2000 MPa, above the strength of any metal used in gears",
+        ),
+        (
+            ReachedStress("shaft", "peak", None, 500.0, is_fatigue_limit=True),
+            "the shaft's peak stress reaches the fatigue limit of 500 MPa",
+        ),
+    ],
+)
+def test_why_the_linear_model_ends(why: ToothTwist | ReachedStress, said: str) -> None:
+    assert reason(LinearLimit(88.2, why)) == said
+    without = reason(LinearLimit(88.2, why, peaks_solved=False))
+    assert without.startswith(f"{said} (without the peak stress of notches")
+
+
+def test_a_load_torque_beyond_it_is_said() -> None:
+    limit = LinearLimit(88.2, ToothTwist(200))
+    beyond, within = (design().changed({"load.torque_Nm": torque}) for torque in (5000.0, 0.5))
+    (line,) = load_beyond(limit, beyond)
+    assert "load.torque_Nm = 5000 is beyond 88.2 N·m" in line
+    assert list(load_beyond(limit, within)) == []
