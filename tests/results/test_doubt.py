@@ -124,6 +124,6 @@ def test_a_study_of_a_deviation_that_nothing_states_is_refused(tmp_path):
 def test_the_design_in_figures_says_what_is_not_stated(tmp_path):
     for text in printed(PART, tmp_path):
         for words in (
-            "youngs modulus not stated", "flank clearance 1 µm", "radial clearance not stated",
+            "Young's modulus not stated", "flank clearance 1 µm", "radial clearance not stated",
         ):  # fmt: skip
             assert letters(words) in text

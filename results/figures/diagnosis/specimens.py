@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.geometry.schema import key_words
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
 from flexspline.results.figures.diagnosis.seen import plain_names
@@ -188,4 +188,5 @@ def _pct(stiffness: np.ndarray, found: SpecimenAnalysis) -> np.ndarray:
 
 def _label(key: str) -> str:
     """``flexspline.wall_thickness_mm`` → flexspline wall thickness in mm."""
-    return f"{channel_words(key)} in {key.rpartition('_')[2]}".replace("$", r"\$")
+    words, unit = key_words(key)
+    return (f"{words} in {unit}" if unit else words).replace("$", r"\$")
