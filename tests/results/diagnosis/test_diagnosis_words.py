@@ -112,6 +112,19 @@ def test_what_specimens_leave_is_in_percent_everywhere() -> None:
     assert not any("arcsec rms" in said for said in (table, report, line))
 
 
+def test_structure_without_a_name_lies_in_a_channel_that_is_said_in_words() -> None:
+    forms = (UnnamedForm("trend"),)
+    left = tuple(Unexplained(key, 6.5, 1e-5, forms) for key in ("torque_Nm", "cycle", "torque_Nm"))
+    found = Diagnosis(
+        DESIGN,
+        KINDS["sweep"],
+        Prediction(10.0, 0.2, 60.0, 5.0),
+        DiagnosisOutcome("unknown", unexplained=left),
+    )
+    said = "There is structure in torque, load cycle that no known cause explains."
+    assert summary(found) == said
+
+
 def test_the_live_page_says_a_cause_as_the_table_does() -> None:
     friction = replace(named("friction_hysteresis", 12.0, "arcsec"), widest_arcsec=30.0)
     zone = replace(named("load_zone", 1.4, "1"), none=1.0)  # 0.8 of its deviations from none
