@@ -15,6 +15,7 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from
 from flexspline.geometry.schema import Location, Node, dotted, key_words, node_at
+from flexspline.results.sentences import capital
 
 GROUPS: tuple[tuple[str, Location], ...] = (
     ("Flexspline", ("flexspline",)),
@@ -110,7 +111,7 @@ def _entry(
     about = {
         "key": dotted(location),
         "at": list(location),
-        "label": words[:1].upper() + words[1:],
+        "label": capital(words),
         "unit": unit,
         "hint": node.get("description", ""),
     }

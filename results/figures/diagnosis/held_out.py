@@ -8,10 +8,11 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import figures_text, noise_words
+from flexspline.results.diagnosis.words import noise_words
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
 from flexspline.results.figures.words import wrapped
+from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 BARS = (

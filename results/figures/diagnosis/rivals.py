@@ -9,9 +9,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.diagnosis.words import figures_text, title_of
+from flexspline.results.diagnosis.words import title_of
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import plain_names
+from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, PALETTE, new_figure, save_png, styled
 
 MOST_RIVALS = 8

@@ -11,9 +11,9 @@ from flexspline.geometry.schema import key_words
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.results.diagnosis.words import figures_text
 from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
 from flexspline.results.figures.diagnosis.seen import plain_names
+from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:

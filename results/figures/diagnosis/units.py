@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
-from flexspline.results.diagnosis.words import capital, cause_title
+from flexspline.results.diagnosis.words import cause_title
 from flexspline.results.figures.diagnosis.panels import DPI
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
 from flexspline.results.figures.words import thin_labels
+from flexspline.results.sentences import capital
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_CAUSES = 4
