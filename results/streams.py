@@ -18,7 +18,7 @@ from typing import TextIO
 
 from flexspline.geometry.errors import readable
 from flexspline.results.exit_status import FAILED, NOBODY_READS
-from flexspline.results.letters import ASCII, PLAIN, escaped
+from flexspline.results.plain_letters import ASCII, PLAIN, escaped
 
 STDOUT = "standard output"
 

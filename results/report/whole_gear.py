@@ -22,7 +22,7 @@ from flexspline.results.report.document import (
     Picture,
     Table,
 )
-from flexspline.results.report.shown import shown
+from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import Words, bold, plain, symbol, worded
 from flexspline.results.sentences import sentence
 
