@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from changed_design import EXAMPLES, changed_design, shaft_of
+from changed_design import changed_design, shaft_of
+from example_files import EXAMPLES
 from scipy.integrate import dblquad
 
 from flexspline.geometry.cad import build_solid, write_step, write_stl

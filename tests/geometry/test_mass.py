@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from cad_volume import VOLUME
-from changed_design import EXAMPLES, changed_design
+from changed_design import changed_design
+from example_files import EXAMPLES
 
 from flexspline.geometry.cad import build_solid
 from flexspline.geometry.load import load_design

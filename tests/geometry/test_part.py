@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from changed_design import EXAMPLES, changed_design, shaft_of
+from changed_design import changed_design, shaft_of
+from example_files import EXAMPLES
 
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design

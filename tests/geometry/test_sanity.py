@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from changed_design import EXAMPLES, changed_design
+from changed_design import changed_design
+from example_files import EXAMPLES
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design

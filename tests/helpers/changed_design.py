@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from pathlib import Path
+
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def changed_text(example: str, changes: dict[str, str | None]) -> str:

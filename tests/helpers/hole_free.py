@@ -7,10 +7,10 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
@@ -22,7 +22,6 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.geometry.symmetry import sector_of
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 TOLERANCE = 0.005
 """Asked of the solid model: the default of solver.tolerance_pct."""

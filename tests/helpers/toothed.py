@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
+
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 
 
 def toothed(flank: str, **changes: float) -> Design:

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from toothed import toothed
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
@@ -19,7 +20,6 @@ from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.records import stiffness_record
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 LOOSE_PCT = 5.0
 """Kinds are asked, not figures: the coarsest meshes do."""
 

@@ -2,10 +2,10 @@
 
 import tomllib
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from scipy.stats import spearmanr
 
 from flexspline.pipeline.study.claims import Row
@@ -32,7 +32,7 @@ method = "sobol"
 
 def result_of(designs: Iterable[tuple[float, float, float, float]]) -> StudyResult:
     """Wall, length, stiffness and stress of each design."""
-    study = study_from(tomllib.loads(STUDY), Path(__file__).parents[3] / "examples", "test")
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
     rows = (
         Row(i, {WALL: wall, LENGTH: length}, Outcome({K: stiffness, STRESS: stress}))
         for i, (wall, length, stiffness, stress) in enumerate(designs)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.causes import known_causes
@@ -33,7 +34,7 @@ from flexspline.results.records import as_json
 from flexspline.results.report.diagnosis import diagnosis_document
 from flexspline.results.studio.job_summary import job_summary
 
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 NONE = np.zeros(0)
 HISTORY = History(NONE, NONE.astype(int), NONE.astype(int))
 KINDS = {

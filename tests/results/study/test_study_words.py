@@ -2,9 +2,9 @@
 
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
@@ -45,7 +45,7 @@ method = "sobol"
 
 def result_of(text: str = STUDY) -> StudyResult:
     """Ten designs, stress 310 + 10 i MPa: none is allowed, the first is nearest."""
-    study = study_from(tomllib.loads(text), Path(__file__).parents[3] / "examples", "test")
+    study = study_from(tomllib.loads(text), EXAMPLES, "test")
     rows = tuple(
         Row(i, {WALL: 0.3 + 0.02 * i}, Outcome({K: 3e4 + i, STRESS: 310.0 + 10 * i, TOTAL: 85.0 + i}))
         for i in range(10)
