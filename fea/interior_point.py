@@ -14,9 +14,7 @@ def room(force: np.ndarray, push: np.ndarray, gap: np.ndarray, lift: np.ndarray)
     return 1.0 if nearest <= 1 else 1 / nearest
 
 
-def corrected(
-    force: np.ndarray, gap: np.ndarray, push: np.ndarray, lift: np.ndarray
-) -> np.ndarray:
+def corrected(force: np.ndarray, gap: np.ndarray, push: np.ndarray, lift: np.ndarray) -> np.ndarray:
     """(k,) by how much forces times gaps shall grow, after a plain Newton step (`push`, `lift`) was tried.
 
     What that step leaves, gone as far as there is room, says how far to aim; `push` times `lift` is what a

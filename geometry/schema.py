@@ -24,6 +24,18 @@ UNITS = {
 """Key suffix to unit."""
 
 
+def key_words(key: str) -> tuple[str, str]:
+    """A design key, or only its last name, in words, and its unit.
+
+    >>> key_words("flexspline.wall_thickness_mm"), key_words("poissons_ratio")
+    (('flexspline wall thickness', 'mm'), ("Poisson's ratio", ''))
+    """
+    suffix = next((suffix for suffix in UNITS if key.endswith(suffix)), "")
+    words = key.removesuffix(suffix).replace(".", " ").replace("_", " ")
+    words = words.replace("youngs", "Young's").replace("poissons", "Poisson's")
+    return words, UNITS.get(suffix, "")
+
+
 @cache
 def json_schema() -> Node:
     """JSON Schema (2020-12) of the design file; editors complete and check with it."""
@@ -115,6 +127,5 @@ def _range(node: Node) -> str:
 
 
 def _unit(location: Location) -> str:
-    key = str(location[-1])
-    unit = next((u for suffix, u in UNITS.items() if key.endswith(suffix)), "")
+    _, unit = key_words(str(location[-1]))
     return f" {unit}" if unit else ""

@@ -10,6 +10,8 @@ import os
 import signal
 import sys
 
+from flexspline.results.exit_status import INTERRUPTED, TERMINATED
+
 THREADS = {"OPENBLAS_NUM_THREADS": "1", "KMP_BLOCKTIME": "0"}
 """For a command and what it starts, where the user has set nothing. Matrices of BLAS are small, and its
 threads wait for each other in a loop that keeps a core busy; MKL's, of large sparse matrices, would do so for
@@ -20,9 +22,6 @@ variable names a backend that is not installed, as Jupyter's does for the comman
 NEW_OBJECTS = 20_000
 """From one search for circular garbage to the next (Python: 700), as objects here are many and live long. It
 saves 3 % of `flexspline run examples/xb1-40.toml` and takes no more memory."""
-INTERRUPTED = 130
-TERMINATED = 143
-"""Exit statuses, as shells have them: 128 and the signal's number."""
 
 
 def main() -> None:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from flexspline.results.exit_status import FAILED, INTERRUPTED, REFUSED
+
 if TYPE_CHECKING:
     from flexspline.fea.types import SolidField
     from flexspline.geometry.design import Design
@@ -56,22 +58,22 @@ def answered(path: Path | None = None, interrupted: str = "") -> Iterator[None]:
             yield
     except (MeasurementError, ModelFileError, DesignFileError) as error:  # they name their own file
         tell(f"flexspline: {error}")
-        raise typer.Exit(2) from None
+        raise typer.Exit(REFUSED) from None
     except DesignError as error:
         tell(f"flexspline: {where}{error}")
-        raise typer.Exit(2) from None
+        raise typer.Exit(REFUSED) from None
     except KeyboardInterrupt:
         tell(f"flexspline: interrupted{interrupted}")
-        raise typer.Exit(130) from None  # 128 and the number of SIGINT, as shells count
+        raise typer.Exit(INTERRUPTED) from None
     except ComputationError as error:
         tell(f"flexspline: {where}{error}")
-        raise typer.Exit(1) from None
+        raise typer.Exit(FAILED) from None
     except OSError as error:
         tell(f"flexspline: {why_of(error, where)}")
-        raise typer.Exit(1) from None
+        raise typer.Exit(FAILED) from None
     except MemoryError as error:
         tell(f"flexspline: {where}not enough memory: {error}")
-        raise typer.Exit(1) from None
+        raise typer.Exit(FAILED) from None
 
 
 @dataclass(frozen=True)

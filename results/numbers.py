@@ -54,3 +54,8 @@ def decimals_for(value: float, digits: int) -> int:
     if value == 0:
         return 0
     return max(0, digits - 1 - floor(log10(abs(value))))
+
+
+def figures_text(value: float, digits: int = 3) -> str:
+    """A number with so many significant digits."""
+    return grouped(value, decimals_for(value, digits))

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from flexspline.results.exit_status import REFUSED
 from flexspline.results.job import tell
 from flexspline.results.usage import named_file, number
 
@@ -19,7 +20,7 @@ def _folder(word: str) -> Path:
     """As pathlib reads it, which would take an empty word for the current folder."""
     if not word:
         tell('flexspline: --out = "" names no folder; "." is the current one')
-        raise typer.Exit(2)
+        raise typer.Exit(REFUSED)
     return Path(word)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from flexspline.results.numbers import THIN, decimals_for, grouped, with_power
+from flexspline.results.numbers import THIN, decimals_for, figures_text, grouped, with_power
 
 Kind = Literal["number", "count", "bounds", "text"]
 STIFFNESS_UNIT = "N·m/rad"
@@ -66,7 +66,7 @@ class Quantity:
             return grouped(value, self.decimals)
         if self.rounded:
             value = float(f"{value:.{self.digits}g}")
-        return grouped(value, decimals_for(value, self.digits))
+        return figures_text(value, self.digits)
 
     def short(self, value: float, letters: int = 9) -> str:
         """As `text`; where that takes more letters, three digits and a power of ten."""

@@ -17,14 +17,10 @@ from contextlib import contextmanager
 from typing import TextIO
 
 from flexspline.geometry.errors import readable
-from flexspline.results.letters import ASCII, PLAIN, escaped
+from flexspline.results.exit_status import FAILED, NOBODY_READS
+from flexspline.results.plain_letters import ASCII, PLAIN, escaped
 
 STDOUT = "standard output"
-FAILED = 1
-"""Exit status."""
-NOBODY_READS = 141
-"""Exit status where the reader of a pipe has gone (``| head -1``): 128 and the number of SIGPIPE, as shells
-count a tool that this signal ended. Nothing is said."""
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import typer
 from typer.core import TyperGroup
 
+from flexspline.results.exit_status import REFUSED
 from flexspline.results.job import tell
 
 T = TypeVar("T")
@@ -39,7 +40,7 @@ def answered_in_one_line() -> Iterator[None]:
             raise
         command = wrong.ctx.command_path if wrong.ctx else "flexspline"
         tell(f"flexspline: {wrong.format_message().rstrip('.')}; see {command} --help")
-        raise typer.Exit(2) from None
+        raise typer.Exit(REFUSED) from None
 
 
 def _reader(kind: Callable[[str], T], what: str) -> Callable[[str], T]:

@@ -11,6 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from finished_run import FinishedRun
 
 import flexspline
@@ -98,7 +99,7 @@ def test_every_error_of_ours_has_one_root(path: Path, name: str) -> None:
 
 
 def test_wrong_words_are_refused_in_one_line() -> None:
-    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
     solid = design.changed({"solver.model": "solid"})
     for call in (
         lambda: flexspline.stiffness(design, "wave generator"),
@@ -135,7 +136,7 @@ def test_a_path_in_place_of_a_design_is_answered_with_how_to_load_it(
 
 
 def test_changed_is_a_new_design() -> None:
-    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
     longer = design.changed({"flexspline.length_mm": 35.0, "shaft.segment[1].length_mm": 12.0})
     assert (longer.flexspline.length_mm, longer.shaft.segment[1].length_mm) == (35.0, 12.0)
     assert design.flexspline.length_mm != 35.0
@@ -143,7 +144,7 @@ def test_changed_is_a_new_design() -> None:
 
 def test_lift_off_lies_between_the_seat_held_and_the_rim_free() -> None:
     """Contact that only pushes does less than a seat that also pulls, and more than none."""
-    design = flexspline.load_design(ROOT / "examples" / "xb1-40.toml")
+    design = flexspline.load_design(EXAMPLES / "xb1-40.toml")
     plain = design.changed({"flexspline.bolt_count": 0})
     free, contact, held = (
         flexspline.stiffness(plain, "flexspline", case)
@@ -166,7 +167,7 @@ def test_the_page_runs(
     text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
     assert len(blocks) >= 5
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (tmp_path / "examples").symlink_to(EXAMPLES)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
     names: dict[str, object] = {"__name__": "__main__"}
@@ -177,7 +178,7 @@ def test_the_page_runs(
 def test_solid_and_axisymmetric_model_agree_on_a_free_rim_without_holes() -> None:
     """Two discretisations of one case, each to 5 %: their bounds overlap."""
     text = {"flexspline.bolt_count": 0, "solver.tolerance_pct": 5.0}
-    plain = flexspline.load_design(ROOT / "examples" / "xb1-40.toml").changed(text)
+    plain = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(text)
     solid = plain.changed({"solver.model": "solid"})
     (low, high), (lower, upper) = (
         flexspline.stiffness(design, "flexspline", "lobes_unsupported").bounds_Nm_per_rad

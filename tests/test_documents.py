@@ -9,6 +9,7 @@ import runpy
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from finished_run import finished_run
 from opengl import why_no_pictures
 
@@ -27,7 +28,7 @@ PICTURES = {
     "flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator",
     "backlash_budget", "torque_angle", "gear_torque_angle", "gear_loads",
 }  # fmt: skip
-DESIGNS = sorted((ROOT / "examples").glob("*.toml"))
+DESIGNS = sorted((EXAMPLES).glob("*.toml"))
 MARKS = {
     "keyed-shaft": pytest.mark.cad,  # its keyway is cut by the CAD kernel
     "hat-25": pytest.mark.long,  # two minutes, twelve holes on a free rim

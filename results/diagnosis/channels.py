@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from flexspline.geometry.listed import listed
+from flexspline.geometry.schema import key_words
 from flexspline.pipeline.diagnosis.left_out import LeftOut
 
 
@@ -59,7 +60,7 @@ CHANNELS: Mapping[str, ChannelWords] = {
 def channel_words(name: str) -> str:
     """A channel's name in words; a design key without its unit; an unknown one as it is."""
     if "." in name:
-        return name.rpartition("_")[0].replace(".", " ").replace("_", " ")
+        return key_words(name)[0]
     return CHANNELS[name].name if name in CHANNELS else name
 
 

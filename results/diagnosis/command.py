@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from flexspline.results.exit_status import REFUSED
 from flexspline.results.file_names import PREDICTION, of_diagnosis
 from flexspline.results.job import answered, begin, tell
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
@@ -58,7 +59,7 @@ def in_order(file: Path, other: Path, words: str) -> None:
         tell(
             f"flexspline: {file} is no TOML file and {other} is one; the order is flexspline {words}"
         )
-        raise typer.Exit(2)
+        raise typer.Exit(REFUSED)
 
 
 def register(app: typer.Typer) -> None:

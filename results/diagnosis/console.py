@@ -14,14 +14,14 @@ from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
     calibrated_words,
-    capital,
     cause_title,
-    figures_text,
     magnitude_words,
     noise_words,
     sure_words,
     title_of,
 )
+from flexspline.results.numbers import figures_text
+from flexspline.results.sentences import capital
 from flexspline.results.terminal import prose, row
 
 

@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.shortage import (
     Leaping,
     Shortage,
 )
-from flexspline.results.diagnosis.words import figures_text
+from flexspline.results.numbers import figures_text
 
 
 def shortage_words(shortage: Shortage) -> str:

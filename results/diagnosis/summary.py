@@ -180,7 +180,8 @@ def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
     if broken:
         said = f"No cause is named: {'; '.join(broken)}"
         return said if said.endswith("?") else f"{said}."
-    where = ", ".join(dict.fromkeys(u.channel for u in outcome.unexplained)) or "the data"
+    channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
+    where = ", ".join(channels) or "the data"
     return f"There is structure in {where} that no known cause explains.{known}"
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import floor, log, log10
+from math import log
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.outcome import SIZE_KNOWN, Gain, NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import GEOMETRY, LOAD_ZONE, YOUNGS_MODULUS
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import decimals_for, figures_text, grouped
 
 SPECIMENS = {
     YOUNGS_MODULUS: "material softer or stiffer than stated",
@@ -55,7 +55,7 @@ def unit_words(unit: str) -> str:
 def plus_minus(value: float, std: float) -> str:
     """Value and standard deviation with the same decimals, two digits of the deviation."""
     scale = std if std > 0 else abs(value) / 100
-    places = 0 if scale <= 0 else min(8, max(0, 1 - floor(log10(scale))))
+    places = min(8, decimals_for(scale, 2))
     return f"{grouped(value, places)} ± {grouped(std, places)}"
 
 
@@ -91,19 +91,6 @@ def cause_title(cause: NamedCause) -> str:
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
     title = title_of(cause.id, cause.magnitude)
     return f"{title} ({', '.join(more)})" if more else title
-
-
-def capital(text: str) -> str:
-    """First letter large."""
-    return text[:1].upper() + text[1:]
-
-
-def figures_text(value: float, digits: int = 3) -> str:
-    """A number with so many significant digits."""
-    if value == 0:
-        return "0"
-    places = max(0, digits - 1 - floor(log10(abs(value))))
-    return grouped(value, places)
 
 
 def calibrated_words(gain: Gain) -> str:

@@ -9,9 +9,7 @@ import numpy as np
 
 from flexspline.fea.solid.whole import WholePart, whole_part
 from flexspline.fea.types import SolidField
-from flexspline.results.renders.scene import Shot, View, shoot
-from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
-from flexspline.results.renders.shown import (
+from flexspline.results.renders.picture_elements import (
     Seen,
     goes_beyond,
     magnification,
@@ -21,6 +19,8 @@ from flexspline.results.renders.shown import (
     stress_note,
     wires,
 )
+from flexspline.results.renders.scene import Shot, View, shoot
+from flexspline.results.renders.sheet import INSET, MAIN, Mark, Sheet, write_sheet
 from flexspline.results.renders.surface import crease_edges, lines, skin
 from flexspline.results.renders.turntable import Drawn, Said, turning
 from flexspline.results.style import ACCENT

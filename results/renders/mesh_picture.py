@@ -9,9 +9,15 @@ import numpy as np
 from flexspline.fea.solid.whole import WholePart, whole_part
 from flexspline.fea.types import TetMesh
 from flexspline.results.numbers import grouped
+from flexspline.results.renders.picture_elements import (
+    MATT,
+    below_view,
+    cut_view,
+    sector_words,
+    wires,
+)
 from flexspline.results.renders.scene import Layer, shoot
 from flexspline.results.renders.sheet import LARGE_INSET, MAIN, Sheet, write_sheet
-from flexspline.results.renders.shown import MATT, below_view, cut_view, sector_words, wires
 from flexspline.results.renders.surface import Skin, creases, element_edges, opening, skin, surface
 from flexspline.results.style import INK, PALETTE, STEEL
 

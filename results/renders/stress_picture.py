@@ -6,9 +6,7 @@ from pathlib import Path
 
 from flexspline.fea.solid.whole import WholePart, whole_part
 from flexspline.fea.types import SolidField
-from flexspline.results.renders.scene import shoot
-from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
-from flexspline.results.renders.shown import (
+from flexspline.results.renders.picture_elements import (
     Seen,
     below_view,
     cut_view,
@@ -18,6 +16,8 @@ from flexspline.results.renders.shown import (
     stress_layers,
     stress_note,
 )
+from flexspline.results.renders.scene import shoot
+from flexspline.results.renders.sheet import INSET, MAIN, Sheet, write_sheet
 from flexspline.results.renders.surface import opening, skin
 from flexspline.results.renders.turntable import Drawn, Said, turning
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.results.renders.shown import FLAT_LIT
+from flexspline.results.renders.picture_elements import FLAT_LIT
 from flexspline.results.style import COLOUR_MAP, INK
 
 

@@ -17,7 +17,7 @@ from flexspline.results.report.document import (
     Picture,
     Table,
 )
-from flexspline.results.report.shown import shown
+from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import Words, plain, symbol
 
 _DELTA: Node = ("symbol", "Δ_bl")

@@ -10,8 +10,7 @@ from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.stiffness_pair import StiffnessPair
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.data_used import rows_used
-from flexspline.results.diagnosis.words import figures_text
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import figures_text, grouped
 
 
 def measured(diagnosis: Diagnosis) -> list[list[str]]:

@@ -16,16 +16,14 @@ from flexspline.results.diagnosis.notes import notes
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.diagnosis.words import (
-    capital,
     cause_title,
-    figures_text,
     magnitude_words,
     odds_words,
     sure_words,
     title_of,
 )
 from flexspline.results.figures.diagnosis.draw import DiagnosisFigure
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import figures_text, grouped
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.compared import compared, measured
 from flexspline.results.report.document import (
@@ -45,6 +43,7 @@ from flexspline.results.report.document import (
 from flexspline.results.report.errors_held_out import errors_at_levels, errors_held_out
 from flexspline.results.report.issued import issued
 from flexspline.results.report.spans import Text, bold, code, note, plain, worded
+from flexspline.results.sentences import capital, sentence
 
 OPEN = ("ambiguous", "unknown", "insufficient")
 """Verdicts that leave something to do."""
@@ -151,7 +150,7 @@ def _after(diagnosis: Diagnosis) -> Iterable[Block]:
         yield Heading("What to measure next")
         yield Paragraph(
             bold(f"{capital(channel_words(after.vary))}. ")
-            + plain(f"{capital(why(after, diagnosis.kind))}.")
+            + plain(sentence(why(after, diagnosis.kind)))
         )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.mass import masses
-from flexspline.geometry.schema import UNITS
+from flexspline.geometry.schema import key_words
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.quantities import quantity
 from flexspline.results.report.document import Block, Facts, Heading, Paragraph
@@ -59,25 +59,17 @@ def _said(name: str, table: Mapping[str, Any]) -> Words:
     silent = name == "uncertainty"
     spans = (
         (plain(", ") if i else ())
-        + plain(f"{_name(key)} ")
+        + plain(f"{key_words(key)[0]} ")
         + bold(NOT_STATED if silent and not value else _value(key, value))
         for i, (key, value) in enumerate(table.items())
     )
     return tuple(chain.from_iterable(spans))
 
 
-def _suffix(key: str) -> str:
-    return next((suffix for suffix in UNITS if key.endswith(suffix)), "")
-
-
-def _name(key: str) -> str:
-    return key.removesuffix(_suffix(key)).replace("_", " ")
-
-
 def _value(key: str, value: Any) -> str:
     if not isinstance(value, int | float):
         return str(value)
-    unit = UNITS.get(_suffix(key), "")
+    _, unit = key_words(key)
     return f"{_number(value)}{NBSP}{unit}" if unit else _number(value)
 
 

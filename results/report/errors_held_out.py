@@ -6,8 +6,10 @@ from collections.abc import Iterable, Sequence
 
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import calibrated_words, capital, figures_text, noise_words
+from flexspline.results.diagnosis.words import calibrated_words, noise_words
+from flexspline.results.numbers import figures_text
 from flexspline.results.report.document import Block, Column, Heading, Paragraph, Table
+from flexspline.results.sentences import capital
 
 
 def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:

@@ -11,6 +11,7 @@ from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
 from flexspline.results.quantities import quantity
 from flexspline.results.report.content import ReportContent
+from flexspline.results.sentences import sentence
 
 ENTERS = {
     "uniform": "the ring turned rigidly",
@@ -41,7 +42,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
         ["Bearing play", _play(content)],
         [
             "Standard deviation",
-            f"{spread_sentence(b).capitalize()}. "
+            f"{sentence(spread_sentence(b))} "
             + (
                 "Only what the design file states under “uncertainty” enters, as independent and "
                 "normal; the error of the model itself does not."

@@ -11,7 +11,7 @@ from pathlib import Path
 from flexspline.geometry.errors import ComputationError, readable
 from flexspline.pipeline.temporary_files import scratch_folder
 from flexspline.results.report.document import Document
-from flexspline.results.report.letters import font_folder, notice, printable
+from flexspline.results.report.missing_letters import font_folder, notice, printable
 from flexspline.results.report.payload import payload_of
 
 TEMPLATE = "document.typ"

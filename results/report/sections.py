@@ -25,7 +25,7 @@ from flexspline.results.report.document import (
     Tiles,
 )
 from flexspline.results.report.issued import issued
-from flexspline.results.report.shown import shown
+from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
 from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.whole_gear import whole_gear

@@ -14,6 +14,7 @@ from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.quantity import Quantity
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.dimensions import ratio, weights
+from flexspline.results.sentences import capital
 
 Row = dict[str, str]
 UNCHECKED = "–"
@@ -76,7 +77,7 @@ def solves(content: ReportContent) -> list[Row]:
                 "energy": UNCHECKED
                 if check is None
                 else with_power(abs(check / last.K_Nm_per_rad - 1)),
-                "method": s.method[:1].upper() + s.method[1:].rstrip("."),
+                "method": capital(s.method.rstrip(".")),
             }
         )
     return rows

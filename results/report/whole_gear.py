@@ -23,8 +23,9 @@ from flexspline.results.report.document import (
     Picture,
     Table,
 )
-from flexspline.results.report.shown import shown
+from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import Words, bold, plain, symbol, worded
+from flexspline.results.sentences import sentence
 
 
 def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
@@ -123,10 +124,6 @@ def _assumed(curve: GearCurve) -> Iterable[Block]:
     each = "; ".join(f"{a.key} = {a.value:.4g} ({a.why})" for a in curve.assumed)
     yield Paragraph(bold("Assumed, as the design file does not state it: ") + plain(f"{each}."))
     if curve.warnings:
-        yield Callout("amber", items=_sentences(gear_warnings(curve)))
+        yield Callout("amber", items=tuple(map(sentence, gear_warnings(curve))))
     if curve.notes:
-        yield Callout("blue", items=_sentences(gear_notes(curve)))
-
-
-def _sentences(lines: Iterable[str]) -> tuple[str, ...]:
-    return tuple(f"{line[:1].upper()}{line[1:]}." for line in lines)
+        yield Callout("blue", items=tuple(map(sentence, gear_notes(curve))))

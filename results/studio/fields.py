@@ -14,7 +14,8 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.load import design_from
-from flexspline.geometry.schema import UNITS, Location, Node, dotted, node_at
+from flexspline.geometry.schema import Location, Node, dotted, key_words, node_at
+from flexspline.results.sentences import capital
 
 GROUPS: tuple[tuple[str, Location], ...] = (
     ("Flexspline", ("flexspline",)),
@@ -106,11 +107,12 @@ def _entry(
     location: Location, node: Node, value: Any, scale: float, usual: Mapping[str, float]
 ) -> Tables | None:
     """One key: a number with its slider, or a choice; None for tables and for what has no choice."""
+    words, unit = key_words(str(location[-1]))
     about = {
         "key": dotted(location),
         "at": list(location),
-        "label": _label(location),
-        "unit": _unit(location),
+        "label": capital(words),
+        "unit": unit,
         "hint": node.get("description", ""),
     }
     if "enum" in node:
@@ -160,19 +162,6 @@ def _tidy(value: float, step: float) -> float:
     """The multiple of the step nearest to a value, without binary dust; limits stay as they are."""
     near = float(f"{round(value / step) * step:.12g}")
     return near if near > 0 or value <= 0 else value
-
-
-def _label(location: Location) -> str:
-    """``inner_diameter_mm`` → Inner diameter."""
-    key = str(location[-1])
-    for suffix in UNITS:
-        key = key.removesuffix(suffix)
-    words = key.replace("_", " ").replace("youngs", "Young's").replace("poissons", "Poisson's")
-    return words[:1].upper() + words[1:]
-
-
-def _unit(location: Location) -> str:
-    return next((u for s, u in UNITS.items() if str(location[-1]).endswith(s)), "")
 
 
 def _is_number(value: Any) -> bool:

@@ -7,7 +7,9 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.diagnosis.words import capital, figures_text, title_of
+from flexspline.results.diagnosis.words import title_of
+from flexspline.results.numbers import figures_text
+from flexspline.results.sentences import capital
 from flexspline.results.studio.answer import message
 from flexspline.results.studio.jobs import Kind
 

@@ -12,7 +12,7 @@ from flexspline.geometry.errors import DesignError, why_of
 from flexspline.results.studio.fields import received
 from flexspline.results.studio.job_summary import job_summary
 from flexspline.results.studio.jobs import Done, Kind, StudioJob
-from flexspline.results.studio.notes import Start, Want, note_from
+from flexspline.results.studio.requests import Start, Want, request_from
 from flexspline.results.studio.tab import Tab, Workers
 
 
@@ -42,16 +42,16 @@ class Session:
     async def take(self, text: str) -> None:
         """A message of the tab; one that is not understood is answered, never fatal."""
         try:
-            note = note_from(text)
+            request = request_from(text)
         except ValueError:
             await self.refuse()
             return
-        if isinstance(note, Want):
-            await self.tab.want(note.number, note.tables, note.view)
-        elif isinstance(note, Start):
-            self._start(note.kind, note.tables)
-        elif note.kind in self._jobs:
-            self._jobs[note.kind].stop()
+        if isinstance(request, Want):
+            await self.tab.want(request.number, request.tables, request.view)
+        elif isinstance(request, Start):
+            self._start(request.kind, request.tables)
+        elif request.kind in self._jobs:
+            self._jobs[request.kind].stop()
 
     async def refuse(self) -> None:
         """Answer a message that is not understood."""

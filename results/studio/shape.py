@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
-from flexspline.results.renders.shown import magnification
+from flexspline.results.renders.picture_elements import magnification
 from flexspline.results.studio.simplify import simplified
 
 _PIECES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from flexspline.geometry.schema import key_words
 from flexspline.results.peaks import BORDER
 from flexspline.results.quantities import BY_KEY, bounds_kind
 from flexspline.results.quantity import Quantity
@@ -12,7 +13,8 @@ from flexspline.results.quantity import Quantity
 AT_BORDER, GUARANTEED = "_at_excluded_border", "_bounds_guaranteed"
 """Ends of the keys of a row's marks: numbers in the store, which holds nothing else."""
 _BOUND = {"[0]": "lower bound", "[1]": "upper bound"}
-_UNITS = {"mm": "mm", "um": "µm", "GPa": "GPa", "MPa": "MPa", "Nm": "N·m", "deg": "deg", "pct": "%"}
+_UNSAID = ("flexspline", "gear", "bearing", "load", "material.flexspline")
+"""Tables that a study's labels leave out."""
 
 
 class _Dimension(Quantity):
@@ -59,15 +61,12 @@ def published(figures: Mapping[str, float]) -> dict[str, Any]:
 
 def _design_key(key: str) -> Quantity:
     """``flexspline.wall_thickness_mm`` → "wall thickness" in mm."""
-    if key.endswith("youngs_modulus_GPa"):
-        part = " of the shaft" if ".shaft." in key else ""
-        return Quantity(key, key, "GPa", f"Young's modulus{part}")
-    head, _, last = key.rpartition(".")
-    words, _, suffix = last.rpartition("_")
-    unit = _UNITS.get(suffix, "")
-    name = (words if unit else last).replace("_", " ")
-    if head not in ("flexspline", "gear", "bearing", "load"):
-        name = f"{head.replace('.', ' ').replace('_', ' ')} {name}"
+    table, _, last = key.rpartition(".")
+    name, unit = key_words(last)
+    if table.startswith("material.") and table not in _UNSAID:
+        name += f" of the {key_words(table.removeprefix('material.'))[0]}"
+    elif table not in _UNSAID:
+        name, unit = key_words(key)
     return _Dimension(key, key, unit, name)
 
 

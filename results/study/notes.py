@@ -14,6 +14,7 @@ from flexspline.pipeline.study.holes import DRIFT, drifts, pierced
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.results.numbers import signed
 from flexspline.results.peaks import BORDER, MEANING
+from flexspline.results.sentences import sentence
 from flexspline.results.study.labels import at_border, entry
 from flexspline.results.study.record import LISTED_DESIGNS
 from flexspline.results.study.why import unfollowed
@@ -33,7 +34,7 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
     ]
     said += _borders(result)
     said += _whole_gear(result)
-    said += [f"{line[:1].upper()}{line[1:]}." for line in of_best]
+    said += map(sentence, of_best)
     if not result.verified:
         asked = result.study.file.run.verify
         why = (
@@ -100,7 +101,7 @@ def _whole_gear(result: StudyResult) -> Iterable[str]:
         "number of balls is computed as the next even one; run.verify does not solve it again."
         + (f" Not stated, so in proportion: {keys}." if keys else "")
     )
-    yield from (f"{line[:1].upper()}{line[1:]}." for line in preloaded(result))
+    yield from map(sentence, preloaded(result))
 
 
 def _mass(design: Design) -> str:

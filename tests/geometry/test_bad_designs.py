@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from changed_design import changed_text
+from changed_text import changed_text
 
 from flexspline.geometry.errors import DesignError, DesignFileError
 from flexspline.geometry.load import LARGEST_BYTES, load_design

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from changed_design import EXAMPLES, changed_design, shaft_of
+from example_files import EXAMPLES
 from scipy.integrate import dblquad
+from shaft_of import shaft_of
 
 from flexspline.geometry.cad import build_solid, write_step, write_stl
 from flexspline.geometry.load import load_design
@@ -90,9 +91,8 @@ def test_keyway_volume(length: float) -> None:
     start = 36.0 - length
     pieces = [max(start, z) for z in (start, 16.0, 16.5)] + [36.0]
     expected = sum(slot(a, b) for a, b in pairwise(pieces) if b > a)
-    key = {"shaft.keyway.length_mm": repr(length)}
     plain = shaft_of([(4.0, 20.0, 6.0), (12.0, 18.0, 6.0), (20.0, 16.0, 6.0)])
-    keyed = changed_design("keyed-shaft", key)
+    keyed = load_design(EXAMPLES / "keyed-shaft.toml").changed({"shaft.keyway.length_mm": length})
     cut = build_solid(plain.part("shaft")).Volume() - build_solid(keyed.part("shaft")).Volume()
     # 1e-5 of the slot: two volumes twenty times its size, each to KERNEL, are subtracted
     assert cut == pytest.approx(expected, rel=1e-5)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from holed_designs import holed_designs
 from matplotlib.path import Path as Outline
 
@@ -15,7 +14,6 @@ from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.outline import Segment
 from flexspline.geometry.part import Part
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 DESIGNS = 200
 POINTS = 2000
 """Drawn in the meridian's box; of the thinnest parts a few lie in the body."""

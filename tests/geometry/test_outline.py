@@ -7,7 +7,7 @@ from math import pi, radians, tan
 
 import numpy as np
 import pytest
-from changed_design import EXAMPLES
+from example_files import EXAMPLES
 
 from flexspline.fea.solid.swept_sizing import critical_points
 from flexspline.geometry.load import load_design

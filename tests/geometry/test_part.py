@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import pytest
-from changed_design import EXAMPLES, changed_design, shaft_of
+from example_files import EXAMPLES
+from shaft_of import shaft_of
 
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.load import load_design
 
 
 def test_a_flexsplines_is_its_wall() -> None:
-    design = changed_design("xb1-40", {"flexspline.wall_thickness_mm": "0.45"})
+    design = load_design(EXAMPLES / "xb1-40.toml").changed({"flexspline.wall_thickness_mm": 0.45})
     assert design.part("flexspline").exclusion_mm == 0.45
 
 
-@pytest.mark.parametrize("wall", ["0.25", "0.45", "0.55"])
-def test_a_shafts_does_not_move_with_the_flexsplines_wall(wall: str) -> None:
+@pytest.mark.parametrize("wall", [0.25, 0.45, 0.55])
+def test_a_shafts_does_not_move_with_the_flexsplines_wall(wall: float) -> None:
     plain = load_design(EXAMPLES / "xb1-40.toml")
-    changed = changed_design("xb1-40", {"flexspline.wall_thickness_mm": wall})
+    changed = plain.changed({"flexspline.wall_thickness_mm": wall})
     assert changed.part("shaft").exclusion_mm == plain.part("shaft").exclusion_mm
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import pytest
 from cad_volume import assert_volume
-from changed_design import changed_design, shaft_of
+from example_files import EXAMPLES
 from hypothesis import HealthCheck, assume, given, settings
 from random_parts import Segments, cups, hats, shafts
+from shaft_of import shaft_of
 
 from flexspline.geometry.cad import build_solid
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.load import load_design
 from flexspline.geometry.tagged import tagged_surface
 
 SHORT = settings(max_examples=10, deadline=None, derandomize=True)
@@ -21,9 +23,9 @@ AREA = 1e-6
 """Relative: the kernel integrates areas to about 1e-8; a lost face is a hundredth at least."""
 
 
-def flexspline_builds(example: str, changes: dict[str, str]) -> None:
+def flexspline_builds(example: str, changes: dict[str, float]) -> None:
     try:
-        design = changed_design(example, changes)
+        design = load_design(EXAMPLES / f"{example}.toml").changed(changes)
     except DesignError:
         assume(False)
     assert_volume(design, "flexspline")
@@ -51,13 +53,13 @@ def assert_patches(design: Design, part: str, patches: tuple[str, ...]) -> None:
 
 @given(cups())
 @SHORT
-def test_cups_build(changes: dict[str, str]) -> None:
+def test_cups_build(changes: dict[str, float]) -> None:
     flexspline_builds("xb1-40", changes)
 
 
 @given(hats())
 @SHORT
-def test_hats_build(changes: dict[str, str]) -> None:
+def test_hats_build(changes: dict[str, float]) -> None:
     flexspline_builds("hat-25", changes)
 
 
@@ -70,14 +72,14 @@ def test_shafts_build(case: tuple[Segments, str, float]) -> None:
 @pytest.mark.long
 @given(cups())
 @LONG
-def test_three_hundred_cups_build(changes: dict[str, str]) -> None:
+def test_three_hundred_cups_build(changes: dict[str, float]) -> None:
     flexspline_builds("xb1-40", changes)
 
 
 @pytest.mark.long
 @given(hats())
 @LONG
-def test_three_hundred_hats_build(changes: dict[str, str]) -> None:
+def test_three_hundred_hats_build(changes: dict[str, float]) -> None:
     flexspline_builds("hat-25", changes)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from changed_design import EXAMPLES, changed_design
+from example_files import EXAMPLES
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
@@ -12,27 +12,27 @@ from flexspline.geometry.sanity import ring_bending_stress_MPa, warnings
 CASES = {
     # ring 0.7: Rr = 19.9 against 0.2(100 − 1.25) = 19.75
     "flexspline.ring_thickness_mm": (
-        "0.7",
+        0.7,
         ("19.75", "19.9", "0.15 mm apart", "0.03 mm", "= 0.55 would fit"),
     ),
     # root 0.194(100 − 1.25) = 19.16 inside the tube of 38.4 mm
-    "gear.module_mm": ("0.194", ("19.16", "inside the tube", "19.2 mm", "gear.module_mm")),
-    "flexspline.wall_thickness_mm": ("0.15", ("0.15 / 38.4 = 0.00391", "0.005 to 0.025")),
-    "flexspline.length_mm": ("60.0", ("60 / 38.4 = 1.56", "0.2 to 1.4")),
-    "flexspline.outer_fillet_mm": ("2.6", ("outer_fillet_mm = 2.6", "half of 0.4 mm")),
-    "flexspline.boss_thickness_mm": ("25.0", ("boss_thickness_mm = 25", "z = 22 mm")),
-    "flexspline.bolt_circle_diameter_mm": ("14.0", ("= 14", "shaft", "= 13")),
-    "material.flexspline.fatigue_limit_MPa": ("90.0", ("98 MPa", "= 90")),
-    "gear.flank_clearance_um": ("0.003", ("flank_clearance_um = 0.003", "in mm?")),
-    "bearing.radial_clearance_um": ("0.012", ("radial_clearance_um = 0.012", "in mm?")),
-    "uncertainty.radial_clearance_um": ("7.0", ("12 ± 7", "24.12 µm")),
+    "gear.module_mm": (0.194, ("19.16", "inside the tube", "19.2 mm", "gear.module_mm")),
+    "flexspline.wall_thickness_mm": (0.15, ("0.15 / 38.4 = 0.00391", "0.005 to 0.025")),
+    "flexspline.length_mm": (60.0, ("60 / 38.4 = 1.56", "0.2 to 1.4")),
+    "flexspline.outer_fillet_mm": (2.6, ("outer_fillet_mm = 2.6", "half of 0.4 mm")),
+    "flexspline.boss_thickness_mm": (25.0, ("boss_thickness_mm = 25", "z = 22 mm")),
+    "flexspline.bolt_circle_diameter_mm": (14.0, ("= 14", "shaft", "= 13")),
+    "material.flexspline.fatigue_limit_MPa": (90.0, ("98 MPa", "= 90")),
+    "gear.flank_clearance_um": (0.003, ("flank_clearance_um = 0.003", "in mm?")),
+    "bearing.radial_clearance_um": (0.012, ("radial_clearance_um = 0.012", "in mm?")),
+    "uncertainty.radial_clearance_um": (7.0, ("12 ± 7", "24.12 µm")),
 }
 
 
 @pytest.mark.parametrize("key", CASES)
 def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
     value, says = CASES[key]
-    lines = warnings(changed_design("xb1-40", {key: value}))
+    lines = warnings(load_design(EXAMPLES / "xb1-40.toml").changed({key: value}))
     assert len(lines) == 1
     for words in says:
         assert words in lines[0]
@@ -57,14 +57,15 @@ def test_what_hardly_any_gear_has_is_warned_of(key: str, value: float, says: tup
 
 def test_no_ring_thinner_than_the_wall_is_advised() -> None:
     """Wall 0.6 and a ring of 0.7 mm: one of 0.55, the root less the inner radius, would be no ring."""
-    thick = {"flexspline.wall_thickness_mm": "0.6", "flexspline.ring_thickness_mm": "0.7"}
-    (line,) = (w for w in warnings(changed_design("xb1-40", thick)) if "tooth-root" in w)
+    thick = {"flexspline.wall_thickness_mm": 0.6, "flexspline.ring_thickness_mm": 0.7}
+    design = load_design(EXAMPLES / "xb1-40.toml").changed(thick)
+    (line,) = (w for w in warnings(design) if "tooth-root" in w)
     assert "would fit" not in line
 
 
 @pytest.mark.parametrize("example", ["xb1-40", "hat-25", "keyed-shaft"])
 def test_examples_have_no_warning(example: str) -> None:
-    assert warnings(changed_design(example, {})) == ()
+    assert warnings(load_design(EXAMPLES / f"{example}.toml")) == ()
 
 
 def test_ring_bending_stress_by_hand() -> None:
@@ -73,11 +74,12 @@ def test_ring_bending_stress_by_hand() -> None:
     assert stress == pytest.approx(98.48, abs=0.01)  # to the digits worked out
 
 
-@pytest.mark.parametrize("module", ["2.0", "0.02"])
-def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module: str) -> None:
+@pytest.mark.parametrize("module", [2.0, 0.02])
+def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module: float) -> None:
     """0.2 mm belongs to 200 teeth on a ring of 39.5 mm: 19.75 = 0.2(100 − 1.25)."""
-    changed = {"gear.module_mm": module, "bearing.radial_clearance_um": "1.0"}
-    (line,) = (t for t in warnings(changed_design("xb1-40", changed)) if "tooth-root" in t)
+    slip = {"gear.module_mm": module, "bearing.radial_clearance_um": 1.0}
+    design = load_design(EXAMPLES / "xb1-40.toml").changed(slip)
+    (line,) = (t for t in warnings(design) if "tooth-root" in t)
     assert "gear.module_mm" in line
     assert "it is 0.2" in line
     assert "would fit" not in line
@@ -85,8 +87,9 @@ def test_a_module_ten_times_off_is_said_and_no_ring_of_178_mm_is_proposed(module
 
 def test_a_diameter_in_metres_is_said() -> None:
     """A hat's holes lie outside its tube, so that nothing else refuses it."""
-    inner_mm = load_design(EXAMPLES / "hat-25.toml").flexspline.inner_diameter_mm
-    design = changed_design("hat-25", {"flexspline.inner_diameter_mm": f"{inner_mm / 1000:g}"})
+    hat = load_design(EXAMPLES / "hat-25.toml")
+    inner_mm = hat.flexspline.inner_diameter_mm
+    design = hat.changed({"flexspline.inner_diameter_mm": inner_mm / 1000})
     (line,) = (t for t in warnings(design) if "tooth-root" in t)
     assert f"flexspline.inner_diameter_mm = {inner_mm / 1000:g} looks like metres" in line
     assert f"fit one of {inner_mm:g} mm" in line
@@ -94,5 +97,6 @@ def test_a_diameter_in_metres_is_said() -> None:
 
 
 def test_a_play_refused_for_a_slipped_module_names_the_module() -> None:
+    cup = load_design(EXAMPLES / "xb1-40.toml")
     with pytest.raises(DesignError, match=r"radial_clearance_um.*gear\.module_mm = 0\.02 does not"):
-        changed_design("xb1-40", {"gear.module_mm": "0.02"})
+        cup.changed({"gear.module_mm": 0.02})

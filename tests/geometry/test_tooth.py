@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from math import cos, pi, radians, sin, tan
 
 import numpy as np
 import pytest
-from toothed import CUP, toothed
+from example_files import EXAMPLES
+from toothed import toothed
 
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.load import design_from
+from flexspline.geometry.load import load_design
 from flexspline.geometry.tooth import half_thickness, tip_radius, tooth_cell
 
 PITCH, ALPHA, HALF_PITCH = 20.0, radians(20), pi / 200
@@ -38,10 +38,12 @@ def test_normals_of_the_involute_touch_the_base_circle() -> None:
 def test_involute_is_radial_below_its_base_circle() -> None:
     few = toothed(
         "involute",
-        gear__module_mm=2.0,
-        gear__teeth_flexspline=20,
-        gear__teeth_circular_spline=22,
-        flexspline__inner_diameter_mm=34.0,
+        {
+            "gear.module_mm": 2.0,
+            "gear.teeth_flexspline": 20,
+            "gear.teeth_circular_spline": 22,
+            "flexspline.inner_diameter_mm": 34.0,
+        },
     )
     psi = half_thickness(few)
     assert psi(17.5) == psi(18.5) == psi(20 * cos(ALPHA))
@@ -92,17 +94,17 @@ def test_area_of_the_cell(flank: str) -> None:
     ("changes", "key", "limit"),
     [
         # root circle at 20.2, pitch circle at 20: at most 0.8 less 2 % of a module
-        ({"flexspline__ring_thickness_mm": 1.0}, "flexspline.ring_thickness_mm", "0.795999"),
+        ({"flexspline.ring_thickness_mm": 1.0}, "flexspline.ring_thickness_mm", "0.795999"),
         # pitch circle at 10, inside the tube of outer radius 19.6: 19.6 / (100 - 0.02)
-        ({"gear__module_mm": 0.1, "bearing__radial_clearance_um": 5.0},
+        ({"gear.module_mm": 0.1, "bearing.radial_clearance_um": 5.0},
          "gear.module_mm", "0.196"),
         # 40°: 1.25 tan 40° = 1.05 modules are more than a quarter pitch, 0.785
-        ({"gear__pressure_angle_deg": 40.0}, "flexspline.ring_thickness_mm", "0.619"),
+        ({"gear.pressure_angle_deg": 40.0}, "flexspline.ring_thickness_mm", "0.619"),
     ],
 )  # fmt: skip
 def test_teeth_that_cannot_be_drawn_are_refused(changes: dict, key: str, limit: str) -> None:
     with pytest.raises(DesignError) as refused:
-        toothed("trapezoid", **changes)
+        toothed("trapezoid", changes)
     assert refused.value.key == key
     assert limit in str(refused.value)
     assert "drawn" in str(refused.value)
@@ -110,9 +112,9 @@ def test_teeth_that_cannot_be_drawn_are_refused(changes: dict, key: str, limit: 
 
 def test_pointed_teeth_are_refused() -> None:
     """Half a tooth is π/4 modules thick at the pitch: straight flanks meet where tan α ≈ π/4."""
-    changes = {"gear__pressure_angle_deg": 40.0, "flexspline__ring_thickness_mm": 0.7}
+    changes = {"gear.pressure_angle_deg": 40.0, "flexspline.ring_thickness_mm": 0.7}
     with pytest.raises(DesignError) as refused:
-        toothed("trapezoid", **changes)
+        toothed("trapezoid", changes)
     assert refused.value.key == "gear.pressure_angle_deg"
     limit = float(str(refused.value).partition("from 5 to ")[2].split()[0])
     # 0.02 modules of land, and the gap's circle is curved by 0.45° over half a pitch
@@ -120,7 +122,5 @@ def test_pointed_teeth_are_refused() -> None:
 
 
 def test_bad_teeth_do_not_matter_where_none_are_drawn() -> None:
-    thick = CUP.read_text(encoding="utf-8").replace(
-        "ring_thickness_mm = 0.55", "ring_thickness_mm = 1.0"
-    )
-    assert design_from(tomllib.loads(thick)).flexspline.ring_thickness_mm == 1.0
+    thick = load_design(EXAMPLES / "xb1-40.toml").changed({"flexspline.ring_thickness_mm": 1.0})
+    assert thick.flexspline.ring_thickness_mm == 1.0

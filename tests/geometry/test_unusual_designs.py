@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 from cad_volume import assert_volume
-from changed_design import changed_design, changed_text, shaft_of
+from changed_text import changed_text
+from example_files import EXAMPLES
+from shaft_of import shaft_of
 
 from flexspline.geometry.cad import build_solid
 from flexspline.geometry.design import Design
@@ -48,9 +50,11 @@ FLEXSPLINES = {
 
 
 @pytest.mark.parametrize(("example", "changes"), FLEXSPLINES.values(), ids=FLEXSPLINES)
-def test_unusual_flexspline(example: str, changes: dict[str, str | None]) -> None:
-    design = changed_design(example, {f"flexspline.{k}": v for k, v in changes.items()})
-    assert_volume(design, "flexspline")
+def test_unusual_flexspline(example: str, changes: dict[str, str | None], tmp_path: Path) -> None:
+    path = tmp_path / "unusual.toml"
+    text = changed_text(example, {f"flexspline.{k}": v for k, v in changes.items()})
+    path.write_text(text, encoding="utf-8")
+    assert_volume(load_design(path), "flexspline")
 
 
 STEPS = [(4.0, 20.0, 6.0), (5.0, 17.0, 4.0), (6.0, 21.0, 15.0), (7.0, 18.0, 0.0)]
@@ -84,19 +88,21 @@ def test_keyway_into_the_flange_builds_one_solid() -> None:
 
 def test_small_displacement_model_has_no_play_limit() -> None:
     play = {
-        "bearing.radial_clearance_um": "80.0",
-        "bearing.bearing_play_model": '"small_displacement"',
+        "bearing.radial_clearance_um": 80.0,
+        "bearing.bearing_play_model": "small_displacement",
     }
-    assert changed_design("xb1-40", play).bearing.radial_clearance_um == 80.0
+    design = load_design(EXAMPLES / "xb1-40.toml").changed(play)
+    assert design.bearing.radial_clearance_um == 80.0
 
 
 def test_play_at_its_limit_is_accepted() -> None:
-    limit = changed_design("xb1-40", {}).gear.bearing_play_limit_um
-    play = {"bearing.radial_clearance_um": repr(limit)}
-    assert changed_design("xb1-40", play).bearing.radial_clearance_um == limit
+    cup = load_design(EXAMPLES / "xb1-40.toml")
+    limit = cup.gear.bearing_play_limit_um
+    design = cup.changed({"bearing.radial_clearance_um": limit})
+    assert design.bearing.radial_clearance_um == limit
 
 
 def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
     path = tmp_path / "windows.toml"
     path.write_text("\ufeff" + changed_text("xb1-40", {}).replace("\n", "\r\n"), encoding="utf-8")
-    assert load_design(path) == changed_design("xb1-40", {})
+    assert load_design(path) == load_design(EXAMPLES / "xb1-40.toml")

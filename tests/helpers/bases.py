@@ -8,12 +8,12 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
+from example_files import EXAMPLES
 from in_process import flexspline
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.study.cluster import WorkerPool
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 CUP = EXAMPLES / "xb1-40.toml"
 GIVEN = ("--Kb", 31329, "--Ke", 43339)
 ROWS = {"xb1-40-sweep": 130, "size-40-end-points": 8, "xb1-40-specimens": 6}

@@ -8,9 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from catalogue.compare import CatalogueFinding, compare
+from example_files import EXAMPLES
 
 ROOT = Path(__file__).parents[2]
-DATA = ROOT / "examples" / "catalogue"
+DATA = EXAMPLES / "catalogue"
 PAGE = ROOT / "docs" / "catalogue.md"
 
 

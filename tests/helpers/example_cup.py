@@ -1,13 +1,13 @@
 """The example design XB1-40 without its bolt holes: a body of revolution."""
 
-from pathlib import Path
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.geometry.shapes import Cup
 
 
 def _revolved() -> Cup:
-    cup = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").flexspline
+    cup = load_design(EXAMPLES / "xb1-40.toml").flexspline
     assert isinstance(cup, Cup)
     return cup.model_copy(update={"bolt_count": 0})
 

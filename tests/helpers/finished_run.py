@@ -9,9 +9,9 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from example_files import EXAMPLES
 from shell import run
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 PATIENCE_S = 1800
 """Longer than any run takes on a loaded machine."""
 

@@ -3,14 +3,13 @@ solid with its estimated error, and on its meridian between bounds that are theo
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.solid.defaults import first_spec, surface_to_mesh
@@ -19,10 +18,9 @@ from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design
-from flexspline.geometry.load import design_from
+from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
 TOLERANCE = 0.005
 """Asked of the solid model: the default of solver.tolerance_pct."""
@@ -84,11 +82,10 @@ SOLUTIONS = [
 
 
 def hole_free(file: str, part: str, changes: dict[str, Any]) -> Design:
-    data = tomllib.loads((EXAMPLES / file).read_text(encoding="utf-8"))
-    data["flexspline"]["bolt_count"] = data["shaft"]["bolt_count"] = 0
-    data["shaft"].pop("keyway", None)
-    data[part] |= changes
-    return design_from(data)
+    """With other values at some keys of a part."""
+    plain = {"flexspline.bolt_count": 0, "shaft.bolt_count": 0, "shaft.keyway": None}
+    own = {f"{part}.{key}": value for key, value in changes.items()}
+    return load_design(EXAMPLES / file).changed({**plain, **own})
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def thicker(draw: st.DrawFn, tube: Tube) -> float:
 
 
 @st.composite
-def cups(draw: st.DrawFn) -> dict[str, str]:
+def cups(draw: st.DrawFn) -> dict[str, float]:
     """Cups over the whole range of proportions, fillets and holes up to what fits and beyond."""
     t = tube(draw, "cup")
     boss = t.radius * draw(st.floats(0.2, 0.95))
@@ -88,11 +88,11 @@ def cups(draw: st.DrawFn) -> dict[str, str]:
         "bolt_circle_diameter_mm": boss + bore + draw(st.floats(-0.5, 0.5)) * (boss - bore - hole),
         "bolt_hole_diameter_mm": hole,
     }
-    return {f"flexspline.{k}": repr(v) for k, v in values.items()}
+    return {f"flexspline.{k}": v for k, v in values.items()}
 
 
 @st.composite
-def hats(draw: st.DrawFn) -> dict[str, str]:
+def hats(draw: st.DrawFn) -> dict[str, float]:
     """Hats over the whole range of proportions, fillets and holes up to what fits and beyond."""
     t = tube(draw, "hat")
     wall = t.radius + t.wall
@@ -112,7 +112,7 @@ def hats(draw: st.DrawFn) -> dict[str, str]:
         + draw(st.floats(-0.5, 0.5)) * (outer - inner - hole),
         "bolt_hole_diameter_mm": hole,
     }
-    return {f"flexspline.{k}": repr(v) for k, v in values.items()}
+    return {f"flexspline.{k}": v for k, v in values.items()}
 
 
 @st.composite

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
@@ -20,7 +21,6 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from, read_toml
 from flexspline.pipeline.diagnosis.measurement.record import Specimens
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SPECIMENS = 8
 NOISE = 0.01
 FE_TOLERANCE = 3e-3

@@ -9,9 +9,9 @@ import tomllib
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
+from example_files import EXAMPLES
 from sqlalchemy import Engine, event
 
 from flexspline.pipeline.study.cluster import WorkerPool
@@ -20,7 +20,6 @@ from flexspline.pipeline.study.figures import USUAL_FIGURES
 from flexspline.pipeline.study.load import study_from
 from flexspline.pipeline.study.study import Study
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
 
 GRID = f"""

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.load import design_from
-
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+from flexspline.geometry.load import load_design
 
 
-def toothed(flank: str, **changes: float) -> Design:
-    """Loaded and checked; ``gear__module_mm=2.0`` sets a key of the design file."""
-    data = tomllib.loads(CUP.read_text(encoding="utf-8"))
-    data["flexspline"] |= {"teeth": "drawn", "tooth_flank": flank}
-    for dotted, value in changes.items():
-        table, key = dotted.split("__")
-        data[table][key] = value
-    return design_from(data)
+def toothed(flank: str, changes: Mapping[str, object] = MappingProxyType({})) -> Design:
+    """With other values at some dotted keys."""
+    drawn = {"flexspline.teeth": "drawn", "flexspline.tooth_flank": flank}
+    return load_design(EXAMPLES / "xb1-40.toml").changed({**drawn, **changes})

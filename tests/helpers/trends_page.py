@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from example_files import EXAMPLES
 
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
@@ -154,7 +155,7 @@ def alone():
 
 def sweep(name: str) -> Sweep:
     """The row's study, carried out here."""
-    study = load_study(ROOT / "examples" / "studies" / f"trends-{name}.toml")
+    study = load_study(EXAMPLES / "studies" / f"trends-{name}.toml")
     with tempfile.TemporaryDirectory() as folder:
         rows = run_study(
             study, trial_store_of(study, Path(folder)), alone, lambda p: None, torsion

@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parents[2]
@@ -44,7 +45,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a measured file; designs come from the program itself."""
     folder = tmp_path_factory.mktemp("elsewhere")
-    shutil.copy(ROOT / "examples" / "measured" / "xb1-40-sweep.csv", folder)
+    shutil.copy(EXAMPLES / "measured" / "xb1-40-sweep.csv", folder)
     (folder / "study.toml").write_text(STUDY, encoding="utf-8")
     return folder
 

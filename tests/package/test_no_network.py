@@ -15,10 +15,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 ROOT = Path(__file__).parents[2]
-DESIGN = str(ROOT / "examples" / "xb1-40.toml")
-SWEEP = str(ROOT / "examples" / "measured" / "xb1-40-sweep.csv")
+DESIGN = str(EXAMPLES / "xb1-40.toml")
+SWEEP = str(EXAMPLES / "measured" / "xb1-40-sweep.csv")
 K = ("--Kb", "31377", "--Ke", "43275")
 
 GUARD = """

@@ -6,10 +6,10 @@ import doctest
 import tomllib
 from dataclasses import FrozenInstanceError
 from math import hypot, radians, sin
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline import backlash as sums
@@ -30,7 +30,7 @@ from flexspline.pipeline.bearing_play import (
 )
 from flexspline.pipeline.play_spread import play_spread
 
-EXAMPLE = Path(__file__).parents[2] / "examples/xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 K_B, K_E = 4.0e4, 3.0e4
 A, ALPHA = 0.2, radians(20)
 C_MAX_UM = play_limit(A, ALPHA) * 1e3

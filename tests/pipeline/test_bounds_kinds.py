@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from toothed import toothed
 
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
@@ -19,7 +20,6 @@ from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.records import stiffness_record
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 LOOSE_PCT = 5.0
 """Kinds are asked, not figures: the coarsest meshes do."""
 
@@ -76,7 +76,7 @@ def test_nothing_of_the_solid_model_alone_is_guaranteed(asked: Design, tmp_path:
 def test_drawn_teeth_with_bolt_holes_are_an_estimate_too(tmp_path: Path, monkeypatch) -> None:
     ring = EquivalentRing(0.55, 0.6, 0.58, 0.57, 1e-5, 100)
     monkeypatch.setattr(parts, "ring_of", lambda *given: ring)
-    asked = toothed("trapezoid", shaft__bolt_count=0)
+    asked = toothed("trapezoid", {"shaft.bolt_count": 0})
     assert asked.flexspline.bolt_count
     assert kinds(asked, tmp_path, rim=False, shaft=False) == {"K_b": "estimated"}
 
@@ -91,5 +91,5 @@ def test_drawn_teeth_make_k_b_an_estimate(tmp_path: Path, monkeypatch) -> None:
     """The bounds are of the part with a plain ring; that it is as stiff as the teeth is no theorem."""
     ring = EquivalentRing(0.55, 0.6, 0.58, 0.57, 1e-5, 100)
     monkeypatch.setattr(parts, "ring_of", lambda *given: ring)
-    asked = toothed("trapezoid", flexspline__bolt_count=0, shaft__bolt_count=0)
+    asked = toothed("trapezoid", {"flexspline.bolt_count": 0, "shaft.bolt_count": 0})
     assert kinds(asked, tmp_path, rim=False) == {"K_b": "estimated", "K_e": "guaranteed"}

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from finished_run import FinishedRun
 
 from flexspline.fea.types import SolidField
@@ -20,7 +21,7 @@ from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.wave_generator import solid_ellipse
 
-CUP = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
+CUP = load_design(EXAMPLES / "xb1-40.toml")
 SOLID_MPa = -1.0
 """What the solid model stands in with: no true peak."""
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Stiffness
@@ -22,7 +23,6 @@ from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.rim_case import RIM_CASES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 CUP = load_design(EXAMPLES / "xb1-40.toml")
 FINE = CUP.changed({"solver.tolerance_pct": 0.2})
 """One mesh of the solid model leaves ± 0.26 %; the enclosure is narrower."""

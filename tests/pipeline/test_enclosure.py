@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from holed_designs import holed_designs
 
 from flexspline.fea.types import Stiffness
@@ -17,7 +17,6 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline.enclosure import NestingError, between, enclosed
 from flexspline.pipeline.revolved import contact, lobes, torsion
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FINE = 2e-4
 """At which 0.12 % between the two bodies of xb1-40 are more than their bounds."""
 CHEAP = 0.02

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.solid import stiffness
 from flexspline.fea.solid.defaults import first_spec
@@ -26,9 +27,7 @@ from flexspline.pipeline.part_meshes import MeshedPart, PartMeshes
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
-DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").changed(
-    {"solver.tolerance_pct": 5.0}
-)
+DESIGN = load_design(EXAMPLES / "xb1-40.toml").changed({"solver.tolerance_pct": 5.0})
 STATED = DESIGN.changed({"solver.edge_length_mm": 4.0})
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.types import StressPeak
 from flexspline.geometry.design import Design
@@ -13,7 +13,6 @@ from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.linear_limit import ReachedStress, ToothTwist, linear_limit
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SOFT, STIFF = 1.0, 1e9
 """N·m/rad: so soft that the twist decides, so stiff that it never does."""
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.solid.errors import NoBetterMeshError
 from flexspline.fea.solid.lobes import promised
@@ -20,7 +21,7 @@ from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_torsion import copies_in_rim
 
-WIDE = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml").changed(
+WIDE = load_design(EXAMPLES / "xb1-40.toml").changed(
     {
         "flexspline.bolt_hole_diameter_mm": 4.4,
         "flexspline.diaphragm_thickness_mm": 1.5,

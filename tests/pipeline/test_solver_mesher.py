@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
@@ -15,7 +16,6 @@ from flexspline.pipeline.part_stiffness import part_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 PLAIN = {"flexspline.bolt_count": 0, "solver.model": "solid", "solver.tolerance_pct": 2.0}
 
 

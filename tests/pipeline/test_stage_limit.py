@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from example_cup import CUP
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric import lobes
 from flexspline.fea.deadline import Deadline
@@ -19,7 +20,7 @@ from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.stiffnesses import Stiffnesses
 from flexspline.results.warned import shortfalls
 
-DESIGN = load_design(Path(__file__).parents[2] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 DESIGN = DESIGN.model_copy(update={"flexspline": CUP})
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -18,7 +19,7 @@ from flexspline.pipeline.diagnosis.structure import Slip
 from flexspline.pipeline.diagnosis.sweep.slip import slip_of
 
 HERE = Path(__file__).parent
-CUP = HERE.parents[1] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 N_PER_KIP, MM_PER_IN, ARM_MM = 4448.2216, 25.4, 100.0
 """A damper that is pushed turns an arm of 100 mm: N and mm become N·m and rad."""
 ARCSEC_PER_MM = math.degrees(1 / ARM_MM) * 3600

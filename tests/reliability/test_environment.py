@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 from cad_kernel import why_no_cad
+from example_files import EXAMPLES
 from shell import run
 
 from flexspline.geometry.signals import held_signals
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 INTERRUPTED_WHILE_LOADING = """
 import os, signal, threading
 from flexspline.geometry.kernel import load_kernel

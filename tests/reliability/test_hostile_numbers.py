@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bases import CUP, EXAMPLES, GIVEN, STUDY, head
+from bases import CUP, GIVEN, STUDY, head
+from example_files import EXAMPLES
 from in_process import flexspline
 
 from flexspline.geometry.design import Design

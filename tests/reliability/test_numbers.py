@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bases
 import pytest
+from example_files import EXAMPLES
 from shell import run
 
 from flexspline.fea.solid.stiffness import near_step
@@ -15,7 +16,7 @@ from flexspline.fea.solid.stiffness import near_step
 SAME = 1e-9
 """Relative, on the same mesh: threads add in another order, and the conditioning (1e6) magnifies 1e-16."""
 KEPT_STAGE = "mesh"
-KEYED = bases.EXAMPLES / "keyed-shaft.toml"
+KEYED = EXAMPLES / "keyed-shaft.toml"
 K = ("K_b", "K_e")
 
 

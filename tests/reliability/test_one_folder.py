@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
@@ -16,7 +17,7 @@ from flexspline.results.folder_lock import held_until_the_end
 from flexspline.results.output_folder import folder_of
 
 pytest.importorskip("fcntl", reason="the system has no flock: nothing is locked")
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 HOLDER = """
 import sys
 from pathlib import Path

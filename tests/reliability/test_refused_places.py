@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from typer.testing import CliRunner
 
 from flexspline.results.atomic import write_together
@@ -14,7 +15,7 @@ from flexspline.results.cli import app
 from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.file_names import ONE_RECORD, RUN, of_diagnosis
 
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 
 
 def test_a_name_that_is_too_long_is_a_wrong_word(tmp_path: Path) -> None:

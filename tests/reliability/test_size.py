@@ -10,6 +10,7 @@ from pathlib import Path
 
 import bases
 import pytest
+from example_files import EXAMPLES
 from shell import command, environment
 
 from flexspline.fea.solid.errors import MemoryShortError
@@ -20,7 +21,7 @@ PROMISED = 8 * GB
 """docs/benchmarks.md: near n log n to a million unknowns within 8 GB."""
 FAR_MM = 0.3
 """The 30° wedge of the six-hole cup then has 1.04 million unknowns."""
-KEYED = bases.EXAMPLES / "keyed-shaft.toml"
+KEYED = EXAMPLES / "keyed-shaft.toml"
 SOLVE = """
 import json, resource, sys, time
 from dataclasses import replace

@@ -19,8 +19,8 @@ from shell import command, environment
 
 from flexspline.geometry.load import design_from, load_design
 from flexspline.geometry.template import template
-from flexspline.results.letters import STAND_INS
-from flexspline.results.letters import plain as plain_letters
+from flexspline.results.plain_letters import STAND_INS
+from flexspline.results.plain_letters import plain as plain_letters
 
 ONE_AFTER_ANOTHER = """
 import json, os, sys

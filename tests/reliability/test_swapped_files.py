@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY, CUP = EXAMPLES / "studies" / "grid.toml", EXAMPLES / "xb1-40.toml"
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import in_process
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
@@ -23,8 +24,7 @@ from flexspline.pipeline.temporary_files import MARK
 from flexspline.results.file_names import of_export
 
 LIMIT, TOLERANCE = "material.flexspline.fatigue_limit_MPa", "solver.tolerance_pct"
-ROOT = Path(__file__).parents[2]
-CUP = ROOT / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 
 
 def copy_of(source: Path, folder: Path, *changes: tuple[str, str]) -> Path:

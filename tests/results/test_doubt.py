@@ -46,6 +46,7 @@ def test_a_report_without_uncertainty_says_so(tmp_path):
 def test_a_report_says_which_part_is_stated(tmp_path):
     for text in printed(PART, tmp_path):
         assert letters("with Young's modulus and bearing clearance not stated") in text
+        assert letters("young's") not in text
         assert letters("± 11.0 (1σ)") in text
         assert not ZERO.search(text)
 
@@ -124,6 +125,6 @@ def test_a_study_of_a_deviation_that_nothing_states_is_refused(tmp_path):
 def test_the_design_in_figures_says_what_is_not_stated(tmp_path):
     for text in printed(PART, tmp_path):
         for words in (
-            "youngs modulus not stated", "flank clearance 1 µm", "radial clearance not stated",
+            "Young's modulus not stated", "flank clearance 1 µm", "radial clearance not stated",
         ):  # fmt: skip
             assert letters(words) in text

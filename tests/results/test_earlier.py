@@ -3,9 +3,10 @@
 import json
 from pathlib import Path
 
+from example_files import EXAMPLES
 from in_process import Ended, flexspline
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 FULLER = {"design": "XB1-40 cup", "K_b_lobes_Nm_per_rad": 1.0, "gear": {}, "stage_s": {}, "x": 0}
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import in_process
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 import flexspline
 from flexspline.geometry.design import Design
@@ -26,7 +27,6 @@ from flexspline.results.console import table
 from flexspline.results.gear import gear_record, write_gear
 from flexspline.results.gear_words import gear_notes, gear_warnings
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 STEEL = {"name": "a steel", "youngs_modulus_GPa": 206.0, "poissons_ratio": 0.3}
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed(
     # a shaft without holes is solved on its meridian: this is no test of tetrahedra

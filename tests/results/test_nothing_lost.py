@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
 
@@ -24,7 +25,7 @@ from flexspline.results.report.sections import run_document
 from flexspline.results.report.write import write_report
 from flexspline.results.warned import all_warnings
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
+EXAMPLE = EXAMPLES / "keyed-shaft.toml"
 WHY = "the contact on the seat did not settle in 60 rounds"
 BOTH = ("K_b_Nm_per_rad", "K_e_Nm_per_rad")
 LOBES = ("K_b_lobes_Nm_per_rad", "K_b_lobes_contact_Nm_per_rad", "K_b_lobes_unsupported_Nm_per_rad")

@@ -17,7 +17,7 @@ from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, limits_passe
 from flexspline.results.console import table
 from flexspline.results.peaks import BORDER
 from flexspline.results.records import peak_record, stiffness_record
-from flexspline.results.renders.shown import stress_note
+from flexspline.results.renders.picture_elements import stress_note
 from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.tables import answers

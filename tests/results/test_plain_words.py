@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from hand_made_gear import content
 from page_text import strings
 from pypdf import PdfReader
@@ -12,7 +13,6 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.results.cli import app
 from flexspline.results.report.write import payload
 
-ROOT = Path(__file__).parents[2]
 RING = EquivalentRing(0.55, 0.71, 0.66, 0.69, 0.01, 1000)
 
 
@@ -36,8 +36,8 @@ def test_a_run(old, plain):
 
 
 def test_a_diagnosis(tmp_path):
-    record = ROOT / "examples" / "measured" / "xb1-40-sweep.csv"
-    words = ["diagnose", ROOT / "examples" / "xb1-40.toml", record, "--Kb", 31329, "--Ke", 43339]
+    record = EXAMPLES / "measured" / "xb1-40-sweep.csv"
+    words = ["diagnose", EXAMPLES / "xb1-40.toml", record, "--Kb", 31329, "--Ke", 43339]
     result = CliRunner().invoke(app, [str(w) for w in (*words, "--out", tmp_path)])
     assert result.exit_code == 0, result.stderr
     pages = " ".join(p.extract_text() for p in PdfReader(tmp_path / "diagnosis.pdf").pages)

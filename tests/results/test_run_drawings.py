@@ -7,6 +7,7 @@ from pathlib import Path
 
 import failing_drawings
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.cache import Cache
@@ -16,7 +17,7 @@ from flexspline.results.drawings import Drawing
 from flexspline.results.pictures import RunDrawings
 from flexspline.results.renders.process import DrawingProcess, NotDrawnError
 
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 
 
 @pytest.fixture(autouse=True)

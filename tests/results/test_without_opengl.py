@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from finished_run import FinishedRun
 from opengl import machine_without
 from page_text import letters, pdf_letters, read_page
@@ -14,7 +15,7 @@ from typer.testing import CliRunner
 
 from flexspline.results.cli import app
 
-CUP = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 RENDERED = {"flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator"}
 CHARTS = {"backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads"}
 SAID = "apt-get install libegl1 libgl1"

@@ -9,10 +9,10 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress
@@ -28,7 +28,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.geometry.tagged import tagged_surface
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 WALL, W0 = 0.9, 0.2
 
 pytestmark = pytest.mark.long

@@ -6,10 +6,10 @@ Published value: the shell model on its cup, 26.6 kN·m/rad for torque at the tw
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from scipy.linalg import cho_factor
 
 from flexspline.fea.axisymmetric.bisection import refined
@@ -29,7 +29,7 @@ from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.load import design_from
 from flexspline.geometry.outline import Meridian
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "keyed-shaft.toml"
+EXAMPLE = EXAMPLES / "keyed-shaft.toml"
 
 
 def outline(**changes: float) -> Meridian:

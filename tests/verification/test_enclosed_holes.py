@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import tomllib
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
@@ -35,7 +35,6 @@ from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline import revolved
 from flexspline.pipeline.enclosure import enclosed
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FINE = 2e-4
 """Of the meridian's bounds: a tenth of what the holes do to xb1-40."""
 SPLIT = 2e-3

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.geometry.keys import without_holes
@@ -18,7 +19,6 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_lobes import MOST_ELEMENTS, solid_lobes
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 TOLERANCE = 0.005
 """The design files' default, and what the solid model is asked for."""
 HOLES = 0.003

@@ -9,7 +9,8 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from hole_free import EXAMPLES, SOLUTIONS, mesher, solved
+from example_files import EXAMPLES
+from hole_free import SOLUTIONS, mesher, solved
 
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.load_cases import torsion

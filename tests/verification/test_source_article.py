@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import csv
 from math import acos, cos, degrees, pi, radians, sin, tan
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, gap_angle, windup
 from flexspline.pipeline.bearing_play import (
@@ -28,7 +28,7 @@ C_MAX = 2 * A * (1 - cos(ALPHA))
 PRINTED = 0.05 + 1e-9
 """The tables print one decimal: half of the last one."""
 ARTICLE, BY_HAND = "the article's print", "recomputed by hand"
-MEASURED = Path(__file__).parents[2] / "examples/measured/size-40-end-points.csv"
+MEASURED = EXAMPLES / "measured/size-40-end-points.csv"
 
 
 def inv(x: float) -> float:

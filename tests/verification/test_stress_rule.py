@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from axisymmetric_shapes import tube
 from example_cup import CUP
-from hole_free import EXAMPLES
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.stress_rule import judged

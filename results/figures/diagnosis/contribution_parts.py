@@ -9,7 +9,6 @@ from flexspline.pipeline.diagnosis.causes.cause import Effect
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.words import (
-    capital,
     cause_title,
     magnitude_words,
     odds_words,
@@ -17,6 +16,7 @@ from flexspline.results.diagnosis.words import (
     title_of,
 )
 from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData
+from flexspline.results.sentences import capital
 
 SHORT = 55
 """Letters of a title that fit above a panel; of a longer one, what stands in brackets is left out."""

@@ -11,7 +11,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Effect
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
-from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
+from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
@@ -56,10 +56,7 @@ def write_contributions(path: Path, shown: SweepPictureData) -> None:
                     fontsize=_size(line) if k == 0 else 9.5, weight="bold" if k == 0 else "normal",
                     color=INK if k < 2 else MUTED,
                 )  # fmt: skip
-        figure.text(
-            0.035, 1 - 0.26 / height, "Contribution of each cause to the output angle",
-            fontsize=12, weight="bold", va="center",
-        )  # fmt: skip
+        titled(figure, 1 - 0.26 / height, "Contribution of each cause to the output angle")
         handles = [
             Line2D(
                 [],

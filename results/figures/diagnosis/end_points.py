@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
-from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.figures.words import fit
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
@@ -79,10 +79,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
         axes.set_xlabel("angle between −T and +T in arcsec")
-        figure.text(
-            0.035, 1 - 0.28 / height, "Lost motion of each unit against the prediction", fontsize=12,
-            weight="bold", va="center",
-        )  # fmt: skip
+        titled(figure, 1 - 0.28 / height, "Lost motion of each unit against the prediction")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
             columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0, markerscale=0.8,
@@ -131,14 +128,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
         axes.set_xlabel("angle read in arcsec")
-        figure.text(
-            0.035,
-            1 - 0.28 / height,
-            "Where each unit's ends lie",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
+        titled(figure, 1 - 0.28 / height, "Where each unit's ends lie")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
             columnspacing=1.3, handlelength=1.5, handletextpad=0.5, borderpad=0,

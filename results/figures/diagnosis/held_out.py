@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.results.diagnosis.channels import left_out_words
-from flexspline.results.diagnosis.words import figures_text, noise_words
-from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.diagnosis.words import noise_words
+from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import MOST_DRAWN_POINTS
 from flexspline.results.figures.words import wrapped
+from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 BARS = (
     ("before", "simulation as it stands", PALETTE[2]),
@@ -42,34 +48,33 @@ def write_held_out(path: Path, gain: Gain) -> None:
         rows.grid(axis="y")
         rows.set_xlabel("held-out row, in order")
         rows.set_ylabel(f"measured − predicted, {gain.unit}")
-        sizes = [gain.rmse_before, gain.rmse_calibrated, gain.rmse_after]
-        bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in BARS], edgecolor=INK, lw=0.6)
-        for i, size in enumerate(sizes):
-            bars.annotate(
-                figures_text(size),
-                (i, size),
-                (0, 4),
-                textcoords="offset points",
-                ha="center",
-                va="bottom",
-            )
-        bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
+        names = ("as it\nstands", "cali-\nbrated", "with\ncauses")
+        before_and_after(bars, gain, names, noise_words(gain))
         bars.set_xlim(-0.5, 2.6)
-        bars.set_xticks(range(3), ["as it\nstands", "cali-\nbrated", "with\ncauses"])
-        bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
-        bars.set_ylabel(f"rms error, {gain.unit}")
-        dashed = wrapped(f"dashed: {noise_words(gain)}, {figures_text(gain.noise_floor)}", 24)
-        bars.set_title(dashed, fontsize=9, weight="normal", pad=6)
-        figure.text(
-            0.035,
-            0.945,
-            f"Error on {left_out_words(gain.held_out)}, not used for fitting",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
+        titled(figure, 0.945, f"Error on {left_out_words(gain.held_out)}, not used for fitting")
         figure.legend(
             *rows.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,
             fontsize=9, markerscale=2.0, handletextpad=0.1, columnspacing=1.2,
         )  # fmt: skip
         save_png(figure, path)
+
+
+def before_and_after(bars: Axes, gain: Gain, names: Sequence[str], noise: str) -> None:
+    """Three bars, the rms as the simulation stands, calibrated and with what was found; the noise across."""
+    sizes = (gain.rmse_before, gain.rmse_calibrated, gain.rmse_after)
+    bars.bar(range(3), sizes, width=0.62, color=[c for _, _, c in BARS], edgecolor=INK, lw=0.6)
+    for i, size in enumerate(sizes):
+        bars.annotate(
+            figures_text(size),
+            (i, size),
+            (0, 4),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+        )
+    bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
+    bars.set_xticks(range(3), names)
+    bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
+    bars.set_ylabel(f"rms error, {gain.unit}")
+    dashed = wrapped(f"dashed: {noise}, {figures_text(gain.noise_floor)}", 24)
+    bars.set_title(dashed, fontsize=9, weight="normal", pad=6)

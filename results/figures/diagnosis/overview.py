@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.results.diagnosis.data_used import kinds_left_out
-from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING
+from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
 from flexspline.results.figures.words import keep_inside
 from flexspline.results.numbers import grouped
@@ -73,10 +73,7 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         above.set_ylabel("output angle in arcsec")
         below.set_ylabel("difference in arcsec")
         below.set_xlabel("output torque in N·m")
-        figure.text(
-            0.035, 0.955, "Measured and simulated angle, wave generator locked", fontsize=12,
-            weight="bold", va="center",
-        )  # fmt: skip
+        titled(figure, 0.955, "Measured and simulated angle, wave generator locked")
         named = dict(zip(*reversed(above.get_legend_handles_labels()), strict=True))
         named |= dict(zip(*reversed(below.get_legend_handles_labels()), strict=True))
         crosses = named.pop(not_used, None)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from flexspline.results.figures.words import thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -49,36 +50,56 @@ def write_channels(
     ----------
     left_arcsec : (n,) what is drawn. told : a word for a channel's panel, by its key.
     """
-    channels = shown.channels
-    rows = -(-len(channels) // 2)
-    height = TOP + rows * PANEL + (rows - 1) * BETWEEN + BOTTOM
     high = _reach(shown, left_arcsec)
     with styled():
-        figure = new_figure(WIDTH, height, DPI)
-        for i, channel in enumerate(channels):
-            row, column = divmod(i, 2)
-            alone = len(channels) == 1
-            axes = figure.add_axes((
-                0.095 + 0.475 * column,
-                (BOTTOM + (rows - 1 - row) * (PANEL + BETWEEN)) / height,
-                0.875 if alone else 0.40,
-                PANEL / height,
-            ))  # fmt: skip
+        figure, panels = panel_sheet(len(shown.channels), title, "residual in arcsec")
+        for axes, channel in zip(panels, shown.channels, strict=True):
             _panel(axes, shown, channel, left_arcsec, high)
-            axes.set_ylabel("residual in arcsec" if column == 0 else "")
             if told and channel.key in told:
                 axes.text(
                     0.985, 0.03, told[channel.key], transform=axes.transAxes, ha="right", va="bottom",
                     fontsize=9, color=INK,
                     bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1.5},
                 )  # fmt: skip
-        figure.text(0.035, 1 - 0.28 / height, title, fontsize=12, weight="bold", va="center")
-        branch_legend(figure, 1 - 0.62 / height, shown)
+        _branch_legend(figure, shown)
         save_png(figure, path)
 
 
-def branch_legend(figure: Figure, y: float, shown: SweepPictureData) -> None:
-    """One legend for all panels: branches, sides of the gap, noise."""
+def titled(figure: Figure, y: float, title: str) -> None:
+    """Write a picture's title at its left, at a share of its height."""
+    figure.text(0.035, y, title, fontsize=12, weight="bold", va="center")
+
+
+def panel_sheet(count: int, title: str, ylabel: str) -> tuple[Figure, list[Axes]]:
+    """A titled figure and its panels, two in a row, with room for a legend above."""
+    rows = -(-count // 2)
+    height = TOP + rows * PANEL + (rows - 1) * BETWEEN + BOTTOM
+    figure, panels = new_figure(WIDTH, height, DPI), []
+    for i in range(count):
+        row, column = divmod(i, 2)
+        axes = figure.add_axes((
+            0.095 + 0.475 * column,
+            (BOTTOM + (rows - 1 - row) * (PANEL + BETWEEN)) / height,
+            0.875 if count == 1 else 0.40,
+            PANEL / height,
+        ))  # fmt: skip
+        axes.set_ylabel(ylabel if column == 0 else "")
+        panels.append(axes)
+    titled(figure, 1 - 0.28 / height, title)
+    return figure, panels
+
+
+def panel_legend(figure: Figure, handles: Sequence[Artist], **more: Any) -> None:
+    """One legend in a row for all panels, below the title."""
+    y = 1 - 0.62 / figure.get_figheight()
+    figure.legend(
+        handles=handles, loc="center left", bbox_to_anchor=(0.025, y), ncols=len(handles),
+        fontsize=9, columnspacing=1.3, handletextpad=0.5, borderpad=0, **more,
+    )  # fmt: skip
+
+
+def _branch_legend(figure: Figure, shown: SweepPictureData) -> None:
+    """Branches, sides of the gap, noise."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -93,10 +114,7 @@ def branch_legend(figure: Figure, y: float, shown: SweepPictureData) -> None:
         ]
     noise = f"noise of all rows used:\n± 2σ, σ = {shown.noise_arcsec:.2g} arcsec"
     handles.append(Patch(color="#e4e7ea", label=noise))
-    figure.legend(
-        handles=handles, loc="center left", bbox_to_anchor=(0.025, y), ncols=len(handles),
-        fontsize=9, columnspacing=1.3, handlelength=1.7, handletextpad=0.5, borderpad=0,
-    )  # fmt: skip
+    panel_legend(figure, handles, handlelength=1.7)
 
 
 def _panel(

@@ -9,9 +9,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.end_points.race import Hypothesis
 from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.diagnosis.words import figures_text, title_of
-from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.diagnosis.words import title_of
+from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
+from flexspline.results.numbers import figures_text
 from flexspline.results.style import INK, PALETTE, new_figure, save_png, styled
 
 MOST_RIVALS = 8
@@ -50,14 +51,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
         _bare(axes, len(ranked))
         axes.set_xlabel("share of the odds, of those shown, in %", fontsize=9.5)
         axes.set_xlim(0, 118 * share.max())
-        figure.text(
-            0.035,
-            1 - 0.26 / height,
-            "What could explain it",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
+        titled(figure, 1 - 0.26 / height, "What could explain it")
         if plans:
             low = figure.add_axes((0.47, 0.55 / height, 0.43, 0.36 * len(plans) / height))
             sizes = [p.separation for p in plans]
@@ -73,10 +67,7 @@ def write_rivals(path: Path, analysis: EndPointAnalysis) -> None:
             low.set_xlabel(
                 "by how many times the noise the nearest rivals then differ", fontsize=9.5
             )
-            figure.text(
-                0.035, (0.55 + 0.36 * len(plans) + 0.22) / height, "What would tell them apart", fontsize=12,
-                weight="bold", va="center",
-            )  # fmt: skip
+            titled(figure, (0.55 + 0.36 * len(plans) + 0.22) / height, "What would tell them apart")
         save_png(figure, path)
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexspline.geometry.schema import key_words
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.results.diagnosis.channels import channel_words
-from flexspline.results.diagnosis.words import figures_text
-from flexspline.results.figures.diagnosis.panels import BETWEEN, BOTTOM, DPI, PANEL, TOP
+from flexspline.results.figures.diagnosis.held_out import before_and_after
+from flexspline.results.figures.diagnosis.panels import DPI, panel_legend, panel_sheet, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -53,14 +53,7 @@ def write_stiffness(path: Path, found: SpecimenAnalysis) -> None:
         axes.grid(axis="y")
         axes.set_xlabel("specimen")
         axes.set_ylabel("stiffness over simulated, %")
-        figure.text(
-            0.035,
-            0.945,
-            "Measured stiffness against the simulation",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
+        titled(figure, 0.945, "Measured stiffness against the simulation")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 0.865), ncols=4, fontsize=9, columnspacing=1.3,
             handletextpad=0.5, borderpad=0,
@@ -71,31 +64,14 @@ def write_stiffness(path: Path, found: SpecimenAnalysis) -> None:
 def write_dimensions(path: Path, found: SpecimenAnalysis, overrides: dict[str, np.ndarray]) -> None:
     """Residual of the simulation and of the chosen model against every dimension that varies."""
     varying = {k: v for k, v in overrides.items() if np.ptp(v) > 0}
-    rows = -(-len(varying) // 2)
-    height = TOP + rows * PANEL + (rows - 1) * BETWEEN + BOTTOM
     measured, explained = _pct(found.measured, found), _pct(found.explained, found)
     with styled():
-        figure = new_figure(8.0, height, DPI)
-        for i, (key, values) in enumerate(varying.items()):
-            row, column = divmod(i, 2)
-            axes = figure.add_axes((
-                0.095 + 0.475 * column,
-                (BOTTOM + (rows - 1 - row) * (PANEL + BETWEEN)) / height,
-                0.875 if len(varying) == 1 else 0.40,
-                PANEL / height,
-            ))  # fmt: skip
+        title = "Measured less simulated, against every dimension"
+        figure, panels = panel_sheet(len(varying), title, "over simulated, %")
+        for axes, (key, values) in zip(panels, varying.items(), strict=True):
             _against(axes, values, measured, explained, 100 * found.noise, bool(found.chosen.terms))
             axes.set_xlabel(_label(key))
-            axes.set_ylabel("over simulated, %" if column == 0 else "")
-        figure.text(
-            0.035, 1 - 0.28 / height, "Measured less simulated, against every dimension", fontsize=12,
-            weight="bold", va="center",
-        )  # fmt: skip
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="center left", bbox_to_anchor=(0.025, 1 - 0.62 / height), ncols=3,
-            fontsize=9, columnspacing=1.3, handletextpad=0.5, borderpad=0,
-        )  # fmt: skip
+        panel_legend(figure, panels[0].get_legend_handles_labels()[0])
         save_png(figure, path)
 
 
@@ -121,34 +97,9 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
         axes.set_xlabel("specimen, predicted from all others")
         axes.set_ylabel("error of 1/stiffness, %")
         axes.grid(axis="y")
-        sizes = [gain.rmse_before, gain.rmse_calibrated, gain.rmse_after]
-        bars.bar(
-            range(3),
-            sizes,
-            width=0.62,
-            color=[PALETTE[2], PALETTE[1], PALETTE[0]],
-            edgecolor=INK,
-            lw=0.6,
-        )
-        for i, size in enumerate(sizes):
-            bars.annotate(
-                figures_text(size), (i, size), (0, 4), textcoords="offset points", ha="center"
-            )
-        bars.axhline(gain.noise_floor, color=INK, lw=1.2, ls=(0, (4, 3)))
-        bars.set_title(
-            f"dashed: noise, {figures_text(gain.noise_floor)}", fontsize=9, weight="normal", pad=6
-        )
-        bars.set_xticks(range(3), ["as it\nstands", "modulus\nfitted", "with what\nwas found"])
-        bars.set_ylim(0, 1.18 * max(*sizes, gain.noise_floor))
-        bars.set_ylabel(f"rms error, {gain.unit}")
-        figure.text(
-            0.035,
-            0.945,
-            "Error on specimens not used for fitting",
-            fontsize=12,
-            weight="bold",
-            va="center",
-        )
+        names = ("as it\nstands", "modulus\nfitted", "with what\nwas found")
+        before_and_after(bars, gain, names, "noise")
+        titled(figure, 0.945, "Error on specimens not used for fitting")
         figure.legend(
             *axes.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(0.085, 0.865), ncols=3,
             fontsize=9, handletextpad=0.4, columnspacing=1.2,
@@ -188,4 +139,5 @@ def _pct(stiffness: np.ndarray, found: SpecimenAnalysis) -> np.ndarray:
 
 def _label(key: str) -> str:
     """``flexspline.wall_thickness_mm`` → flexspline wall thickness in mm."""
-    return f"{channel_words(key)} in {key.rpartition('_')[2]}".replace("$", r"\$")
+    words, unit = key_words(key)
+    return (f"{words} in {unit}" if unit else words).replace("$", r"\$")

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.diagnosis.sweep.unit_amplitudes import UnitAmplitudes
-from flexspline.results.diagnosis.words import capital, cause_title
-from flexspline.results.figures.diagnosis.panels import DPI
+from flexspline.results.diagnosis.words import cause_title
+from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, plain_names
 from flexspline.results.figures.words import thin_labels
+from flexspline.results.sentences import capital
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_CAUSES = 4
@@ -59,8 +60,5 @@ def write_units(path: Path, shown: SweepPictureData, shares: dict[str, UnitAmpli
             thin_labels(axes)
             axes.grid(axis="y")
         axes.set_xlabel("unit under test")
-        figure.text(
-            0.035, 1 - 0.28 / height, "Effects common to all units, and of single units",
-            fontsize=12, weight="bold", va="center",
-        )  # fmt: skip
+        titled(figure, 1 - 0.28 / height, "Effects common to all units, and of single units")
         save_png(figure, path)

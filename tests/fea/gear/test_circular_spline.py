@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.gear.circular_spline import condensed_spline, spline_outline
 from flexspline.fea.types import Elastic
@@ -14,7 +14,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.gear_model import gear_model
 
 STEEL = Elastic(206e3, 0.3)
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 
 def test_turning_against_the_outside_is_shear_between_two_cylinders() -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.contact import lift_off_forces
 from flexspline.fea.axisymmetric.couplings import AXIAL, RADIAL, TANGENTIAL
@@ -22,7 +22,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.load import load_design
 
 STEEL = Elastic(206e3, 0.3)
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 CUP = DESIGN.part("flexspline").without_holes().meridian
 SURFACE = DESIGN.flexspline.ring_radius
 

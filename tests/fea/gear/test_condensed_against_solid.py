@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from scipy.interpolate import griddata
 
 from flexspline.fea.gear.rim import condensed_rim, places_along
@@ -25,7 +25,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.geometry.tagged import tagged_surface
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 HALF_WIDTH = np.radians(6.0)
 """Of a group of teeth: wide enough for the tetrahedra and for 60 harmonics."""
 PUSHES = ((0.0, TANGENTIAL, 100.0), (20.0, TANGENTIAL, 60.0), (-20.0, TANGENTIAL, 60.0),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import sin
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.gear.engagement import TORQUE_SHARE, Engagement
 from flexspline.fea.gear.model import GearModel
@@ -15,7 +15,7 @@ from flexspline.geometry.load import load_design
 from flexspline.geometry.rated import rated_torque
 from flexspline.pipeline.gear_model import gear_model
 
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 RATED = rated_torque(DESIGN)[0]
 
 

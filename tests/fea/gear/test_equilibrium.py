@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import cos, radians
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.gear.equilibrium import Contacts, EquilibriumError, equilibrium
 from flexspline.fea.gear.kinematics import Mesh
@@ -17,7 +17,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline import gear_model as settings
 from flexspline.pipeline.gear_model import gear_model
 
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 
 @pytest.fixture(scope="module")

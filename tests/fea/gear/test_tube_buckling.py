@@ -8,6 +8,7 @@ from math import pi, sqrt
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.gear.tube_buckling import LOWER_EDGE_OF_TESTS, Tube
 from flexspline.fea.types import Elastic
@@ -15,7 +16,7 @@ from flexspline.geometry.load import load_design
 
 ROOT = Path(__file__).parents[3]
 RECORD = json.loads((ROOT / "benchmarks" / "tube_buckling.json").read_text(encoding="utf-8"))
-DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 STEEL = Elastic.of(DESIGN.material.flexspline)
 LONG = Tube(radius=100.0, wall=0.5, length=300.0, material=STEEL)
 

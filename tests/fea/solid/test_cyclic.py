@@ -15,10 +15,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.solid.cyclic import half_repeat, repeats_of
@@ -34,7 +34,7 @@ from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import design_from
 from flexspline.geometry.part import Part
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 STEEL = Elastic(206e3, 0.3)
 SHORT = {
     "length_mm": 18.0, "wall_thickness_mm": 0.9, "ring_thickness_mm": 1.2, "ring_width_mm": 6.0,

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from structured import sector_mesh
 
 from flexspline.fea.solid.deck import DECK_ANGLE_RAD, torsion_deck
@@ -24,7 +25,7 @@ from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of
 
-CUP = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 STEEL = Elastic(206e3, 0.3)
 
 

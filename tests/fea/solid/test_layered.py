@@ -5,11 +5,11 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 from math import pi, radians
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from one_mesh_bounds import one_mesh_bounds
 from scipy.spatial import cKDTree
 
@@ -42,7 +42,6 @@ from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 from flexspline.geometry.symmetry import sector_of
 from flexspline.geometry.tagged import TaggedSurface, tagged_surface
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 EDGE_SPACING = 0.1
 """Of points along sharp edges [mm]."""
 COARSER = 2.5

@@ -5,10 +5,10 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 from math import sqrt
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from scipy.integrate import quad
 
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
@@ -29,7 +29,7 @@ from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, sector_pl
 from flexspline.geometry.symmetry import sector_of
 from flexspline.geometry.tagged import TaggedSurface
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 
 
 def design(holes: int, **changes) -> Design:

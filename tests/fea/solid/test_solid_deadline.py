@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
+
+from example_files import EXAMPLES
 
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.shortfall import of_the_machine
@@ -15,7 +16,7 @@ from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.load import load_design
 from flexspline.geometry.symmetry import sector_of
 
-SHAFT = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml").part("shaft")
+SHAFT = load_design(EXAMPLES / "xb1-40.toml").part("shaft")
 MESH_S = 25.0
 """What each mesh takes on the clock of these tests."""
 

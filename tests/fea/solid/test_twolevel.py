@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.fea.solid import memory, twolevel
 from flexspline.fea.solid.assembly import NodeFrames
@@ -27,7 +28,7 @@ from flexspline.fea.types import Elastic, TetMesh
 from flexspline.geometry.load import design_from
 
 STEEL = Elastic(206e3, 0.3)
-EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 
 
 def cup(far: float, sector: float) -> TetMesh:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from histories import LARGEST, PREDICTION
 from histories import sweep as swept
 
@@ -24,7 +25,7 @@ from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.summary import summary
 
 SIGMA = 0.5
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 
 def raced(compliance: float, gap: float) -> GaussianEvidence:

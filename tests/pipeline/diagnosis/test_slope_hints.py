@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from hidden.cases import draw_case
 from mislabelled import NONE, Fault, mislabelled
 from typer.testing import CliRunner
@@ -23,7 +24,6 @@ from flexspline.results.cli import app
 from flexspline.results.diagnosis.summary import summary
 
 CASE = draw_case(1711, 1, "clean")
-EXAMPLES = Path(__file__).parents[3] / "examples"
 DESIGN = design_from(tomllib.loads(CASE.design))
 
 

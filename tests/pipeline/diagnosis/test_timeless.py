@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from histories import sweep
 
 from flexspline.geometry.load import load_design
@@ -20,7 +21,6 @@ from flexspline.results.diagnosis.words import magnitude_words
 from flexspline.results.figures.diagnosis.contribution_parts import parts
 from flexspline.results.figures.diagnosis.seen import seen
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design
@@ -13,7 +14,6 @@ from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 NAMES = ("K_b = ", "K_e = ")
 

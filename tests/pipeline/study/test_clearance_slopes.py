@@ -1,7 +1,7 @@
 """How the sum moves with a clearance: its own difference, by both models of the bearing play."""
 
 import pytest
-from study_bench import EXAMPLES
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.backlash import backlash

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from study_bench import EXAMPLES, GRID, study_of
+from example_files import EXAMPLES
+from study_bench import GRID, study_of
 
 import flexspline
 from flexspline.geometry.keys import with_values

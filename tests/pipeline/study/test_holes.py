@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from study_bench import EXAMPLES, study_of, threads
+from example_files import EXAMPLES
+from study_bench import study_of, threads
 
 from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import with_values, without_holes

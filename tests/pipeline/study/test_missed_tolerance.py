@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.pipeline.study.evaluate import Task, evaluate
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 VALUES = {
     "flexspline.wall_thickness_mm": 0.4321,
     "flexspline.ring_thickness_mm": 0.5432,

@@ -5,7 +5,7 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
-from study_bench import EXAMPLES
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.shape_slope import (
     HeldSurfaceError,

@@ -3,7 +3,8 @@
 from typing import get_args
 
 import pytest
-from study_bench import EXAMPLES, GRID, study_of
+from example_files import EXAMPLES
+from study_bench import GRID, study_of
 
 from flexspline.pipeline.study.database import StorageError
 from flexspline.pipeline.study.figures import SIZES

@@ -4,7 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from study_bench import EXAMPLES, WALL, study_of, threads
+from example_files import EXAMPLES
+from study_bench import WALL, study_of, threads
 
 from flexspline.geometry.design import Solver
 from flexspline.geometry.keys import without_holes

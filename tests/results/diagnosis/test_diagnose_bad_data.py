@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 from click.testing import Result
+from example_files import EXAMPLES
 from typer.testing import CliRunner
 
 from flexspline.pipeline.diagnosis.measurement import grid
 from flexspline.results.cli import app
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 GIVEN = ("--Kb", "31329", "--Ke", "43339")
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
+from example_files import EXAMPLES
 from finished_run import FinishedRun
 from PIL import Image
 from pypdf import PdfReader
@@ -19,10 +20,9 @@ from typer.testing import CliRunner
 
 from flexspline.results.cli import app
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
-SWEEP = ROOT / "examples" / "measured" / "xb1-40-sweep.csv"
-MAKER = ROOT / "examples" / "measured" / "make_sweep.py"
+CUP = EXAMPLES / "xb1-40.toml"
+SWEEP = EXAMPLES / "measured" / "xb1-40-sweep.csv"
+MAKER = EXAMPLES / "measured" / "make_sweep.py"
 GIVEN = ("--Kb", 31329, "--Ke", 43339)
 PNGS = {
     "measured_and_predicted.png", "residual_simulation.png", "causes.png", "held_out.png",
@@ -220,7 +220,7 @@ def test_a_broken_model_is_refused_before_any_solver_starts(tmp_path: Path) -> N
 
 def test_another_gear_s_model_is_told(done: tuple[Path, dict], tmp_path: Path) -> None:
     model = done[0] / "extended_model.toml"
-    hat = ROOT / "examples" / "hat-25.toml"
+    hat = EXAMPLES / "hat-25.toml"
     result = flexspline("predict", hat, "--model", model, SWEEP, "--out", tmp_path)
     assert result.exit_code == 0
     assert "the model is of XB1-40 cup, not of" in result.stderr

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from PIL import Image
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -15,9 +16,8 @@ from typer.testing import CliRunner
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.words import odds_words, plus_minus, title_of
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
-END_POINTS = ROOT / "examples" / "measured" / "size-40-end-points.csv"
+CUP = EXAMPLES / "xb1-40.toml"
+END_POINTS = EXAMPLES / "measured" / "size-40-end-points.csv"
 COMPLIANCE, GAP = (
     11.343,
     72.2,

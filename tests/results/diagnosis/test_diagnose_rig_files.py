@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
+from example_files import EXAMPLES
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
-SWEEP = ROOT / "examples" / "measured" / "xb1-40-sweep.csv"
+CUP = EXAMPLES / "xb1-40.toml"
+SWEEP = EXAMPLES / "measured" / "xb1-40-sweep.csv"
 ARCSEC_PER_COUNT = 0.05
 """A fortieth of the reading's noise: rounding to counts is not seen."""
 

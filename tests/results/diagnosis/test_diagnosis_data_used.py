@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
-END_POINTS = ROOT / "examples" / "measured" / "size-40-end-points.csv"
+CUP = EXAMPLES / "xb1-40.toml"
+END_POINTS = EXAMPLES / "measured" / "size-40-end-points.csv"
 COMPLIANCE, GAP = 11.343, 72.2
 """arcsec per N·m and arcsec, of the example with the stiffnesses below."""
 SOFTER, WIDER = 0.015, 8.0

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.causes import known_causes
@@ -33,7 +34,7 @@ from flexspline.results.records import as_json
 from flexspline.results.report.diagnosis import diagnosis_document
 from flexspline.results.studio.job_summary import job_summary
 
-DESIGN = load_design(Path(__file__).parents[3] / "examples" / "xb1-40.toml")
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 NONE = np.zeros(0)
 HISTORY = History(NONE, NONE.astype(int), NONE.astype(int))
 KINDS = {
@@ -110,6 +111,19 @@ def test_what_specimens_leave_is_in_percent_everywhere() -> None:
     (line,) = page["diagnosis"]["unexplained"]
     assert line.endswith("6.5 % rms")
     assert not any("arcsec rms" in said for said in (table, report, line))
+
+
+def test_structure_without_a_name_lies_in_a_channel_that_is_said_in_words() -> None:
+    forms = (UnnamedForm("trend"),)
+    left = tuple(Unexplained(key, 6.5, 1e-5, forms) for key in ("torque_Nm", "cycle", "torque_Nm"))
+    found = Diagnosis(
+        DESIGN,
+        KINDS["sweep"],
+        Prediction(10.0, 0.2, 60.0, 5.0),
+        DiagnosisOutcome("unknown", unexplained=left),
+    )
+    said = "There is structure in torque, load cycle that no known cause explains."
+    assert summary(found) == said
 
 
 def test_the_live_page_says_a_cause_as_the_table_does() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from histories import shape_of
 from typer.testing import CliRunner
 
@@ -21,7 +22,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.results.cli import app
 from flexspline.results.diagnosis.model_notes import model_warnings
 
-CUP = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 DESIGN = load_design(CUP)
 ORIGIN = Provenance(
     "flexspline", DESIGN.name, "m.csv", "0" * 64, "named", 31329.0, 43339.0, True, {}, {},

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from legibility import drawn_figures, faults
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
@@ -16,9 +17,8 @@ from flexspline.results.diagnosis.data_used import data_record
 from flexspline.results.figures.diagnosis.overview import write_overview
 from flexspline.results.figures.diagnosis.seen import seen
 
-ROOT = Path(__file__).parents[3]
-CUP = ROOT / "examples" / "xb1-40.toml"
-MEASURED = ROOT / "examples" / "measured"
+CUP = EXAMPLES / "xb1-40.toml"
+MEASURED = EXAMPLES / "measured"
 COMPLIANCE, GAP = 11.343, 72.2
 """arcsec per N·m and arcsec, of the example with the stiffnesses below."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from legibility import drawn_figures, faults
 
 from flexspline.pipeline.study.claims import Row
@@ -19,7 +20,6 @@ from flexspline.results.study.best_figure import best_figure
 from flexspline.results.study.figures import write_convergence, write_parallel, write_pareto
 from flexspline.results.study.tolerance_figure import write_scatter
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
 K, STRESS = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa"
 KEYS = (

@@ -7,9 +7,9 @@ import pytest
 from legibility import drawn_figures, faults
 
 from flexspline.fea.types import StressPeak
+from flexspline.results.renders.picture_elements import stress_note
 from flexspline.results.renders.scene import Shot, View
 from flexspline.results.renders.sheet import INSET, LARGE_INSET, MAIN, Bar, Mark, Sheet, write_sheet
-from flexspline.results.renders.shown import stress_note
 
 
 def shot(size):

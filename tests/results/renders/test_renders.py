@@ -8,8 +8,8 @@ from PIL import Image
 from flexspline.fea.solid.whole import whole_part
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture
 from flexspline.results.renders.mesh_picture import write_mesh_picture
+from flexspline.results.renders.picture_elements import Seen, magnification, peak_mark
 from flexspline.results.renders.scene import Layer, View, shoot
-from flexspline.results.renders.shown import Seen, magnification, peak_mark
 from flexspline.results.renders.stress_picture import write_torque_stress
 from flexspline.results.renders.surface import opening, skin
 

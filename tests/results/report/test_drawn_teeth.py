@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from example_files import EXAMPLES
 from hand_made_gear import content
 from hand_made_gear import design as hand_made
 from in_process import Ended, flexspline
@@ -16,7 +17,7 @@ from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.geometry.load import load_design
 from flexspline.results.report.limits import assumptions
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "keyed-shaft.toml"
+EXAMPLE = EXAMPLES / "keyed-shaft.toml"
 DRAWN = 'ring_thickness_mm = 0.55\nteeth = "drawn"'
 NONE: Mapping[str, str] = MappingProxyType({})
 KEYS = {

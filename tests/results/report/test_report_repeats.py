@@ -4,9 +4,9 @@ import base64
 import hashlib
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page
 from pypdf import PdfReader
@@ -20,7 +20,6 @@ from flexspline.results.report.page import page_of
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.write import write_report
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 NASTY = (
     "../../etc/passwd", 'a"b<c>&d.toml', "#read(1).toml", "名前.toml", ".hidden", "a\nb.toml", "x" * 300,
 )  # fmt: skip

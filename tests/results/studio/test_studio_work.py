@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from example_files import EXAMPLES
 from PIL import Image
 from studio_page import Page
 
 if TYPE_CHECKING:
     pass
 
-ROOT = Path(__file__).parents[3]
-END_POINTS = ROOT / "examples" / "measured" / "size-40-end-points.csv"
+END_POINTS = EXAMPLES / "measured" / "size-40-end-points.csv"
 
 
 def downloaded(page: Page, press: str) -> tuple[str, bytes]:

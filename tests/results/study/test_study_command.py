@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 from opengl import why_no_pictures
 from pypdf import PdfReader
 from typer.testing import CliRunner
@@ -14,7 +15,7 @@ from typer.testing import CliRunner
 from flexspline.results.cli import app
 from flexspline.results.file_names import STUDY as STUDY_FILES
 
-DESIGN = Path(__file__).parents[3] / "examples" / "xb1-40.toml"
+DESIGN = EXAMPLES / "xb1-40.toml"
 STUDY = """
 design = "{design}"
 [vary]

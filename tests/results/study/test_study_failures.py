@@ -4,6 +4,7 @@ import json
 import tomllib
 from pathlib import Path
 
+from example_files import EXAMPLES
 from typer.testing import CliRunner
 
 from flexspline.pipeline.study.claims import Row
@@ -17,7 +18,6 @@ from flexspline.results.study.failures import TOLD, causes, failure_lines, nothi
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 WALL, FILLET = "flexspline.wall_thickness_mm", "shaft.fillet_mm"
 STUDY = f"""
 design = "xb1-40.toml"

@@ -1,9 +1,9 @@
 """The line that a study shows while it runs."""
 
 import tomllib
-from pathlib import Path
 
 import pytest
+from example_files import EXAMPLES
 
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.drive import StudyProgress
@@ -24,7 +24,7 @@ method = "grid"
 
 
 def test_the_end_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
-    study = study_from(tomllib.loads(STUDY), Path(__file__).parents[3] / "examples", "test")
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
     watch = Watch(study)
     row = Row(0, {WALL: 0.4}, Outcome({"K_b_Nm_per_rad": 30e3}))
     for _ in range(2):
@@ -34,7 +34,7 @@ def test_the_end_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_rate_best_and_time_left() -> None:
     """Four rows, two of them in these 4 s, six to go: half a design per second."""
-    study = study_from(tomllib.loads(STUDY), Path(__file__).parents[3] / "examples", "test")
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
     figures = ({"K_b_Nm_per_rad": 30e3}, {"K_b_Nm_per_rad": 31e3}, {"K_b_Nm_per_rad": 29e3})
     rows = [Row(i, {WALL: 0.4}, Outcome(f)) for i, f in enumerate(figures)]
     rows.append(Row(3, {WALL: 0.9}, Outcome(faults=("too thick",))))
@@ -50,7 +50,7 @@ def test_a_tolerance_study_has_no_best() -> None:
     text = text.replace(
         '[vary]\n"flexspline.wall_thickness_mm" = { values = [0.38, 0.4, 0.42] }\n', ""
     )
-    study = study_from(tomllib.loads(text), Path(__file__).parents[3] / "examples", "test")
+    study = study_from(tomllib.loads(text), EXAMPLES, "test")
     assert "best" not in line(
         study, StudyProgress([Row(0, {}, Outcome({"K_b_Nm_per_rad": 30e3}))], 1, 4.0, 64)
     )

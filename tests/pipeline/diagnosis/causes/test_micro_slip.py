@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_files import EXAMPLES
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
 from hidden.mark import mark
@@ -18,7 +19,7 @@ from flexspline.pipeline.diagnosis.causes.friction_hysteresis import SINGLE, Fri
 from flexspline.pipeline.diagnosis.causes.micro_slip import POWER, POWERS
 from flexspline.pipeline.diagnosis.measurement.history import History
 
-EXAMPLE = flexspline.load_design(Path(__file__).parents[4] / "examples" / "xb1-40.toml")
+EXAMPLE = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 FRICTION = FrictionHysteresis()
 LARGEST = 2.0
 NEAR = 0.005

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from histories import PREDICTION, sweep
 
 from flexspline.geometry.load import load_design
@@ -18,7 +19,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.channel_nuisance import over_temperature
 
-CUP = Path(__file__).parents[4] / "examples" / "xb1-40.toml"
+CUP = EXAMPLES / "xb1-40.toml"
 PER_KELVIN, DELAY_s, PERIOD_s = -0.6, 350.0, 2700.0
 CAUSE = ThermalClearance()
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -20,9 +21,8 @@ from flexspline.results.diagnosis.advice import why
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.summary import summary
 
-ROOT = Path(__file__).parents[4]
-DESIGN = load_design(ROOT / "examples" / "xb1-40.toml")
-ARTICLE = ROOT / "examples" / "measured" / "size-40-end-points.csv"
+DESIGN = load_design(EXAMPLES / "xb1-40.toml")
+ARTICLE = EXAMPLES / "measured" / "size-40-end-points.csv"
 K = 36_000.0
 """Twice the article's 1.8e4 N·m/rad: two of them in series."""
 SERIES_ARCSEC = 2 * 0.5 / 1.8e4 * 180 * 3600 / np.pi

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 from specimen_truth import EXAMPLE_FILE as DRAWN
 
 from flexspline.geometry.keys import (
@@ -31,8 +32,7 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
 from flexspline.results.diagnosis.summary import summary
 
-ROOT = Path(__file__).parents[4]
-EXAMPLE = ROOT / "examples" / "xb1-40.toml"
+EXAMPLE = EXAMPLES / "xb1-40.toml"
 DESIGN = load_design(EXAMPLE)
 LENGTH, WALL = "flexspline.length_mm", "flexspline.wall_thickness_mm"
 
@@ -300,7 +300,7 @@ def test_sensitivities_of_many_specimens_follow_from_some(
 
 def test_example_file() -> None:
     """Its walls were made 0.14 mm too thin. K_b and K_e of the example design by FE to three digits."""
-    csv = ROOT / "examples" / "measured" / "xb1-40-specimens.csv"
+    csv = EXAMPLES / "measured" / "xb1-40-specimens.csv"
     diagnosis = diagnose_file(DESIGN, csv, 3.14e4, 4.33e4)
     assert diagnosis.outcome.verdict == "named"
     cause = diagnosis.outcome.causes[0]

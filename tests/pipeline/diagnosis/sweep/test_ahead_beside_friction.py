@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 import flexspline
 
-DESIGN = flexspline.load_design(Path(__file__).parents[4] / "examples" / "xb1-40.toml")
+DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 COMPLIANCE, GAP, NOISE = 11.387, 72.0, 0.5
 
 

@@ -6,23 +6,23 @@ import re
 from pathlib import Path
 
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 
-ROOT = Path(__file__).parents[4]
 K_B, K_E = 31_300.0, 44_000.0
 
 
 def diagnosed(torque_factor: float, tmp_path: Path) -> Diagnosis:
     """The example's sweep with its torque column times a factor: as of a gear so much softer."""
-    text = (ROOT / "examples" / "measured" / "xb1-40-sweep.csv").read_text(encoding="utf-8")
+    text = (EXAMPLES / "measured" / "xb1-40-sweep.csv").read_text(encoding="utf-8")
     row = re.compile(r"^(\d+,[\d.]+,[\d.]+,)(-?[\d.]+)(,.*)$", re.M)
     path = tmp_path / "rig.csv"
     path.write_text(
         row.sub(lambda m: f"{m[1]}{float(m[2]) * torque_factor:.5f}{m[3]}", text), encoding="utf-8"
     )
-    return diagnose_file(load_design(ROOT / "examples" / "xb1-40.toml"), path, K_B, K_E)
+    return diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), path, K_B, K_E)
 
 
 def test_friction_beside_half_the_stiffness_has_the_spring_for_a_rival(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import in_process
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 import flexspline
 from flexspline.pipeline.analysis import analysis_context
@@ -23,8 +24,7 @@ from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
 from flexspline.pipeline.gear_chain import Chain, chain_of
 
-ROOT = Path(__file__).parents[4]
-DESIGN = flexspline.load_design(ROOT / "examples" / "xb1-40.toml").changed({"shaft.bolt_count": 0})
+DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({"shaft.bolt_count": 0})
 LARGEST_Nm, FRICTION_arcsec = 10.0, 6.0
 K_b, K_e = 31_300.0, 44_000.0
 
@@ -106,13 +106,13 @@ def test_the_budget_of_an_extended_model_has_the_bend_in_it() -> None:
 
 
 def test_only_a_sweep_is_held_against_the_gear(chain: Chain) -> None:
-    points = ROOT / "examples" / "measured" / "size-40-end-points.csv"
+    points = EXAMPLES / "measured" / "size-40-end-points.csv"
     with pytest.raises(MeasurementError, match="is no torque sweep"):
         diagnose_file(DESIGN, points, K_b, K_e, chain=chain)
 
 
 def test_a_stiffness_given_is_refused_beside_it(record: Path, tmp_path: Path) -> None:
-    cup = ROOT / "examples" / "xb1-40.toml"
+    cup = EXAMPLES / "xb1-40.toml"
     words = ("diagnose", cup, record, "--against", "gear", "--Kb", 3e4)
     done = in_process.flexspline(*words, folder=tmp_path)
     assert done.status == 2

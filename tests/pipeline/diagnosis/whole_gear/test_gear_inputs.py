@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
+from example_files import EXAMPLES
 
 import flexspline
 from flexspline.pipeline.analysis import analysis_context
@@ -21,7 +22,6 @@ from flexspline.pipeline.diagnosis.whole_gear.inputs import inputs_of
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
-EXAMPLES = Path(__file__).parents[4] / "examples"
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({
     "shaft.bolt_count": 0,
     "gear.module_mm": 0.4, "gear.teeth_flexspline": 100, "gear.teeth_circular_spline": 102,

@@ -13,11 +13,11 @@ _LARGEST_EXACT = 2**53
 """A browser counts no farther without rounding."""
 
 
-class _Note(BaseModel):
+class _Request(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True)
 
 
-class Want(_Note):
+class Want(_Request):
     """Figures of a design, and the picture of a view; `number` grows with each."""
 
     do: Literal["want"]
@@ -26,7 +26,7 @@ class Want(_Note):
     view: StressCase
 
 
-class Start(_Note):
+class Start(_Request):
     """A job with a design."""
 
     do: Literal["job"]
@@ -34,18 +34,18 @@ class Start(_Note):
     tables: dict[str, Any]
 
 
-class Stop(_Note):
+class Stop(_Request):
     """The end of a job, if there is one of its kind."""
 
     do: Literal["stop"]
     kind: Kind
 
 
-Note = Want | Start | Stop
-_NOTES: TypeAdapter[Note] = TypeAdapter(Annotated[Note, Field(discriminator="do")])
+Request = Want | Start | Stop
+_REQUESTS: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="do")])
 
 
-def note_from(text: str) -> Note:
+def request_from(text: str) -> Request:
     """A message of a tab.
 
     Raises
@@ -53,7 +53,7 @@ def note_from(text: str) -> Note:
     ValueError : no JSON, nested too deeply, or none of these.
     """
     try:
-        return _NOTES.validate_json(text)
+        return _REQUESTS.validate_json(text)
     except ValidationError as fault:
         first = fault.errors(include_url=False, include_context=False, include_input=False)[0]
         raise ValueError(first["msg"]) from None

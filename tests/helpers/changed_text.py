@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 import re
-import tomllib
-from pathlib import Path
 
-from flexspline.geometry.design import Design
-from flexspline.geometry.load import design_from
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from example_files import EXAMPLES
 
 
 def changed_text(example: str, changes: dict[str, str | None]) -> str:
@@ -18,11 +13,6 @@ def changed_text(example: str, changes: dict[str, str | None]) -> str:
     for dotted, value in changes.items():
         text = _changed(text, dotted, value)
     return text
-
-
-def changed_design(example: str, changes: dict[str, str | None]) -> Design:
-    """The same, loaded and checked."""
-    return design_from(tomllib.loads(changed_text(example, changes)))
 
 
 def _changed(text: str, dotted: str, value: str | None) -> str:
@@ -40,16 +30,3 @@ def _changed(text: str, dotted: str, value: str | None) -> str:
         lines.append(f"{key} = {value}")
     blocks[i] = "\n".join(lines) + "\n"
     return "".join(blocks)
-
-
-def shaft_of(
-    segments: list[tuple[float, float, float]], settings: str = "", fillet: float = 0.5
-) -> Design:
-    """A shaft of (length, outer, inner) segments gripped over 5 mm, on the hole-free cup."""
-    data = tomllib.loads((EXAMPLES / "keyed-shaft.toml").read_text(encoding="utf-8"))
-    data["shaft"] = {"fillet_mm": fillet, "grip_length_mm": 5.0} | tomllib.loads(settings)
-    data["shaft"]["segment"] = [
-        {"length_mm": length, "outer_diameter_mm": outer, "inner_diameter_mm": inner}
-        for length, outer, inner in segments
-    ]
-    return design_from(data)

@@ -1,0 +1,140 @@
+"""What moves the figures of a study's designs, and what holds its best design back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from flexspline.geometry.ranges import SMALLEST_NUMBER
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.result import StudyResult
+
+BY_CHANCE = 0.01
+"""Of dimensions that move nothing, the share that a report may say something of."""
+SAME = 1e-9
+"""Of ranks that others make up to rounding."""
+AT_END = 0.02
+"""Of a span: a best design so near its end would go on if it could."""
+FEWEST_RANKED_ROWS = 8
+"""Rows from which a rank correlation says something, and beyond the dimensions a plane."""
+WORTH_DEVIATIONS = 0.1
+"""Standard deviations of a figure across a whole span: less is no influence that is worth a word."""
+
+
+@dataclass(frozen=True)
+class Influence:
+    """A varied key that moves a figure by itself, and Spearman's rank correlation of both."""
+
+    key: str
+    correlation: float
+
+
+@dataclass(frozen=True)
+class OpenEnd:
+    """The end of a varied key's span, beyond which a better design may lie."""
+
+    key: str
+    value: float
+    end: Literal["lower", "upper"]
+
+
+def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
+    """What moves each figure looked at, over all designs built, the strongest first.
+
+    Nothing of a tolerance study, whose indices say it, and of few designs. An optimiser's designs move
+    several dimensions together, and few designs agree by chance: what is no influence of the dimension itself
+    is left out.
+    """
+    rows = result.built
+    if len(rows) < FEWEST_RANKED_ROWS or result.about_scatter:
+        return {}
+    values = {key: np.array([r.values[key] for r in rows]) for key in result.study.file.vary}
+    moved = {key: x for key, x in values.items() if np.ptp(x) > 0}
+    found = {}
+    for figure in result.shown:
+        y = np.array([r.outcome.figures[figure] for r in rows])
+        own = [
+            Influence(key, _spearman(x, y))
+            for key, x in moved.items()
+            if np.ptp(y) > 0
+            and _is_its_own(x, y, [moved[other] for other in moved if other != key])
+        ]
+        found[figure] = tuple(sorted(own, key=lambda i: -abs(i.correlation)))
+    return found
+
+
+def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
+    """Ends of spans at which the best design lies, though it would gain beyond them."""
+    found: list[OpenEnd] = []
+    for key, span in result.study.file.vary.items():
+        low, high = span.ends
+        ends = (OpenEnd(key, low, "lower"), OpenEnd(key, high, "upper"))
+        near = (e for e in ends if abs(best.values[key] - e.value) <= AT_END * (high - low))
+        found += [e for e in near if _may_help(result, best, key, 1 if e.value == high else -1)]
+    return tuple(found)
+
+
+def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
+    """Figures whose constraints hold the best design back."""
+    return tuple(
+        key for key, limit in result.study.file.constraint.items()
+        if -limit.excess(best.outcome.figures[key]) <= AT_END * limit.size
+    )  # fmt: skip
+
+
+def _may_help(result: StudyResult, best: Row, key: str, outward: int) -> bool:
+    """Whether a wider span may hold a better design: an objective gains that way, or a constraint eases.
+
+    By the slopes of a plane through all designs built, every dimension in its span's width and every figure
+    in its scatter. True where they are too few for a plane.
+    """
+    rows, file = result.built, result.study.file
+    keys = list(file.vary)
+    if len(rows) < len(keys) + FEWEST_RANKED_ROWS:
+        return True
+    x = np.array([[r.values[k] for k in keys] for r in rows])
+    plane = np.column_stack(
+        [np.ones(len(rows)), x / np.maximum(np.ptp(x, axis=0), SMALLEST_NUMBER)]
+    )
+
+    def slope(values: list[float]) -> float:
+        """Standard deviations of a figure per width of the span, outward."""
+        y = np.array(values)
+        fitted = np.linalg.lstsq(plane, y, rcond=None)[0]
+        return outward * float(fitted[1 + keys.index(key)]) / max(float(y.std()), SMALLEST_NUMBER)
+
+    gains = [
+        slope([r.outcome.figures[k] for r in rows]) * (1 if goal == "maximize" else -1)
+        for k, goal in file.objective.items()
+    ]
+    eases = [
+        -slope([file.constraint[k].excess(r.outcome.figures[k]) for r in rows])
+        for k in binding(result, best)
+    ]
+    return any(s > WORTH_DEVIATIONS for s in (*gains, *eases))
+
+
+def _is_its_own(x: np.ndarray, y: np.ndarray, others: list[np.ndarray]) -> bool:
+    """Whether x moves y beside the others: by the partial rank correlation, beyond what chance gives."""
+    from scipy.stats import rankdata, t
+
+    free = len(x) - len(others) - 2
+    if free < 1:
+        return False
+    beside = np.column_stack([np.ones(len(x)), *map(rankdata, others)])
+    ranks = np.column_stack([rankdata(x), rankdata(y)])
+    own = ranks - beside @ np.linalg.lstsq(beside, ranks, rcond=None)[0]
+    size = np.linalg.norm(own, axis=0)
+    if not (size > SAME * np.linalg.norm(ranks, axis=0)).all():  # the others stand for one of them
+        return True
+    rho = float(own[:, 0] @ own[:, 1] / size.prod())
+    chance = t.isf(BY_CHANCE / 2, free)
+    return abs(rho) > chance / np.sqrt(free + chance**2)
+
+
+def _spearman(x: np.ndarray, y: np.ndarray) -> float:
+    from scipy.stats import spearmanr
+
+    return float(spearmanr(x, y).statistic)

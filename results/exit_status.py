@@ -1,0 +1,11 @@
+"""Exit statuses of the `flexspline` command; from 128 on as shells have them: 128 and a signal's number."""
+
+from __future__ import annotations
+
+FAILED = 1
+REFUSED = 2
+"""Of input that is wrong, and of a command that is used wrongly."""
+INTERRUPTED = 130
+NOBODY_READS = 141
+"""Where the reader of a pipe has gone (``| head -1``), as of a tool that SIGPIPE ended. Nothing is said."""
+TERMINATED = 143

@@ -1,0 +1,80 @@
+"""What moves a study's figures, and which ends of spans a better design may lie beyond."""
+
+import tomllib
+from collections.abc import Iterable
+
+import numpy as np
+import pytest
+from example_files import EXAMPLES
+from scipy.stats import spearmanr
+
+from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.evaluate import Outcome
+from flexspline.pipeline.study.influence import OpenEnd, binding, open_ends, own_influences
+from flexspline.pipeline.study.load import study_from
+from flexspline.pipeline.study.result import StudyResult
+
+WALL, LENGTH = "flexspline.wall_thickness_mm", "flexspline.length_mm"
+K, STRESS = "K_b_Nm_per_rad", "wave_generator_peak_mises_MPa"
+STUDY = f"""
+design = "xb1-40.toml"
+[vary]
+"{WALL}" = {{ min = 0.3, max = 0.5 }}
+"{LENGTH}" = {{ min = 20.0, max = 30.0 }}
+[objective]
+"{K}" = "maximize"
+[constraint]
+"{STRESS}" = {{ max = 400.0 }}
+[run]
+method = "sobol"
+"""
+
+
+def result_of(designs: Iterable[tuple[float, float, float, float]]) -> StudyResult:
+    """Wall, length, stiffness and stress of each design."""
+    study = study_from(tomllib.loads(STUDY), EXAMPLES, "test")
+    rows = (
+        Row(i, {WALL: wall, LENGTH: length}, Outcome({K: stiffness, STRESS: stress}))
+        for i, (wall, length, stiffness, stress) in enumerate(designs)
+    )
+    return StudyResult(study, tuple(rows))
+
+
+def test_an_end_is_open_only_where_the_objective_gains_towards_it() -> None:
+    """The stiffness gains with the wall and falls with the length, at whose end the best happens to lie."""
+    places = [(i / 11, (5 * i % 12) / 11) for i in range(12)]
+    places[-1] = (1.0, 1.0)
+    result = result_of(
+        (0.3 + 0.2 * w, 20 + 10 * x, 3e4 + 100 * w - 8 * x, 300.0) for w, x in places
+    )
+    (best,) = result.pareto
+    assert best.slot == 11
+    assert open_ends(result, best) == (OpenEnd(WALL, 0.5, "upper"),)
+
+
+def test_a_constraint_binds_a_design_at_its_limit() -> None:
+    result = result_of((0.3, 20.0, 3e4 + s, s) for s in (300.0, 395.0, 410.0))
+    assert [binding(result, row) for row in result.rows] == [(), (STRESS,), (STRESS,)]
+
+
+def test_what_only_goes_along_is_no_influence() -> None:
+    """The stiffness follows the length alone; an optimiser moved the wall with it, rank correlation 0.7."""
+    rng = np.random.default_rng(20261124)
+    along, own, scatter = rng.random((3, 30))
+    designs = zip(
+        0.3 + 0.1 * (along + own), 20 + 10 * along, 3e4 - 1e3 * along + 50 * scatter, [300.0] * 30,
+        strict=True,
+    )  # fmt: skip
+    (found,) = own_influences(result_of(designs))[K]
+    assert spearmanr(along + own, -along).statistic < -0.5
+    assert found.key == LENGTH
+    assert found.correlation < 0
+
+
+def test_ranks_count_and_equal_values_share_theirs() -> None:
+    """Spearman's correlation as scipy has it, of a cubic with pairs of equal values."""
+    walls, cubes = [0.3 + 0.04 * (i // 2) for i in range(10)], [(i - 3.0) ** 3 for i in range(10)]
+    result = result_of((w, 25.0, 3e4 + c, 300.0) for w, c in zip(walls, cubes, strict=True))
+    (found,) = own_influences(result)[K]
+    assert found.key == WALL
+    assert found.correlation == pytest.approx(spearmanr(walls, cubes).statistic, abs=1e-12)
