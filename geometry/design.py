@@ -7,7 +7,7 @@ together stand in `geometry.checks`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, pi, radians
+from math import pi, radians
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -26,6 +26,7 @@ from flexspline.geometry.fields import (
 from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
+from flexspline.geometry.play_limit import play_limit
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.shapes import Flexspline
 from flexspline.geometry.wave_generator import WaveGenerator
@@ -111,9 +112,8 @@ class Gear(DesignTable):
 
     @property
     def bearing_play_limit_um(self) -> float:
-        """c_max = 2a(1 − cos α) [µm]: there the working pressure angle is 0."""
-        angle = radians(self.pressure_angle_deg)
-        return 2 * UM_PER_MM * self.centre_distance_mm * (1 - cos(angle))
+        """c_max [µm]: as far as the involute model goes."""
+        return UM_PER_MM * play_limit(self.centre_distance_mm, radians(self.pressure_angle_deg))
 
 
 class Bearing(DesignTable):
