@@ -12,7 +12,7 @@ from flexspline.fea.gear.kinematics import GAP_STEPS, Mesh
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.circular_spline import SHALLOWEST
 from flexspline.geometry.design import Design
-from flexspline.geometry.rated import rated_torque
+from flexspline.geometry.rated import LOST_MOTION_TORQUE, rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_model import even
 from flexspline.pipeline.gear_terms import PlayEffect
@@ -149,8 +149,8 @@ def of_torques(load_Nm: float, lost_motion_Nm: float) -> tuple[list[str], list[s
     if abs(load_Nm / lost_motion_Nm - 1) <= SAME_TORQUE:
         return [], []
     return [], [
-        f"the terms are at load.torque_Nm = {load_Nm:g}, the lost motion at {lost_motion_Nm:.4g} N·m, 4 % of "
-        "rated torque: the terms' sum is not the lost motion"
+        f"the terms are at load.torque_Nm = {load_Nm:g}, the lost motion at {lost_motion_Nm:.4g} N·m, "
+        f"{LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
     ]
 
 
