@@ -23,7 +23,7 @@ from flexspline.geometry.fields import (
     Percent,
     within,
 )
-from flexspline.geometry.material import ElasticMaterial, Material
+from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial, Material
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.play_limit import play_limit
@@ -41,13 +41,29 @@ class Materials(DesignTable):
         default=None, description="of the whole gear; absent: as the flexspline's"
     )
     bearing: ElasticMaterial | None = Field(
-        default=None, description="races and balls, of the whole gear; absent: 100Cr6"
+        default=None,
+        description=f"races and balls, of the whole gear; absent: {BEARING_STEEL.name}",
     )
 
     @property
     def stated(self) -> dict[str, ElasticMaterial]:
         """By key."""
         return {key: value for key, value in self if value is not None}
+
+    @property
+    def of_shaft(self) -> Material:
+        """As stated, else the flexspline's."""
+        return self.shaft or self.flexspline
+
+    @property
+    def of_circular_spline(self) -> ElasticMaterial:
+        """As stated, else the flexspline's."""
+        return self.circular_spline or self.flexspline
+
+    @property
+    def of_bearing(self) -> ElasticMaterial:
+        """Of races and balls: as stated, else the steel of bearings."""
+        return self.bearing or BEARING_STEEL
 
 
 class Gear(DesignTable):
@@ -208,7 +224,7 @@ class Design(DesignTable):
     def part(self, name: PartName) -> Part:
         """The flexspline or the shaft."""
         if name == "shaft":
-            return Part(self.shaft, self.material.shaft or self.material.flexspline)
+            return Part(self.shaft, self.material.of_shaft)
         return Part(self.flexspline, self.material.flexspline)
 
     @property

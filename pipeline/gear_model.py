@@ -22,7 +22,6 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
-from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tooth import flank
@@ -88,9 +87,8 @@ def gear_model(
     groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
     ring, count = (shape.ring_start, shape.ring_end), places or PLACES
     face = face_places or FACE_PLACES[gear.tooth_face]
-    material = design.material
-    rigid = Elastic.of(material.circular_spline or material.flexspline)
-    races = Elastic.of(material.bearing or BEARING_STEEL)
+    rigid = Elastic.of(design.material.of_circular_spline)
+    races = Elastic.of(design.material.of_bearing)
     inside = gear.module_mm * gear.teeth_circular_spline / 2
     return GearModel(
         mesh,
@@ -184,8 +182,8 @@ def pair_compliance(design: Design) -> float:
     """Of a tooth of the flexspline and one as large of the circular spline, at the pitch point [mm/N]."""
     f, gear = design.flexspline, design.gear
     pitch = gear.pitch_radius_mm
-    of = design.material
-    materials = Elastic.of(of.flexspline), Elastic.of(of.circular_spline or of.flexspline)
+    material = design.material
+    materials = Elastic.of(material.flexspline), Elastic.of(material.of_circular_spline)
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
     teeth = (
         tooth(
