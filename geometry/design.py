@@ -117,14 +117,24 @@ class Gear(DesignTable):
         return self.module_mm * self.teeth_flexspline / 2
 
     @property
+    def circular_spline_pitch_radius_mm(self) -> float:
+        """m z2/2 [mm], of the circular spline."""
+        return self.module_mm * self.teeth_circular_spline / 2
+
+    @property
+    def more_teeth(self) -> int:
+        """z2 − z1."""
+        return self.teeth_circular_spline - self.teeth_flexspline
+
+    @property
     def centre_distance_mm(self) -> float:
         """a = m(z2 − z1)/2 [mm], which is also w0, the wave generator's radial stroke."""
-        return self.module_mm * (self.teeth_circular_spline - self.teeth_flexspline) / 2
+        return self.module_mm * self.more_teeth / 2
 
     @property
     def ratio(self) -> float:
         """z1/(z2 − z1): of the gear whose circular spline is held."""
-        return self.teeth_flexspline / (self.teeth_circular_spline - self.teeth_flexspline)
+        return self.teeth_flexspline / self.more_teeth
 
     @property
     def bearing_play_limit_um(self) -> float:

@@ -187,7 +187,6 @@ def _ratio(design: Design) -> Iterator[str]:
     gear = design.gear
     if gear.ratio < LEAST_RATIO:
         yield (
-            f"z1/(z2 - z1) = {gear.teeth_flexspline}/{gear.teeth_circular_spline - gear.teeth_flexspline} = "
-            f"{gear.ratio:.3g}, usually 30 or more: is gear.teeth_circular_spline = "
-            f"{gear.teeth_circular_spline} right?"
+            f"z1/(z2 - z1) = {gear.teeth_flexspline}/{gear.more_teeth} = {gear.ratio:.3g}, usually 30 or "
+            f"more: is gear.teeth_circular_spline = {gear.teeth_circular_spline} right?"
         )

@@ -71,10 +71,9 @@ def gear_model(
     assert not isinstance(shape, Shaft)
     pitch = gear.pitch_radius_mm
     middle = (shape.inner_radius + shape.ring_radius) / 2
-    more = gear.teeth_circular_spline - gear.teeth_flexspline
     mesh = Mesh(
         pitch_radius=pitch,
-        lag=more / gear.teeth_circular_spline,
+        lag=gear.more_teeth / gear.teeth_circular_spline,
         stroke=gear.centre_distance_mm,
         clearance=gear.flank_clearance_mm,
         pressure_angle=radians(gear.pressure_angle_deg),
@@ -89,7 +88,7 @@ def gear_model(
     face = face_places or FACE_PLACES[gear.tooth_face]
     rigid = Elastic.of(design.material.of_circular_spline)
     races = Elastic.of(design.material.of_bearing)
-    inside = gear.module_mm * gear.teeth_circular_spline / 2
+    inside = gear.circular_spline_pitch_radius_mm
     return GearModel(
         mesh,
         _wave_generator(bearing, shape.inner_radius, design.bearing.radial_clearance_mm, races),
