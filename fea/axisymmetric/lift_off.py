@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from flexspline.fea.axisymmetric.harmonics import HarmonicError
-from flexspline.fea.interior_point import CENTRING, room
+from flexspline.fea.interior_point import corrected, room
 
 SEAT_RESIDUAL = 1e-10
 """Forces times gaps, and what the gaps are off by, end below this share of the largest."""
@@ -51,9 +51,7 @@ def pushing(matrix: np.ndarray, free: np.ndarray) -> np.ndarray:
             return by, matrix @ by - off  # noqa: B023
 
         push, lift = towards(-both)
-        reach = room(force, push, gap, lift)
-        left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
-        push, lift = towards(left**CENTRING * both.mean() - both - push * lift)
+        push, lift = towards(corrected(force, gap, push, lift))
         reach = SEAT_STEP_SHARE * room(force, push, gap, lift)
         force, gap = force + reach * push, gap + reach * lift
     raise HarmonicError(

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
-from flexspline.fea.interior_point import CENTRING, room
+from flexspline.fea.interior_point import corrected, room
 from flexspline.geometry.errors import ComputationError
 
 GEAR_RESIDUAL = 1e-11
@@ -178,9 +178,7 @@ def _settled(at: Contacts, torque: float) -> tuple[np.ndarray, float]:
             return by, (product - gap * by) / force, turn  # noqa: B023
 
         push, lift, _ = towards(plain, -both)
-        reach = room(force, push, gap, lift)
-        left = ((force + reach * push) * (gap + reach * lift)).mean() / both.mean()
-        product = left**CENTRING * both.mean() - both - push * lift
+        product = corrected(force, gap, push, lift)
         push, lift, turn = towards(dpotrs(factor, product / force + off, lower=1)[0], product)
         reach = GEAR_STEP_SHARE * room(force, push, gap, lift)
         force, gap, rotation = force + reach * push, gap + reach * lift, rotation + reach * turn
