@@ -404,4 +404,4 @@ def test_a_busy_machine_costs_a_shaft_in_layers_no_mesh() -> None:
         deadline, by_error,
     ).stiffness  # fmt: skip
     assert len(found.levels) == 2  # the third would begin at 75 s
-    assert "74 s" in found.shortfall
+    assert "74 s" in found.shortfall.words
