@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import pi, radians
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -241,6 +241,11 @@ class Design(DesignTable):
     def parts(self) -> tuple[Part, Part]:
         """Flexspline and shaft."""
         return self.part("flexspline"), self.part("shaft")
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """As a design file's tables, plain values without what is absent; new ones each time."""
+        return self.model_dump(mode="json", exclude_none=True)
 
     def changed(self, values: Mapping[str, object]) -> Design:
         """A new, checked design with other values at some dotted keys; array elements count from 0.

@@ -21,7 +21,7 @@ HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
 def value_at(design: Design, key: str) -> float | None:
     """The number at a dotted key, None where it is absent or no number."""
     try:
-        table, last = _reach(_tables(design), key)
+        table, last = _reach(design.tables, key)
     except DesignError:
         return None
     value = table.get(last) if isinstance(table, dict) else None
@@ -31,7 +31,7 @@ def value_at(design: Design, key: str) -> float | None:
 def has_table_of(design: Design, key: str) -> bool:
     """Whether the table of a dotted key is there, the key itself stated or left to its default."""
     try:
-        _reach(_tables(design), key)
+        _reach(design.tables, key)
     except DesignError:
         return False
     return True
@@ -44,7 +44,7 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     ------
     DesignError : no such key, a value out of range, or impossible geometry.
     """
-    tables = _tables(design)
+    tables = design.tables
     for key, value in values.items():
         table, last = _reach(tables, key)
         # what the file does not state may be a whole number as well
@@ -76,10 +76,6 @@ def lengths(part: Part) -> dict[str, float]:
 def without_holes(design: Design) -> Design:
     """The body of revolution that the flexspline and the shaft would be."""
     return design.model_copy(update={p.name: p.without_holes().shape for p in design.parts})
-
-
-def _tables(design: Design) -> dict[str, Any]:
-    return design.model_dump(mode="json", exclude_none=True)
 
 
 def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:

@@ -119,7 +119,7 @@ def _numeric_keys(design: Design) -> list[str]:
         elif isinstance(value, int | float) and not isinstance(value, bool):
             found.append(prefix)
 
-    walk("", design.model_dump(mode="json", exclude_none=True))
+    walk("", design.tables)
     return found
 
 
