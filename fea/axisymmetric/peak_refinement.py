@@ -139,6 +139,5 @@ class _MeshedField:
             peak=replace(found, shortfall=shortfall),
             peak_rz=peak.rz,
             peak_phi=phi,
-            peak_change=self.change,
             levels=tuple(self._levels),
         )
