@@ -54,7 +54,7 @@ def ring_bending_stress_MPa(design: Design) -> float:
     """Stress of the toothed ring bent to the wave generator's ellipse [MPa].
 
     σ = E/(1 − ν²)·(t/2)·3w0/R², a thin ring under w0 cos 2φ (ring theory), with t the ring's
-    thickness, R its middle radius and w0 = m(z2 − z1)/2.
+    thickness, R its middle radius and w0 as stated, else m(z2 − z1)/2.
     """
     f, material = design.flexspline, design.material.flexspline
     middle = f.inner_radius + f.ring_thickness_mm / 2
