@@ -58,11 +58,6 @@ class TetMesh:
     patches: tuple[str, ...]
     sector_deg: float
 
-    @property
-    def plain(self) -> TetMesh:
-        """The same without what only the making of it uses: fields travel between processes with this."""
-        return self
-
     def on(self, patch: str) -> np.ndarray:
         """Facets (j, 6) of a patch."""
         if patch not in self.patches:
