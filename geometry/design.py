@@ -139,7 +139,7 @@ class Gear(DesignTable):
     @property
     def bearing_play_limit_um(self) -> float:
         """c_max [µm]: as far as the involute model goes."""
-        return UM_PER_MM * play_limit(self.centre_distance_mm, radians(self.pressure_angle_deg))
+        return play_limit(UM_PER_MM * self.centre_distance_mm, radians(self.pressure_angle_deg))
 
 
 class Bearing(DesignTable):

@@ -9,9 +9,9 @@ ROUNDING_SHARE = 1e-12
 
 
 def play_limit(centre_distance: float, pressure_angle: float) -> float:
-    """Largest play that the involute model answers, c_max = 2a(1 − cos α) [mm].
+    """Largest play that the involute model answers, c_max = 2a(1 − cos α), in the unit of a.
 
-    Parameters: a = m(z2 − z1)/2 [mm], α [rad]. At c_max the working pressure angle is 0.
+    Parameters: a = m(z2 − z1)/2, α [rad]. At c_max the working pressure angle is 0.
 
     Examples
     --------
