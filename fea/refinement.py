@@ -12,6 +12,7 @@ from typing import Protocol, TypeVar
 
 from flexspline.fea.deadline import NO_DEADLINE, Deadline, Pace
 from flexspline.fea.shortfall import largest_mesh, last_mesh, next_mesh_failed
+from flexspline.fea.types import MET, Shortfall
 from flexspline.geometry.errors import ComputationError
 
 
@@ -41,8 +42,8 @@ class Refinable(Protocol[M]):
 
 def refinements(
     model: Refinable[M], mesh: M, deadline: Deadline = NO_DEADLINE, most_elements: float = inf
-) -> Iterator[str]:
-    """Refine as `refine` does; yield the shortfall, "" where there is none as yet, after each mesh.
+) -> Iterator[Shortfall]:
+    """Refine as `refine` does; yield the shortfall after each mesh, MET where there is none as yet.
 
     The last one is the refinement's; the mesh before may have been seen already, without it.
     """
@@ -54,7 +55,7 @@ def refinements(
         if mesh.elements > most_elements:
             yield largest_mesh(mesh.elements, int(most_elements))
             return
-        yield ""
+        yield MET
         try:
             next_mesh = model.finer(mesh)
             if next_mesh is not None:
@@ -67,13 +68,13 @@ def refinements(
             yield last_mesh(meshes)
             return
         mesh, meshes = next_mesh, meshes + 1
-    yield ""
+    yield MET
 
 
 def refine(
     model: Refinable[M], mesh: M, deadline: Deadline = NO_DEADLINE, most_elements: float = inf
-) -> str:
-    """Solve on `mesh` and on finer ones until the tolerance is met; "", or why that did not come about.
+) -> Shortfall:
+    """Solve on `mesh` and on finer ones until the tolerance is met; why, where that did not come about.
 
     Parameters
     ----------

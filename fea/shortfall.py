@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from flexspline.fea.deadline import OutOfTimeError
 from flexspline.fea.solid.errors import MemoryShortError, MesherTimeError
-from flexspline.fea.types import Stiffness, StressPeak
-from flexspline.geometry.errors import ComputationError
-
-NOT_FINISHED = "the next, finer mesh was not finished:"
+from flexspline.fea.types import Shortfall, Stiffness, StressPeak
+from flexspline.geometry.errors import ComputationError, FlexsplineError
 
 
 class ToleranceError(ComputationError):
-    """A figure is of use only within its tolerance, and is not; the message says why."""
+    """A figure is of use only within its tolerance, and is not; `shortfall` says why."""
+
+    def __init__(self, what: str, shortfall: Shortfall) -> None:
+        self.shortfall = shortfall
+        super().__init__(f"{what}: {shortfall}")
 
 
 def settled(found: Stiffness) -> Stiffness:
@@ -26,7 +28,7 @@ def settled(found: Stiffness) -> Stiffness:
     ToleranceError : it is not.
     """
     if found.shortfall:
-        raise ToleranceError(f"K is known to ± {found.half_width:.2g} only: {found.shortfall}")
+        raise ToleranceError(f"K is known to ± {found.half_width:.2g} only", found.shortfall)
     return found
 
 
@@ -38,29 +40,35 @@ def settled_peak(found: StressPeak) -> StressPeak:
     ToleranceError : nobody knows.
     """
     if found.shortfall:
-        raise ToleranceError(f"the peak stress may still change: {found.shortfall}")
+        raise ToleranceError("the peak stress may still change", found.shortfall)
     return found
 
 
-def next_mesh_failed(fault: Exception) -> str:
+def without(fault: FlexsplineError) -> Shortfall:
+    """Of a figure that is missing for this fault."""
+    return Shortfall(str(fault), _is_of_the_machine(fault))
+
+
+def next_mesh_failed(fault: Exception) -> Shortfall:
     """The mesh after the last good one could not be made or solved, or not in time."""
-    if isinstance(fault, OutOfTimeError | MesherTimeError | MemoryShortError):
-        return f"{NOT_FINISHED} {fault}"
-    if isinstance(fault, MemoryError):
-        return f"{NOT_FINISHED} not enough memory {fault}".rstrip()
-    return f"the next, finer mesh failed: {fault}"
+    why = f"not enough memory {fault}".rstrip() if isinstance(fault, MemoryError) else str(fault)
+    mended = _is_of_the_machine(fault)
+    return Shortfall(
+        f"the next, finer mesh {'was not finished' if mended else 'failed'}: {why}", mended
+    )
 
 
-def of_the_machine(shortfall: str) -> bool:
-    """Whether more time or memory would have gone further: another machine, or an idle one."""
-    return shortfall.startswith(NOT_FINISHED)
+def _is_of_the_machine(fault: Exception) -> bool:
+    if isinstance(fault, ToleranceError):
+        return fault.shortfall.of_the_machine
+    return isinstance(fault, OutOfTimeError | MesherTimeError | MemoryShortError | MemoryError)
 
 
-def largest_mesh(elements: int, most: int) -> str:
+def largest_mesh(elements: int, most: int) -> Shortfall:
     """The next mesh would have more elements than allowed."""
-    return f"the mesh has {elements} elements, and none is refined beyond {most}"
+    return Shortfall(f"the mesh has {elements} elements, and none is refined beyond {most}")
 
 
-def last_mesh(meshes: int) -> str:
+def last_mesh(meshes: int) -> Shortfall:
     """So many meshes are solved and no more."""
-    return f"{meshes} mesh{'es' if meshes > 1 else ''} solved, and no more are made"
+    return Shortfall(f"{meshes} mesh{'es' if meshes > 1 else ''} solved, and no more are made")

@@ -58,11 +58,6 @@ class TetMesh:
     patches: tuple[str, ...]
     sector_deg: float
 
-    @property
-    def plain(self) -> TetMesh:
-        """The same without what only the making of it uses: fields travel between processes with this."""
-        return self
-
     def on(self, patch: str) -> np.ndarray:
         """Facets (j, 6) of a patch."""
         if patch not in self.patches:
@@ -85,6 +80,30 @@ class TetMesh:
 
 
 @dataclass(frozen=True)
+class Shortfall:
+    """Why a figure falls short of what was asked for; false where it does not.
+
+    Attributes
+    ----------
+    words : plain ones; "" where nothing is short.
+    of_the_machine : whether more time or memory would have gone further: another machine, or an idle one.
+    """
+
+    words: str = ""
+    of_the_machine: bool = False
+
+    def __bool__(self) -> bool:
+        return bool(self.words)
+
+    def __str__(self) -> str:
+        return self.words
+
+
+MET = Shortfall()
+"""Of a figure that is as good as was asked for."""
+
+
+@dataclass(frozen=True)
 class StressPeak:
     """The largest von Mises stress away from sharp edges and patch edges, and where it is.
 
@@ -103,8 +122,8 @@ class StressPeak:
     exclusion_mm: float
     at_excluded_border: bool
     mises_at_twice_MPa: float | None
-    shortfall: str = ""
-    """Why the refinement ended before its tolerance was met, in plain words; "" where it was met."""
+    shortfall: Shortfall = MET
+    """Why the refinement ended before its tolerance was met."""
     stands_for: str = ""
     """Why this peak, of another body, is the part's; "" where the part itself was solved."""
 
@@ -176,8 +195,7 @@ class Stiffness:
     method : how the bounds were obtained, in plain words.
     error_scale : true error over estimated error, as found from the meshes; 1 where nothing is
         estimated.
-    shortfall : why the refinement ended before its tolerance was met, in plain words; "" where it
-        was met.
+    shortfall : why the refinement ended before its tolerance was met.
     """
 
     K_Nm_per_rad: float
@@ -189,7 +207,7 @@ class Stiffness:
     method: str
     levels: tuple[MeshLevel, ...]
     error_scale: float = 1.0
-    shortfall: str = ""
+    shortfall: Shortfall = MET
 
     @property
     def bounds_Nm_per_rad(self) -> tuple[float, float]:

@@ -62,9 +62,9 @@ def lengths(low: float, high: float, digits: int = DIGITS) -> str | None:
     return span(max(low, LENGTH_mm.low), min(high, LENGTH_mm.high), digits)
 
 
-def from_zero(high: float, digits: int = DIGITS) -> str:
+def from_zero(high: float) -> str:
     """As `lengths`, for one that may be 0: ``from 0 to HIGH``, or ``0`` where nothing larger fits."""
-    return span(0.0, min(high, LENGTH_mm.high), digits) or "0" if high >= LENGTH_mm.low else "0"
+    return span(0.0, min(high, LENGTH_mm.high)) or "0" if high >= LENGTH_mm.low else "0"
 
 
 def beside(

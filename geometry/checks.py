@@ -19,6 +19,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint
+from flexspline.geometry.play_limit import beyond_play_limit
 from flexspline.geometry.ranges import TEETH
 from flexspline.geometry.rated import rated_faults
 from flexspline.geometry.wave_generator import wave_generator_faults
@@ -97,7 +98,7 @@ def _play_faults(design: Design) -> Iterator[DesignError]:
     if bearing.bearing_play_model != "involute" or gear.centre_distance_mm <= 0:
         return
     c, limit = bearing.radial_clearance_um, gear.bearing_play_limit_um
-    if c > limit * (1 + 1e-12):  # rounding of the cosine
+    if beyond_play_limit(c, limit):
         yield DesignError(
             "bearing.radial_clearance_um",
             c,

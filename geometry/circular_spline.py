@@ -49,7 +49,7 @@ class CircularSpline:
 def circular_spline(design: Design) -> CircularSpline:
     """What the design states, and proportions for the rest."""
     gear = design.gear
-    pitch, stroke = gear.module_mm * gear.teeth_circular_spline / 2, gear.centre_distance_mm
+    pitch, stroke = gear.circular_spline_pitch_radius_mm, gear.centre_distance_mm
     assumed: list[Assumed] = []
     taken = taken_from(gear, "gear", assumed)
     diameter = taken(
@@ -69,8 +69,7 @@ def _root_radius(design: Design) -> float:
 
 
 def _least_outer(design: Design) -> float:
-    gear = design.gear
-    return _root_radius(design) + THINNEST_RIM * gear.module_mm * gear.teeth_circular_spline / 2
+    return _root_radius(design) + THINNEST_RIM * design.gear.circular_spline_pitch_radius_mm
 
 
 def circular_spline_faults(design: Design) -> Iterator[DesignError]:

@@ -7,8 +7,8 @@ together stand in `geometry.checks`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, pi, radians
-from typing import Annotated, Literal
+from math import pi, radians
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -23,9 +23,10 @@ from flexspline.geometry.fields import (
     Percent,
     within,
 )
-from flexspline.geometry.material import ElasticMaterial, Material
+from flexspline.geometry.material import BEARING_STEEL, ElasticMaterial, Material
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
+from flexspline.geometry.play_limit import play_limit
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.shapes import Flexspline
 from flexspline.geometry.wave_generator import WaveGenerator
@@ -40,13 +41,29 @@ class Materials(DesignTable):
         default=None, description="of the whole gear; absent: as the flexspline's"
     )
     bearing: ElasticMaterial | None = Field(
-        default=None, description="races and balls, of the whole gear; absent: 100Cr6"
+        default=None,
+        description=f"races and balls, of the whole gear; absent: {BEARING_STEEL.name}",
     )
 
     @property
     def stated(self) -> dict[str, ElasticMaterial]:
         """By key."""
         return {key: value for key, value in self if value is not None}
+
+    @property
+    def of_shaft(self) -> Material:
+        """As stated, else the flexspline's."""
+        return self.shaft or self.flexspline
+
+    @property
+    def of_circular_spline(self) -> ElasticMaterial:
+        """As stated, else the flexspline's."""
+        return self.circular_spline or self.flexspline
+
+    @property
+    def of_bearing(self) -> ElasticMaterial:
+        """Of races and balls: as stated, else the steel of bearings."""
+        return self.bearing or BEARING_STEEL
 
 
 class Gear(DesignTable):
@@ -100,20 +117,29 @@ class Gear(DesignTable):
         return self.module_mm * self.teeth_flexspline / 2
 
     @property
+    def circular_spline_pitch_radius_mm(self) -> float:
+        """m z2/2 [mm], of the circular spline."""
+        return self.module_mm * self.teeth_circular_spline / 2
+
+    @property
+    def more_teeth(self) -> int:
+        """z2 − z1."""
+        return self.teeth_circular_spline - self.teeth_flexspline
+
+    @property
     def centre_distance_mm(self) -> float:
         """a = m(z2 − z1)/2 [mm], which is also w0, the wave generator's radial stroke."""
-        return self.module_mm * (self.teeth_circular_spline - self.teeth_flexspline) / 2
+        return self.module_mm * self.more_teeth / 2
 
     @property
     def ratio(self) -> float:
         """z1/(z2 − z1): of the gear whose circular spline is held."""
-        return self.teeth_flexspline / (self.teeth_circular_spline - self.teeth_flexspline)
+        return self.teeth_flexspline / self.more_teeth
 
     @property
     def bearing_play_limit_um(self) -> float:
-        """c_max = 2a(1 − cos α) [µm]: there the working pressure angle is 0."""
-        angle = radians(self.pressure_angle_deg)
-        return 2 * UM_PER_MM * self.centre_distance_mm * (1 - cos(angle))
+        """c_max [µm]: as far as the involute model goes."""
+        return play_limit(UM_PER_MM * self.centre_distance_mm, radians(self.pressure_angle_deg))
 
 
 class Bearing(DesignTable):
@@ -208,13 +234,18 @@ class Design(DesignTable):
     def part(self, name: PartName) -> Part:
         """The flexspline or the shaft."""
         if name == "shaft":
-            return Part(self.shaft, self.material.shaft or self.material.flexspline)
+            return Part(self.shaft, self.material.of_shaft)
         return Part(self.flexspline, self.material.flexspline)
 
     @property
     def parts(self) -> tuple[Part, Part]:
         """Flexspline and shaft."""
         return self.part("flexspline"), self.part("shaft")
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """As a design file's tables, plain values without what is absent; new ones each time."""
+        return self.model_dump(mode="json", exclude_none=True)
 
     def changed(self, values: Mapping[str, object]) -> Design:
         """A new, checked design with other values at some dotted keys; array elements count from 0.

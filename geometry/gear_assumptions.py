@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design, Materials
-from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.rated import rated_torque
 from flexspline.geometry.wave_generator import flexible_bearing
 
@@ -24,8 +23,8 @@ def gear_assumptions(design: Design) -> tuple[Assumed, ...]:
 
 def _materials(material: Materials) -> Iterator[Assumed]:
     for key, of, why in (
-        ("circular_spline", material.flexspline, "the flexspline's"),
-        ("bearing", BEARING_STEEL, f"{BEARING_STEEL.name}, of races and balls"),
+        ("circular_spline", material.of_circular_spline, "the flexspline's"),
+        ("bearing", material.of_bearing, f"{material.of_bearing.name}, of races and balls"),
     ):
         if key not in material.stated:
             yield Assumed(f"material.{key}.youngs_modulus_GPa", of.youngs_modulus_GPa, why)

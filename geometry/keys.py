@@ -10,9 +10,12 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.part import Part
+from flexspline.geometry.schema import Location
 
-STEP = re.compile(r"([A-Za-z_]\w*)(?:\[(\d+)\])?")
-WITH_DEFAULTS = ("material.circular_spline", "material.bearing")
+PLACE = re.compile(r"\d{1,9}")
+"""Of an array's element, counted from 0."""
+IN_BRACKETS = re.compile(rf"\[({PLACE.pattern})\]")
+WITH_DEFAULTS = (("material", "circular_spline"), ("material", "bearing"))
 """Tables that may be missing although their keys have values: one key of them makes the table."""
 HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
 """Not in the meridian: no sensitivity without holes."""
@@ -21,7 +24,7 @@ HOLES = ("bolt_circle_diameter_mm", "bolt_hole_diameter_mm")
 def value_at(design: Design, key: str) -> float | None:
     """The number at a dotted key, None where it is absent or no number."""
     try:
-        table, last = _reach(_tables(design), key)
+        table, last = _reach(design.tables, key)
     except DesignError:
         return None
     value = table.get(last) if isinstance(table, dict) else None
@@ -31,7 +34,7 @@ def value_at(design: Design, key: str) -> float | None:
 def has_table_of(design: Design, key: str) -> bool:
     """Whether the table of a dotted key is there, the key itself stated or left to its default."""
     try:
-        _reach(_tables(design), key)
+        _reach(design.tables, key)
     except DesignError:
         return False
     return True
@@ -44,7 +47,7 @@ def with_values(design: Design, values: Mapping[str, object]) -> Design:
     ------
     DesignError : no such key, a value out of range, or impossible geometry.
     """
-    tables = _tables(design)
+    tables = design.tables
     for key, value in values.items():
         table, last = _reach(tables, key)
         # what the file does not state may be a whole number as well
@@ -78,30 +81,28 @@ def without_holes(design: Design) -> Design:
     return design.model_copy(update={p.name: p.without_holes().shape for p in design.parts})
 
 
-def _tables(design: Design) -> dict[str, Any]:
-    return design.model_dump(mode="json", exclude_none=True)
+def location_of(key: str) -> Location:
+    """``shaft.segment[1].length_mm``, or ``shaft.segment.1.length_mm``, part by part.
+
+    >>> location_of("shaft.segment[1].length_mm")
+    ('shaft', 'segment', 1, 'length_mm')
+    """
+    names = IN_BRACKETS.sub(r".\1", key).split(".")
+    return tuple(int(name) if PLACE.fullmatch(name) else name for name in names)
 
 
 def _reach(tables: dict[str, Any], key: str) -> tuple[dict[str, Any], str]:
     """The table that holds a key, and the key's last name."""
-    *path, last = key.split(".")
+    *path, last = location_of(key)
     here: Any = tables
-    for depth, name in enumerate(path, 1):
-        if ".".join(path[:depth]) in WITH_DEFAULTS:
-            here = here.setdefault(name, {})
+    for depth, part in enumerate(path, 1):
+        if tuple(path[:depth]) in WITH_DEFAULTS:
+            here = here.setdefault(part, {})
             continue
-        match = STEP.fullmatch(name)
         try:
-            if name.isdigit() and isinstance(here, list):  # shaft.segment.1.length_mm
-                here = here[int(name)]
-                continue
-            if match is None:
-                raise KeyError
-            here = here[match[1]]
-            if match[2] is not None:
-                here = here[int(match[2])]
+            here = here[part]
         except (KeyError, IndexError, TypeError):
             raise DesignError(key, None, "no such key in the design file") from None
-    if not isinstance(here, dict):
+    if not (isinstance(here, dict) and isinstance(last, str)):
         raise DesignError(key, None, "no such key in the design file")
     return here, last

@@ -1,9 +1,11 @@
-"""What pydantic found wrong with a design, said in plain words on one line."""
+"""What pydantic found wrong with a file, said in plain words on one line."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.near_key import nearest_key
@@ -14,38 +16,70 @@ from flexspline.geometry.toml_read import number_help
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails, ValidationError
 
+Refused = TypeVar("Refused", bound=DesignError)
+KIND: Location = ("flexspline", "kind")
 _NOUNS = {str: "text", bool: "true or false", dict: "a table", list: "a list"}
 
 
-def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
-    """The first fault as a DesignError with the others.
+@dataclass(frozen=True)
+class FileWords:
+    """Of the keys of one kind of file: how they are called, what they may hold, why one is unknown."""
+
+    name: Callable[[Location], str]
+    allowed: Callable[[Location], str]
+    unknown: Callable[[Location], str]
+
+
+def refusal(faults: Iterable[ErrorDetails], words: FileWords, kind: type[Refused]) -> Refused:
+    """The first of pydantic's faults in plain words, with the others.
 
     Unknown keys come first: a misspelt key is also a missing one, and its own name says more.
     """
-    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    first, *others = (_translated(each, data) for each in found)
-    return DesignError(first.key, first.value, first.reason, others)
+    found = sorted(faults, key=lambda e: e["type"] != "extra_forbidden")
+    first, *others = (_refused(each, words, kind) for each in found)
+    return kind(first.key, first.value, first.reason, others)
 
 
-def _translated(e: ErrorDetails, data: Mapping[str, Any]) -> DesignError:
-    kind = kind_of(data)
-    location = without_tag(e["loc"])
+def _refused(e: ErrorDetails, words: FileWords, kind: type[Refused]) -> Refused:
+    location, key = e["loc"], words.name(e["loc"])
     if e["type"] == "extra_forbidden":
-        return DesignError(dotted(location), e["input"], _unknown(location, kind))
-    if e["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        location = (*location, "kind")
-        value = data["flexspline"].get("kind", MISSING)
-        verb = "give" if value is MISSING else "must be"
-        return DesignError(dotted(location), value, f"{verb} {_or(KINDS)}")
+        return kind(key, e["input"], words.unknown(location))
     if e["type"] == "missing":
-        return DesignError(dotted(location), MISSING, f"give {allowed(location, kind)}")
+        return kind(key, MISSING, f"give {words.allowed(location)}")
     wrong = f", not {_NOUNS[type(e['input'])]}" if _is_wrong_type(e) else ""
     wrong += number_help(e["input"]) if wrong and isinstance(e["input"], str) else ""
-    return DesignError(dotted(location), e["input"], f"must be {allowed(location, kind)}{wrong}")
+    return kind(key, e["input"], f"must be {words.allowed(location)}{wrong}")
 
 
 def _is_wrong_type(e: ErrorDetails) -> bool:
     return e["type"].endswith("_type") and type(e["input"]) in _NOUNS
+
+
+def unknown_key(key: str, known: Sequence[str], table: str) -> str:
+    """Why a key is refused that `table` does not have: the known one it is like, or all of them."""
+    near = nearest_key(key, known)
+    hint = f"did you mean {near}?" if near else f"{table} takes {', '.join(known)}"
+    return f"unknown key; {hint}"
+
+
+def translate(error: ValidationError, data: Mapping[str, Any]) -> DesignError:
+    """What is wrong with the tables of a design file."""
+    kind = kind_of(data)
+    words = FileWords(dotted, partial(_allowed, kind=kind), partial(_unknown, kind=kind))
+    return refusal((_of_a_key(each, data) for each in error.errors()), words, DesignError)
+
+
+def _of_a_key(e: ErrorDetails, data: Mapping[str, Any]) -> ErrorDetails:
+    """A fault where the design file has a key: pydantic's of the flexspline's kind is one of its table."""
+    if e["type"] not in ("union_tag_invalid", "union_tag_not_found"):
+        return {**e, "loc": without_tag(e["loc"])}
+    value = data["flexspline"].get("kind", MISSING)
+    found = "missing" if value is MISSING else "literal_error"
+    return {**e, "type": found, "loc": KIND, "input": value}
+
+
+def _allowed(location: Location, kind: str | None) -> str:
+    return _or(KINDS) if location == KIND else allowed(location, kind)
 
 
 def without_tag(location: Location) -> Location:
@@ -77,7 +111,4 @@ def _unknown(location: Location, kind: str | None) -> str:
                 return f'belongs to a {other}; kind = "{kind}" takes {", ".join(own)}'
     if not table and key == "design":
         return "names a design: the file is a study, which `flexspline study` takes"
-    if near := nearest_key(key, known):
-        return f"unknown key; did you mean {near}?"
-    where = f"[{dotted(table)}]" if table else "the design"
-    return f"unknown key; {where} takes {', '.join(known)}"
+    return unknown_key(key, known, f"[{dotted(table)}]" if table else "the design")

@@ -23,6 +23,11 @@ STRONGEST_Nm_per_mm3 = 3.2e-3
 """The largest of these four, size 20."""
 UNUSUAL = 3.0
 """Times that: the four differ by 1.8 among themselves, a slip of the unit makes ten or more."""
+LOST_MOTION_SHARE = 0.04
+"""Of rated torque, each way: where lost motion is measured (GB/T 35089-2018; Hrcek et al., Materials 14
+(2021) 5057)."""
+LOST_MOTION_TORQUE = f"{100 * LOST_MOTION_SHARE:g} % of rated torque"
+"""The same in words."""
 RATED_SHARES = (1e-3, 1e2)
 """Of that: plastic gears carry a hundredth. Below, rounding shows in the forces; above, nothing holds."""
 

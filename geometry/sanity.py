@@ -54,7 +54,7 @@ def ring_bending_stress_MPa(design: Design) -> float:
     """Stress of the toothed ring bent to the wave generator's ellipse [MPa].
 
     σ = E/(1 − ν²)·(t/2)·3w0/R², a thin ring under w0 cos 2φ (ring theory), with t the ring's
-    thickness, R its middle radius and w0 = m(z2 − z1)/2.
+    thickness, R its middle radius and w0 as stated, else m(z2 − z1)/2.
     """
     f, material = design.flexspline, design.material.flexspline
     middle = f.inner_radius + f.ring_thickness_mm / 2
@@ -187,7 +187,6 @@ def _ratio(design: Design) -> Iterator[str]:
     gear = design.gear
     if gear.ratio < LEAST_RATIO:
         yield (
-            f"z1/(z2 - z1) = {gear.teeth_flexspline}/{gear.teeth_circular_spline - gear.teeth_flexspline} = "
-            f"{gear.ratio:.3g}, usually 30 or more: is gear.teeth_circular_spline = "
-            f"{gear.teeth_circular_spline} right?"
+            f"z1/(z2 - z1) = {gear.teeth_flexspline}/{gear.more_teeth} = {gear.ratio:.3g}, usually 30 or "
+            f"more: is gear.teeth_circular_spline = {gear.teeth_circular_spline} right?"
         )

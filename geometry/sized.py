@@ -18,7 +18,12 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.first_values import MODELS, Table, first_values
 from flexspline.geometry.load import design_from
 from flexspline.geometry.ranges import Range
-from flexspline.geometry.rated import RATED_SHARES, RATED_WHY, rated_in_proportion
+from flexspline.geometry.rated import (
+    LOST_MOTION_SHARE,
+    RATED_SHARES,
+    RATED_WHY,
+    rated_in_proportion,
+)
 from flexspline.geometry.schema import Location
 from flexspline.geometry.template import text_of
 from flexspline.geometry.wave_generator import flexible_bearing
@@ -36,8 +41,6 @@ FAR_BENT = 90
 """Stress goes with the stroke: at ratio 100 it is 0.9 of what the first cup's steel endures (448 MPa)."""
 LENGTH_DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
-LOAD_SHARE = 0.04
-"""Of rated torque: where makers measure lost motion."""
 
 RATED: Location = ("gear", "rated_torque_Nm")
 
@@ -113,9 +116,9 @@ def sized_values(
     else:
         reason = f"must be {span(low, high, 4)} N·m: a gear of this size has some {usual:.3g}"
         raise DesignError("--rated", rated_Nm, reason)
-    values["load"]["torque_Nm"] = _rounded(LOAD_SHARE * rated, 3)
+    values["load"]["torque_Nm"] = _rounded(LOST_MOTION_SHARE * rated, 3)
     why[("load", "torque_Nm")] = (
-        f"{LOAD_SHARE:.0%} of rated torque, where makers measure lost motion"
+        f"{LOST_MOTION_SHARE:.0%} of rated torque, where makers measure lost motion"
     )
     whole = design_from(tomllib.loads(text_of("", values, kind, {})))
     for assumed in (*circular_spline(whole).assumed, *flexible_bearing(whole).assumed):

@@ -57,7 +57,7 @@ def text_of(
 
 def design_text(design: Design) -> str:
     """Text of a design file that loads as exactly this design, every key with its meaning."""
-    values = design.model_dump(mode="json", exclude_none=True)
+    values = design.tables
     lines = _lines((), values, design.flexspline.kind, frozenset(), optional=False)
     return "\n".join(lines) + "\n"
 

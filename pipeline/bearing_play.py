@@ -9,9 +9,7 @@ from __future__ import annotations
 from math import acos, cos, sin, tan
 
 from flexspline.geometry.errors import FlexsplineError
-
-ROUNDING = 1e-12
-"""A play this fraction beyond c_max is c_max, written in another unit."""
+from flexspline.geometry.play_limit import beyond_play_limit, play_limit
 
 
 class BearingPlayDomainError(FlexsplineError, ValueError):
@@ -45,22 +43,6 @@ def involute(angle: float) -> float:
     return tan(angle) - angle
 
 
-def play_limit(centre_distance: float, pressure_angle: float) -> float:
-    """Largest play that the involute model answers, c_max = 2a(1 − cos α) [mm].
-
-    Parameters: a = m(z2 − z1)/2 [mm], α [rad]. At c_max the working pressure angle is 0.
-
-    Examples
-    --------
-    Module 0.2, 200 and 202 teeth, 20°:
-
-    >>> from math import radians
-    >>> round(play_limit(0.2, radians(20)) * 1e3, 2)
-    24.12
-    """
-    return 2 * centre_distance * (1 - cos(pressure_angle))
-
-
 def working_pressure_angle(play: float, centre_distance: float, pressure_angle: float) -> float:
     """Working pressure angle α′ = arccos(2a cos α / (2a − c)) [rad].
 
@@ -80,7 +62,7 @@ def working_pressure_angle(play: float, centre_distance: float, pressure_angle: 
     0.968755
     """
     limit = play_limit(centre_distance, pressure_angle)
-    if play > limit * (1 + ROUNDING):
+    if beyond_play_limit(play, limit):
         raise BearingPlayDomainError(play * 1e3, limit * 1e3)
     ratio = 2 * centre_distance * cos(pressure_angle) / (2 * centre_distance - play)
     return acos(min(1.0, ratio))

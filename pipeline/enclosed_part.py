@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
-from flexspline.fea.types import Stiffness
+from flexspline.fea.types import MET, Shortfall, Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.enclosure import NestingError, enclosed
 from flexspline.pipeline.parts import PartModel
@@ -54,8 +54,8 @@ def enclosure_of(model: PartModel, solve: Solve, expected: float = inf) -> Stiff
     if finest_pct < first_pct and found.half_width <= near:
         found = _enclosed_to(model, solve, finest_pct)
     if found.half_width <= model.tolerance:
-        return replace(found, shortfall="")
-    return replace(found, shortfall=found.shortfall or TOO_FAR)
+        return replace(found, shortfall=MET)
+    return replace(found, shortfall=found.shortfall or Shortfall(TOO_FAR))
 
 
 def _enclosed_to(model: PartModel, solve: Solve, tolerance_pct: float) -> Stiffness:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from flexspline.fea.solid.errors import NoBetterMeshError
-from flexspline.fea.types import Stiffness
+from flexspline.fea.types import MET, Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
@@ -116,7 +116,7 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
         upper_Nm_per_rad=upper,
         guaranteed=narrow and enclosure.guaranteed,
         method=f"K is {how}; bounds {enclosure.method}",
-        shortfall="" if enclosure.half_width <= tolerance else solid.shortfall,
+        shortfall=MET if enclosure.half_width <= tolerance else solid.shortfall,
     )
 
 
@@ -134,8 +134,8 @@ def answered_within(
     except (ComputationError, MemoryError) as fault:
         met = enclosure.half_width <= tolerance
         failed = "" if isinstance(fault, NoBetterMeshError) else "the solid model failed: "
-        why = f"{enclosure.shortfall}, and {failed}{fault}"
-        return replace(enclosure, shortfall="" if met else why)
+        why = replace(enclosure.shortfall, words=f"{enclosure.shortfall}, and {failed}{fault}")
+        return replace(enclosure, shortfall=MET if met else why)
     return held_within(solid, enclosure, tolerance)
 
 

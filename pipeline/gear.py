@@ -2,9 +2,10 @@
 
 K1 is the chord from 0 to T1, K2 from T1 to T2, K3 from T2 to rated torque, as in the makers'
 catalogues; "0" is a thousandth of rated torque: a clearance that the teeth first cross is not
-booked as softness. Lost motion is the whole twist between ± 4 % of rated torque, clearance
-included. Friction is left out, so loading and unloading are one curve; and both lobes are alike and teeth
-and balls stand alike on both sides of them, so the curve is odd. Positive torques are computed.
+booked as softness. Lost motion is the whole twist between ± `LOST_MOTION_SHARE` of rated
+torque, clearance included. Friction is left out, so loading and unloading are one curve; and both
+lobes are alike and teeth and balls stand alike on both sides of them, so the curve is odd. Positive
+torques are computed.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from flexspline.fea.threads import one_thread
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
-from flexspline.geometry.rated import rated_in_proportion, rated_torque
+from flexspline.geometry.rated import LOST_MOTION_SHARE, rated_in_proportion, rated_torque
 from flexspline.geometry.whole_gear import require_whole_gear
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.gear_chain import Chain, chain_of, chords
@@ -34,8 +35,6 @@ from flexspline.pipeline.parts import AnalysisContext
 
 T1_SHARE, T2_SHARE = 0.15, 0.50
 """Of rated torque: the makers' T1 and T2 are 0.13 to 0.20 and 0.39 to 0.69 of it in those four sizes."""
-LOST_MOTION_SHARE = 0.04
-"""Of rated torque, each way (GB/T 35089-2018; Hrcek et al., Materials 14 (2021) 5057)."""
 LOADING = (0.001, LOST_MOTION_SHARE, 0.09, T1_SHARE, 0.25, 0.37, T2_SHARE, 0.66, 0.83, 1.0)
 """Torques that are computed, of rated torque; a chord "from 0" begins at the first."""
 LAWS = (

@@ -22,7 +22,6 @@ from flexspline.fea.types import Elastic
 from flexspline.geometry.basic_rack import ADDENDUM, DEDENDUM
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.design import Design
-from flexspline.geometry.material import BEARING_STEEL
 from flexspline.geometry.part import Part
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tooth import flank
@@ -72,10 +71,9 @@ def gear_model(
     assert not isinstance(shape, Shaft)
     pitch = gear.pitch_radius_mm
     middle = (shape.inner_radius + shape.ring_radius) / 2
-    more = gear.teeth_circular_spline - gear.teeth_flexspline
     mesh = Mesh(
         pitch_radius=pitch,
-        lag=more / gear.teeth_circular_spline,
+        lag=gear.more_teeth / gear.teeth_circular_spline,
         stroke=gear.centre_distance_mm,
         clearance=gear.flank_clearance_mm,
         pressure_angle=radians(gear.pressure_angle_deg),
@@ -88,10 +86,9 @@ def gear_model(
     groove = min(GROOVE_SHARE * bearing.ball_diameter, shape.ring_width_mm / 2)
     ring, count = (shape.ring_start, shape.ring_end), places or PLACES
     face = face_places or FACE_PLACES[gear.tooth_face]
-    material = design.material
-    rigid = Elastic.of(material.circular_spline or material.flexspline)
-    races = Elastic.of(material.bearing or BEARING_STEEL)
-    inside = gear.module_mm * gear.teeth_circular_spline / 2
+    rigid = Elastic.of(design.material.of_circular_spline)
+    races = Elastic.of(design.material.of_bearing)
+    inside = gear.circular_spline_pitch_radius_mm
     return GearModel(
         mesh,
         _wave_generator(bearing, shape.inner_radius, design.bearing.radial_clearance_mm, races),
@@ -184,8 +181,8 @@ def pair_compliance(design: Design) -> float:
     """Of a tooth of the flexspline and one as large of the circular spline, at the pitch point [mm/N]."""
     f, gear = design.flexspline, design.gear
     pitch = gear.pitch_radius_mm
-    of = design.material
-    materials = Elastic.of(of.flexspline), Elastic.of(of.circular_spline or of.flexspline)
+    material = design.material
+    materials = Elastic.of(material.flexspline), Elastic.of(material.of_circular_spline)
     lever = max(pitch - f.ring_radius, LEAST_LEVER * gear.module_mm)
     teeth = (
         tooth(

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Any
 
 from flexspline.fea.address_space import refuse_little_address_space
-from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.sweeps import can_be_swept, goes_about_axis
@@ -58,7 +57,7 @@ class AnalysisContext:
 
 def is_lasting(found: Stiffness | StressPeak) -> bool:
     """Whether a figure would be the same on a machine with more time and memory."""
-    return not of_the_machine(found.shortfall)
+    return not found.shortfall.of_the_machine
 
 
 @dataclass(frozen=True)

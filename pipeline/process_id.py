@@ -119,8 +119,10 @@ def started(pid: int) -> str | None:
     if sys.platform == "linux":
         try:
             stat = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            return UNKNOWN  # /proc may hide other users' processes
+        except (
+            OSError
+        ):  # /proc may hide other users' processes: with hidepid=2 as if there were none
+            return UNKNOWN if _exists(pid) else None
         fields = stat.rpartition(")")[2].split()  # the name before may hold anything
         return None if fields[0] == "Z" else fields[_STARTTIME - _STATE]
     import psutil

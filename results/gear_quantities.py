@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexspline.geometry.rated import LOST_MOTION_TORQUE
 from flexspline.results.quantity import STIFFNESS_UNIT, Quantity
 
 GEAR_QUANTITIES: tuple[Quantity, ...] = (
@@ -33,7 +34,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "lost_motion_arcsec",
         "lost_motion_arcsec",
         "arcsec",
-        "Lost motion, between ± 4 % of rated torque",
+        f"Lost motion, between ± {LOST_MOTION_TORQUE}",
         "θ_lm",
         decimals=1,
         group="gear",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from flexspline.geometry.rated import LOST_MOTION_TORQUE
 from flexspline.pipeline.gear_remarks import (
     BucklingTube,
     CuttingFlanks,
@@ -124,8 +125,8 @@ def _note(note: GearNote) -> str:
             )
         case TwoTorques(load, lost_motion):
             return (
-                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {lost_motion:.4g} N·m, 4 % "
-                "of rated torque: the terms' sum is not the lost motion"
+                f"the terms are at load.torque_Nm = {load:g}, the lost motion at {lost_motion:.4g} N·m, "
+                f"{LOST_MOTION_TORQUE}: the terms' sum is not the lost motion"
             )
         case JointClearances(alone, term):
             return (

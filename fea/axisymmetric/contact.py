@@ -20,7 +20,6 @@ from flexspline.fea.axisymmetric.seat import SeatCompliance, seat_compliance
 from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refine
-from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.threads import one_thread
 from flexspline.fea.types import Elastic, MeshLevel, Stiffness
 from flexspline.geometry.outline import Meridian
@@ -60,7 +59,7 @@ def contact_stiffness(
     found = _Ratios(material, tolerance - supported.half_width)
     own = refine(found, triangulate(outline), deadline)
     # that of the held seat where a better machine may mend it
-    shortfall = own if own and not of_the_machine(supported.shortfall) else supported.shortfall
+    shortfall = own if own and not supported.shortfall.of_the_machine else supported.shortfall
     ratio, lowest, highest = found.ratios[-1], found.lowest, 1.0
     if len(found.ratios) > 1:
         ratio, doubt = settling(found.ratios)

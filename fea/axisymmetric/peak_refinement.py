@@ -20,7 +20,7 @@ from flexspline.fea.axisymmetric.triangulate import triangulate
 from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.refinement import refine, refinements
 from flexspline.fea.stress_rule import judged
-from flexspline.fea.types import Elastic
+from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.outline import Meridian
 
 PEAK_BULK = 0.5
@@ -123,7 +123,7 @@ class _MeshedField:
         near = peak.local_mises > peak.mises_MPa / 2
         return refined(mesh, bulk(found.error, PEAK_BULK) | (wrong & near))
 
-    def field(self, shortfall: str) -> RevolvedField:
+    def field(self, shortfall: Shortfall) -> RevolvedField:
         """The field, its peak judged: does it go on rising into the excluded zone?"""
         wave, peak, space = self._problem.load.wave, self._peak, self._model.space
         phi = pi / (2 * wave.n) if wave.n and peak.at_sine else 0.0
@@ -139,6 +139,5 @@ class _MeshedField:
             peak=replace(found, shortfall=shortfall),
             peak_rz=peak.rz,
             peak_phi=phi,
-            peak_change=self.change,
             levels=tuple(self._levels),
         )

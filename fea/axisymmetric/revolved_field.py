@@ -37,7 +37,6 @@ class RevolvedField:
     peak : the largest von Mises stress that counts, Cartesian place at angle `peak_phi`.
     peak_rz : the same place on the meridian [mm].
     peak_phi : its angle [rad], the first of those with the same stress.
-    peak_change : relative change of the peak over the last refinements, the estimate of its error.
     levels : the meshes.
     """
 
@@ -49,7 +48,6 @@ class RevolvedField:
     peak: StressPeak
     peak_rz: tuple[float, float]
     peak_phi: float
-    peak_change: float
     levels: tuple[StressLevel, ...]
 
     def mises(self, phi: float) -> np.ndarray:

@@ -57,7 +57,7 @@ def twist(outline: Meridian, material: Elastic, driven: str, tolerance: float) -
     """
     found = _Twisted(material, driven, tolerance)
     if why := refine(found, triangulate(outline), most_elements=MOST_TRIANGLES):
-        raise ToleranceError(f"the energy is off by {found.error:.2g}: {why}")
+        raise ToleranceError(f"the energy is off by {found.error:.2g}", why)
     r = found.model.space.places[:, 0]
     turned = found.solved.values.reshape(-1, 3)[:, TANGENTIAL]
     rotation = np.divide(turned, r, out=np.zeros_like(turned), where=r > 0)

@@ -13,10 +13,8 @@ from scipy.special import ellipe, ellipk
 from flexspline.fea.types import Elastic
 
 
-def point_contact(
-    along: float, across: float, material: Elastic, other: Elastic | None = None
-) -> float:
-    """C of δ = C F^(2/3) [mm/N^(2/3)].
+def point_contact(along: float, across: float, material: Elastic) -> float:
+    """C of δ = C F^(2/3) [mm/N^(2/3)] of two bodies of one material.
 
     `along`, `across`: sums of both bodies' curvatures in the two principal planes [1/mm], convex positive;
     both are above 0.
@@ -25,9 +23,7 @@ def point_contact(
     ratio = _ellipticity(apart)
     m = 1 - ratio**-2
     shape = 2 * ellipk(m) / pi * (pi / (2 * ratio**2 * ellipe(m))) ** (1 / 3)
-    soft = sum(
-        (1 - e.poissons_ratio**2) / e.youngs_modulus_MPa for e in (material, other or material)
-    )
+    soft = 2 * (1 - material.poissons_ratio**2) / material.youngs_modulus_MPa
     return float(shape * (3 * soft / (2 * total)) ** (2 / 3) * total / 2)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -30,10 +30,6 @@ class LayeredMesh(TetMesh):
     """A mesh of a shaft's layers; `facet_surface` (k,) numbers the part's surface of each facet."""
 
     facet_surface: np.ndarray
-
-    @property
-    def plain(self) -> TetMesh:
-        return TetMesh(**{f.name: getattr(self, f.name) for f in fields(TetMesh)})
 
     @property
     def corners(self) -> np.ndarray:

@@ -13,7 +13,6 @@ from math import inf, radians
 import numpy as np
 
 from flexspline.fea.solid.bisect import Simplices
-from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.layer_curving import LayeredMesh, quadratic
 from flexspline.fea.solid.layer_edges import seams_of
@@ -23,6 +22,7 @@ from flexspline.fea.solid.layer_refining import refined
 from flexspline.fea.solid.layer_sizes import face_area, volume, wall_area
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.mesh import MeshSpec
+from flexspline.fea.solid.mesh_checks import VOLUME, check_sizes
 from flexspline.fea.solid.polar import cartesian, polar
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.snap import common_point
@@ -30,9 +30,6 @@ from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.geometry.part import Part
 from flexspline.geometry.surfaces import Surface, part_surfaces
-
-TOLERANCE = 1e-3
-"""Of volume and patch areas; parabolas for arcs of 20° leave 2e-5, a few straight edges of holes more."""
 
 
 def layered_mesh(
@@ -78,26 +75,24 @@ def _curved(
     if (signed_volumes(points, mesh.tets) <= 0).any():
         raise MeshQualityError("elements are flat once their nodes are on the part's surfaces")
     made = quadratic(points, mesh, surfaces, sector_deg, most)
-    _check(made, layers)
+    check_sizes(made, _sizes(layers))
     return made
 
 
-def _check(mesh: LayeredMesh, layers: Layers) -> None:
-    """Volume and patch areas against integrals over the cross-sections."""
-    pairs = {"volume": (float(element_volumes(mesh.nodes, mesh.cells).sum()), volume(layers))}
+def _sizes(layers: Layers) -> dict[str, float]:
+    """Volume and patch areas, by integrals over the cross-sections."""
+    sizes = {VOLUME: volume(layers)}
     segments = layers.part.meridian.segments
     for patch in {s.patch for s in segments if s.patch}:
-        wanted = 0.0
+        area = 0.0
         for s in (s for s in segments if s.patch == patch):
             (r0, z0), (r1, z1) = s.start, s.end
             if z0 == z1:
-                wanted += face_area(layers, min(r0, r1), max(r0, r1), z0)
+                area += face_area(layers, min(r0, r1), max(r0, r1), z0)
             else:
-                wanted += wall_area(layers, r0, min(z0, z1), max(z0, z1))
-        pairs[patch] = (float(facet_areas(mesh.nodes, mesh.on(patch)).sum()), wanted)
-    for what, (found, wanted) in pairs.items():
-        if not abs(found / wanted - 1) < TOLERANCE:
-            raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {wanted:.6g} in the part")
+                area += wall_area(layers, r0, min(z0, z1), max(z0, z1))
+        sizes[patch] = area
+    return sizes
 
 
 def layered_edges(part: Part, sector_deg: float, spacing: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from flexspline.fea.solid.mesh_checks import check_against_cad, refuse_flat
 from flexspline.fea.solid.quadratic import boundary_faces, straightened, with_middles
 from flexspline.fea.solid.sizing import Grading, graded_background
 from flexspline.fea.solid.snap import into_sector_planes, snap_to_surfaces, undo_inverted
-from flexspline.fea.solid.tetwild import TetwildSettings, tetrahedralize
+from flexspline.fea.solid.tetwild import MESHER_SECONDS, TetwildSettings, tetrahedralize
 from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.above_zero import ABOVE_ZERO
@@ -40,8 +40,7 @@ class MeshSpec:
     envelope: float
     snap_limit: float
     unrolled_radius: float = 0.0
-    stop_energy: float = 10.0
-    time_limit_s: float = 300.0
+    time_limit_s: float = MESHER_SECONDS
 
     def scaled(self, factor: float) -> MeshSpec:
         """The same for a mesh `factor` times as coarse."""
@@ -83,7 +82,7 @@ def _mesh_once(surface: TaggedSurface, spec: MeshSpec) -> TetMesh:
     boundary = space.to(surface.vertices)
     vertices = np.vstack([boundary, space.to(surface.cut_vertices)])
     triangles = np.vstack([surface.triangles, surface.cut_triangles + len(boundary)])
-    settings = TetwildSettings(spec.grading.far, spec.envelope, spec.stop_energy, spec.time_limit_s)
+    settings = TetwildSettings(spec.grading.far, spec.envelope, time_limit_s=spec.time_limit_s)
     box = vertices.min(axis=0), vertices.max(axis=0)
     background = graded_background(space.to(surface.critical_edges), box, spec.grading)
     points, tets = tetrahedralize(vertices, triangles, settings, background)

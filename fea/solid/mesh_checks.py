@@ -1,6 +1,8 @@
-"""What a mesher's mesh must hold before anything is solved on it: volume, patch areas, planes of symmetry."""
+"""What a mesh must hold before anything is solved on it: volume, patch areas, planes of symmetry."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -17,6 +19,11 @@ AREA_TOLERANCE = 0.005
 mesh leave 0.1 %, facets on the wrong side of a patch edge more."""
 VOLUME_TOLERANCE = 0.01
 """Parabolas for arcs of a coarse mesh lose 0.1 %; a mesh with a hole closed is off by more."""
+SIZE_TOLERANCE = 1e-3
+"""Of volume and patch areas of a mesh made without a mesher; parabolas for arcs of 15° leave 1e-5, for arcs
+of 20° 2e-5, a few straight edges of holes more."""
+VOLUME = "volume"
+"""Stands beside the patches' names in `check_sizes`."""
 OFF_PLANE = 1e-6
 """Nodes of a symmetry plane lie in it to this share of the part's size, else it is no mirror."""
 LEAST_SHAPE = 1e-7
@@ -30,6 +37,22 @@ def refuse_flat(points: np.ndarray, tets: np.ndarray) -> None:
         raise MeshQualityError(
             f"{int(flat.sum())} elements are flat once their nodes are on the CAD"
         )
+
+
+def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
+    """Compare volume [mm³] and patch areas [mm²] with those `wanted`, by VOLUME or the patch's name.
+
+    Raises
+    ------
+    MeshQualityError : one of them is off.
+    """
+    for what, right in wanted.items():
+        if what == VOLUME:
+            found = float(element_volumes(mesh.nodes, mesh.cells).sum())
+        else:
+            found = float(facet_areas(mesh.nodes, mesh.on(what)).sum())
+        if not abs(found / right - 1) < SIZE_TOLERANCE:
+            raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {right:.6g} in the part")
 
 
 def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:

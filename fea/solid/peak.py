@@ -45,7 +45,7 @@ def stress_field(
     """
     stress = nodal_stress(mesh, displacement, material)
     peak = _peak(mesh, stress, edges)
-    return SolidField(mesh.plain, load_case, displacement, von_mises(stress), peak)
+    return SolidField(mesh, load_case, displacement, von_mises(stress), peak)
 
 
 def _peak(mesh: TetMesh, stress: np.ndarray, edges: SharpEdges) -> StressPeak:

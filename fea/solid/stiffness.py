@@ -25,7 +25,7 @@ from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error
-from flexspline.fea.types import Elastic, MeshLevel, Stiffness, TetMesh
+from flexspline.fea.types import Elastic, MeshLevel, Shortfall, Stiffness, TetMesh
 
 Mesher = Callable[[MeshSpec], TetMesh]
 FinerByError = Callable[[TetMesh, np.ndarray, float], TetMesh | None]
@@ -180,7 +180,7 @@ def level_of(solved: Solved) -> MeshLevel:
     )
 
 
-def _stiffness(estimate: ScaledEstimate, symmetry: str, shortfall: str) -> Stiffness:
+def _stiffness(estimate: ScaledEstimate, symmetry: str, shortfall: Shortfall) -> Stiffness:
     upper, meshes = estimate.K_Nm_per_rad, len(estimate.levels)
     error = estimate.relative * upper
     how = f"from the last two of {meshes} meshes" if meshes > 1 else "the usual factor"

@@ -23,18 +23,23 @@ import numpy as np
 from flexspline.fea.child_python import child_command
 from flexspline.fea.solid.errors import MesherError, MesherTimeError
 
+STOP_ENERGY = 10.0
+"""fTetWild's own. AMIPS energy, of which a regular tetrahedron has 3."""
+MESHER_SECONDS = 300.0
+"""Ten times a whole run of the six-hole cup with fTetWild (30 s): what takes longer may never end."""
+
 
 @dataclass(frozen=True)
 class TetwildSettings:
     """fTetWild's parameters; lengths in mm, absolute.
 
-    `stop_energy` is the AMIPS energy at which optimisation ends (a regular tetrahedron has 3).
+    `stop_energy` is the AMIPS energy at which optimisation ends.
     """
 
     edge_length: float
     envelope: float
-    stop_energy: float = 10.0
-    time_limit_s: float = 300.0
+    stop_energy: float = STOP_ENERGY
+    time_limit_s: float = MESHER_SECONDS
 
 
 @dataclass(frozen=True)

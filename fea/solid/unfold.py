@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from flexspline.fea.solid.polar import cartesian
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
@@ -28,7 +29,7 @@ def folded(points: np.ndarray, sector_deg: float) -> np.ndarray:
     phi = np.arctan2(points[:, 1], points[:, 0]) % (2 * step)
     phi = np.minimum(phi, 2 * step - phi)
     r = np.hypot(points[:, 0], points[:, 1])
-    return np.column_stack([r * np.cos(phi), r * np.sin(phi), points[:, 2]])
+    return cartesian(np.column_stack([r, phi, points[:, 2]]))
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ def unfolding(mesh: TetMesh, sector_deg: float) -> Unfolding:
         if closed and k == times - 1:
             owner[k, shared[1]] = owner[0, shared[1]]
         phi = (k + 1) * step - angle if odd else k * step + angle
-        nodes.append(np.column_stack([r * np.cos(phi), r * np.sin(phi), mesh.nodes[:, 2]]))
+        nodes.append(cartesian(np.column_stack([r, phi, mesh.nodes[:, 2]])))
         cells.append(owner[k][mesh.cells[:, MIRRORED_CELL] if odd else mesh.cells])
         drop = {inner[k % 2]} if k < times - 1 else set()
         drop |= {inner[(k - 1) % 2]} if k else set()

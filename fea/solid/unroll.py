@@ -13,6 +13,8 @@ from typing import Protocol
 
 import numpy as np
 
+from flexspline.fea.solid.polar import cartesian
+
 
 class MeshingMap(Protocol):
     """A one-to-one map between part space and the space in which the part is meshed."""
@@ -47,6 +49,4 @@ class Unrolled:
         return np.column_stack([r, phi * self.radius, points[:, 2]])
 
     def back(self, points: np.ndarray) -> np.ndarray:
-        phi = points[:, 1] / self.radius
-        r = points[:, 0]
-        return np.column_stack([r * np.cos(phi), r * np.sin(phi), points[:, 2]])
+        return cartesian(points / [1.0, self.radius, 1.0])

@@ -6,12 +6,12 @@ from typing import Any
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import MISSING
-from flexspline.geometry.keys import has_table_of, value_at
+from flexspline.geometry.keys import has_table_of, location_of, value_at
 from flexspline.geometry.near_key import nearest_key
-from flexspline.geometry.schema import allowed, node_at
+from flexspline.geometry.schema import allowed, dotted, node_at
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
-from flexspline.pipeline.study.study import Study, StudyError, is_whole, location_of
+from flexspline.pipeline.study.study import Study, StudyError, is_whole
 
 STD_KEY = "backlash_arcsec.std"
 SMALLEST_SPREAD = 1e-6
@@ -80,8 +80,11 @@ def _always_stated(study: Study) -> bool:
 
 def _check_design_key(study: Study, table: str, key: str) -> None:
     kind = study.design.flexspline.kind
-    node = node_at(location_of(key), kind)
-    if node.get("type") in ("number", "integer") and has_table_of(study.design, key):
+    location = location_of(key)
+    node = node_at(location, kind)
+    # one spelling: a key is looked for in [vary], [link] and [tolerance]
+    is_number = dotted(location) == key and node.get("type") in ("number", "integer")
+    if is_number and has_table_of(study.design, key):
         if table != "tolerance" or value_at(study.design, key) is not None:
             return
         reason = "has no value in the design file that could scatter; state it there"
@@ -119,7 +122,7 @@ def _numeric_keys(design: Design) -> list[str]:
         elif isinstance(value, int | float) and not isinstance(value, bool):
             found.append(prefix)
 
-    walk("", design.model_dump(mode="json", exclude_none=True))
+    walk("", design.tables)
     return found
 
 

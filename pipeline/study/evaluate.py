@@ -26,7 +26,7 @@ from flexspline.pipeline.load_cases import CASES
 from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_peak, torque_peak
 from flexspline.pipeline.rim_case import RIM_CASES, figure_of
-from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve
+from flexspline.pipeline.study.figures import GIVEN_BY, SIZES, Solve, stiffness_figures
 from flexspline.pipeline.study.holes import HolesEffect, pierced, with_holes
 
 STUDY_TORSION_TOLERANCE = 2e-3
@@ -163,10 +163,5 @@ def _figures(name: str, found: Stiffness | StressPeak) -> dict[str, float]:
             f"{name}_mises_MPa": peak.mises_MPa,
             f"{name}_at_excluded_border": float(peak.at_excluded_border),
         }
-    bounds = f"{name}_bounds_Nm_per_rad"
-    return {
-        f"{name}_Nm_per_rad": found.K_Nm_per_rad,
-        f"{bounds}[0]": found.lower_Nm_per_rad,
-        f"{bounds}[1]": found.upper_Nm_per_rad,
-        f"{name}_bounds_guaranteed": float(found.guaranteed),
-    }
+    guaranteed = {f"{name}_bounds_guaranteed": float(found.guaranteed)}
+    return stiffness_figures(name, found) | guaranteed

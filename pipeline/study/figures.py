@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal
 
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.near_key import nearest_key
 from flexspline.pipeline.backlash import TERMS
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
@@ -12,19 +13,26 @@ from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 Solve = Literal["torsion", "ellipse", "torque", "gear"] | RimCase
 
 
-def _stiffness(name: str) -> tuple[str, ...]:
+def stiffness_keys(name: str) -> tuple[str, str, str]:
+    """Of a stiffness and of both its bounds, by its name, such as "K_b"."""
     bounds = f"{name}_bounds_Nm_per_rad"
-    return (f"{name}_Nm_per_rad", f"{bounds}[0]", f"{bounds}[1]")
+    return f"{name}_Nm_per_rad", f"{bounds}[0]", f"{bounds}[1]"
+
+
+def stiffness_figures(name: str, found: Stiffness) -> dict[str, float]:
+    """A stiffness and both its bounds, by their keys."""
+    values = found.K_Nm_per_rad, *found.bounds_Nm_per_rad
+    return dict(zip(stiffness_keys(name), values, strict=True))
 
 
 GIVEN_BY: dict[Solve, tuple[str, ...]] = {
     "torsion": (
-        *_stiffness("K_b"),
-        *_stiffness("K_e"),
+        *stiffness_keys("K_b"),
+        *stiffness_keys("K_e"),
         "K_series_Nm_per_rad",
         *(f"backlash_arcsec.{name}" for name in (*TERMS, "total", "std")),
     ),
-    **{case: _stiffness(figure_of(case)) for case in RIM_CASES},
+    **{case: stiffness_keys(figure_of(case)) for case in RIM_CASES},
     "ellipse": ("wave_generator_peak_mises_MPa",),
     "torque": ("torque_peak_mises_MPa", "shaft_torque_peak_mises_MPa"),
     "gear": (

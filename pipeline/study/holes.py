@@ -21,6 +21,7 @@ from flexspline.geometry.shaft_shape import ShaftSegment
 from flexspline.geometry.tube import polar_moment_mm4
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.part_stiffness import part_stiffness
+from flexspline.pipeline.study.figures import stiffness_keys
 
 DRIFT = 0.5
 """Share of the holes' effect by which it may be another elsewhere in the study."""
@@ -88,12 +89,13 @@ def drifts(keys: Iterable[str]) -> bool:
 
 def with_holes(found: Mapping[str, float], design: Design, effect: HolesEffect) -> dict[str, float]:
     """Figures with K_e and its bounds corrected, and the factor beside them."""
-    value, doubt = effect.factor(design, found["K_e_Nm_per_rad"])
+    K, low, high = stiffness_keys("K_e")
+    value, doubt = effect.factor(design, found[K])
     return {
         **found,
-        "K_e_Nm_per_rad": found["K_e_Nm_per_rad"] * value,
-        "K_e_bounds_Nm_per_rad[0]": found["K_e_bounds_Nm_per_rad[0]"] * (value - doubt),
-        "K_e_bounds_Nm_per_rad[1]": found["K_e_bounds_Nm_per_rad[1]"] * (value + doubt),
+        K: found[K] * value,
+        low: found[low] * (value - doubt),
+        high: found[high] * (value + doubt),
         "K_e_bounds_guaranteed": 0.0,
         "K_e_holes_factor": value,
     }

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
-from flexspline.geometry.errors import MISSING, DesignError
+from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import load_design, read_toml
-from flexspline.geometry.near_key import nearest_key
-from flexspline.geometry.toml_read import number_help
+from flexspline.geometry.plain_words import FileWords, refusal, unknown_key
+from flexspline.geometry.schema import Location
 from flexspline.pipeline.study.check import check
 from flexspline.pipeline.study.schema import KEYS, WORDS, StudyFile, pattern
 from flexspline.pipeline.study.study import Study, StudyError
-
-if TYPE_CHECKING:
-    from pydantic_core import ErrorDetails
 
 OF_DESIGN = ("name", "flexspline")
 """Keys that every design file has, and no study."""
@@ -41,7 +38,7 @@ def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
     try:
         file = StudyFile.model_validate(data)
     except ValidationError as fault:
-        raise _translated(fault) from None
+        raise refusal(fault.errors(), FileWords(_name, _allowed, _unknown), StudyError) from None
     try:
         design = load_design(folder / file.design)
     except DesignError as fault:
@@ -51,25 +48,17 @@ def study_from(data: Mapping[str, Any], folder: Path, name: str) -> Study:
     return study
 
 
-def _translated(error: ValidationError) -> StudyError:
-    """The first fault in plain words; unknown keys first, since a misspelt one is also missing."""
-    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    first, *others = map(_said, found)
-    return StudyError(first.key, first.value, first.reason, others)
+def _name(location: Location) -> str:
+    return ".".join(f'"{p}"' if "." in str(p) else str(p) for p in location)
 
 
-def _said(fault: ErrorDetails) -> StudyError:
-    where = fault["loc"]
-    key = ".".join(f'"{p}"' if "." in str(p) else str(p) for p in where)
-    if fault["type"] == "extra_forbidden":
-        known = KEYS.get(pattern(where[:-1]), ())
-        if where[-1] in OF_DESIGN and len(where) == 1:
-            return StudyError(key, fault["input"], NO_STUDY)
-        near = nearest_key(str(where[-1]), known)
-        hint = f"did you mean {near}?" if near else f"known are {', '.join(known)}"
-        return StudyError(key, fault["input"], f"unknown key; {hint}")
-    words = WORDS.get(pattern(where), "something else")
-    if fault["type"] == "missing":
-        return StudyError(key, MISSING, f"give {words}")
-    help_ = number_help(fault["input"]) if isinstance(fault["input"], str) else ""
-    return StudyError(key, fault["input"], f"must be {words}{help_}")
+def _allowed(location: Location) -> str:
+    return WORDS.get(pattern(location), "something else")
+
+
+def _unknown(location: Location) -> str:
+    *table, key = location
+    if not table and key in OF_DESIGN:
+        return NO_STUDY
+    known = KEYS.get(pattern(tuple(table)), ())
+    return unknown_key(str(key), known, f"[{_name(tuple(table))}]" if table else "a study")

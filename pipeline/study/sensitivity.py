@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from flexspline.fea.shortfall import NOT_FINISHED
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import without_holes
 from flexspline.pipeline.cache import Cache
@@ -41,4 +40,4 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
 def _is_lasting(kept: Slopes) -> bool:
     """Whether more time or memory would have found no more."""
     reasons = (*(s.why for s in kept.found), *kept.missing.values())
-    return not any(NOT_FINISHED in why for why in reasons)
+    return not any(why.of_the_machine for why in reasons)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from flexspline.fea.types import MET, Shortfall
 from flexspline.geometry.part_name import PartName
 
 
@@ -16,7 +17,7 @@ class Slope:
     ----------
     held : dK/dp from the energy with the field held [N·m/rad per mm].
     solved : dK/dp from differences of K solved anew.
-    why : why one of them is None, else "".
+    why : why one of them is None.
     solved_error : what the bounds of K and the extrapolation leave open of it.
     K_Nm_per_rad : of the part, hole-free.
     backlash_arcsec_per_mm : d(wind-up of the part between −T_L and +T_L)/dp.
@@ -30,7 +31,7 @@ class Slope:
     solved_error: float
     K_Nm_per_rad: float
     backlash_arcsec_per_mm: float
-    why: str = ""
+    why: Shortfall = MET
 
     @property
     def best(self) -> float:
@@ -56,4 +57,4 @@ class Slopes:
     """Of one design; `missing`: why a dimension has none, by its key."""
 
     found: tuple[Slope, ...]
-    missing: Mapping[str, str]
+    missing: Mapping[str, Shortfall]

@@ -40,7 +40,7 @@ class _Asked:
 
     @cached_property
     def _tables(self) -> dict[str, Any]:
-        return self.study.design.model_dump(mode="json", exclude_none=True)
+        return self.study.design.tables
 
     @cached_property
     def over(self) -> Mapping[str, BaseDistribution]:

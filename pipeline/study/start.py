@@ -24,7 +24,7 @@ def start_outcome(
     """Its figures by the solves of the study, kept with the study's trials."""
     stored = store.notes().get(START_NOTE)
     if stored is None:
-        tables = study.design.model_dump(mode="json", exclude_none=True)
+        tables = study.design.tables
         stored = asdict(evaluation(Task(tables, {}, solves_of(study, USUAL_SOLVES), holes)))
         store.note(START_NOTE, stored)
     return outcome_of(stored)

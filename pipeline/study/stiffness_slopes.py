@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
-from flexspline.fea.shortfall import settled
-from flexspline.fea.types import Elastic
+from flexspline.fea.shortfall import settled, without
+from flexspline.fea.types import MET, Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError, FlexsplineError
 from flexspline.geometry.keys import lengths, with_values
@@ -46,7 +46,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
     """
     plain = revolved(design)
     found: list[Slope] = []
-    missing: dict[str, str] = {}
+    missing: dict[str, Shortfall] = {}
 
     def changed(values: dict[str, float], name: PartName) -> Part:
         return with_values(plain, values).part(name)
@@ -66,11 +66,11 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             def moved(v: dict[str, float], part: Part = part, solved: Twist = solved) -> float:
                 return moved_stiffness(solved, changed(v, part.name).meridian)
 
-            held, why = None, ""
+            held, why = None, MET
             try:
                 held = slope_with_field_held(moved, key, p)
             except FlexsplineError as fault:
-                why = str(fault)
+                why = without(fault)
             again, error, no_room = _richardson(K, key, p, here)
             if held is None and again is None:
                 missing[key] = why
@@ -110,16 +110,16 @@ def _central(K: Callable[[dict[str, float]], float], key: str, p: float, share: 
 
 def _richardson(
     K: Callable[[dict[str, float]], float], key: str, p: float, here: float
-) -> tuple[float | None, float, str]:
+) -> tuple[float | None, float, Shortfall]:
     """Central differences over h and h/2, extrapolated to h = 0; what may be wrong with them, and why
     there are none."""
-    share, why = SOLVED_STEP, ""
+    share, why = SOLVED_STEP, MET
     for _ in range(TRIES):
         try:
             wide, close = _central(K, key, p, share), _central(K, key, p, share / 2)
         except FlexsplineError as fault:
-            share, why = share * NARROWER, str(fault)
+            share, why = share * NARROWER, without(fault)
             continue
         noise = 5 / 3 * K_TOLERANCE * here / (share * p)  # K's doubt on each, times the weights
-        return (4 * close - wide) / 3, noise + abs(close - wide) / 3, ""
+        return (4 * close - wide) / 3, noise + abs(close - wide) / 3, MET
     return None, 0.0, why

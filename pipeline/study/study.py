@@ -8,8 +8,8 @@ from functools import cached_property
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.keys import STEP
-from flexspline.geometry.schema import Location, node_at
+from flexspline.geometry.keys import location_of
+from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.figures import TOTAL, USUAL_FIGURES
 from flexspline.pipeline.study.schema import StudyFile
 
@@ -51,20 +51,6 @@ class Study:
     def is_answered(self, figures: Mapping[str, float]) -> bool:
         """Whether a design has every figure asked for; what else could not be solved costs only itself."""
         return self.asked <= figures.keys()
-
-
-def location_of(key: str) -> Location:
-    """``shaft.segment[1].length_mm`` → ("shaft", "segment", 1, "length_mm")."""
-    parts: list[str | int] = []
-    for name in key.split("."):
-        match = STEP.fullmatch(name)
-        if match is None:
-            parts.append(name)
-            continue
-        parts.append(match[1])
-        if match[2] is not None:
-            parts.append(int(match[2]))
-    return tuple(parts)
 
 
 def is_whole(design: Design, key: str) -> bool:

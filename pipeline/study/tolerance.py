@@ -15,13 +15,13 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.keys import value_at, with_values
+from flexspline.geometry.keys import location_of, value_at, with_values
 from flexspline.geometry.schema import node_at
 from flexspline.pipeline.study.evaluate import Task
 from flexspline.pipeline.study.holes import HolesEffect
 from flexspline.pipeline.study.plan import Listed, linked
 from flexspline.pipeline.study.source import Planned, solves_of
-from flexspline.pipeline.study.study import Study, StudyError, location_of
+from flexspline.pipeline.study.study import Study, StudyError
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

@@ -16,7 +16,7 @@ from flexspline.pipeline.rim_case import figure_of
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task, outcome_of
-from flexspline.pipeline.study.figures import GIVEN_BY
+from flexspline.pipeline.study.figures import GIVEN_BY, stiffness_figures, stiffness_keys
 from flexspline.pipeline.study.local_workers import WORKER_DIED
 from flexspline.pipeline.study.result import StudyResult
 from flexspline.pipeline.study.store import TrialStore
@@ -44,10 +44,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
     }
     for name in ("K_b", "K_e", *map(figure_of, SOLID_CASES)):
         if name in found.solved:
-            k = found[name]
-            figures[f"{name}_Nm_per_rad"] = k.K_Nm_per_rad
-            figures[f"{name}_bounds_Nm_per_rad[0]"] = k.lower_Nm_per_rad
-            figures[f"{name}_bounds_Nm_per_rad[1]"] = k.upper_Nm_per_rad
+            figures |= stiffness_figures(name, found[name])
     if found.wave_generator_peak is not None:
         figures["wave_generator_peak_mises_MPa"] = found.wave_generator_peak.mises_MPa
     return Outcome(figures)
@@ -96,10 +93,8 @@ def checked(row: Row, solid: Outcome, solver: Solver) -> Verified:
 def _bounds(figures: Mapping[str, float], key: str, K_b: str) -> tuple[float, float] | None:
     if key == "backlash_arcsec.total":
         return _windup_bounds(figures, K_b)
-    stem = key.replace("_Nm_per_rad", "_bounds_Nm_per_rad")
-    if f"{stem}[0]" not in figures:
-        return None
-    return figures[f"{stem}[0]"], figures[f"{stem}[1]"]
+    _, low, high = stiffness_keys(key.removesuffix("_Nm_per_rad"))
+    return (figures[low], figures[high]) if low in figures else None
 
 
 def _windup_bounds(figures: Mapping[str, float], K_b: str) -> tuple[float, float]:

@@ -39,7 +39,7 @@ def weights(design: Design) -> str:
 
 def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """The file's tables in its order, the shaft's segments one by one, by the names they have there."""
-    whole: Mapping[str, Any] = design.model_dump(mode="json", exclude_none=True)
+    whole: Mapping[str, Any] = design.tables
     for name, table in whole.items():
         if not isinstance(table, dict):
             continue

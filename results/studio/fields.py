@@ -54,7 +54,7 @@ def received(tables: Any) -> Design:
 
 def form(design: Design) -> list[Tables]:
     """The groups of the form, each a title and its entries, for the design's own kind and segments."""
-    tables = design.model_dump(mode="json", exclude_none=True)
+    tables = design.tables
     kind, usual = design.flexspline.kind, assumed_values(design)
     groups: list[Tables] = []
     for title, location in GROUPS:

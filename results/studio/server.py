@@ -94,7 +94,7 @@ def _json(value: Any, status: int = 200) -> web.Response:
 
 
 def _opened(design: Design) -> dict[str, Any]:
-    tables = design.model_dump(mode="json", exclude_none=True)
+    tables = design.tables
     return {"tables": tables, "form": form(design)}
 
 

@@ -44,7 +44,7 @@ def _entry(s: Slope) -> dict[str, Any]:
     if s.agree is not None:
         found["agree"] = s.agree
     if s.why:
-        found["one_way_because"] = s.why
+        found["one_way_because"] = s.why.words
     return found | {
         "pct_per_pct": s.elasticity,
         "backlash_arcsec_per_mm": s.backlash_arcsec_per_mm,

@@ -15,8 +15,7 @@ from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.deadline import Deadline, OutOfTimeError, Pace
-from flexspline.fea.shortfall import of_the_machine
-from flexspline.fea.types import Elastic, Stiffness
+from flexspline.fea.types import MET, Elastic, Stiffness
 from flexspline.geometry.meridian import cup_meridian
 
 STEEL = Elastic(206e3, 0.3)
@@ -117,8 +116,8 @@ def test_stiffness_of_the_meshes_until_then(
         else lobe_stiffness(OUTLINE, STEEL, case == "held", FINE, deadline)
     )
     assert len(found.levels) == meshes
-    assert of_the_machine(found.shortfall)
-    assert f"{deadline.limit_s:g} s" in found.shortfall
+    assert found.shortfall.of_the_machine
+    assert f"{deadline.limit_s:g} s" in found.shortfall.words
     lower, upper = found.bounds_Nm_per_rad
     assert lower <= exact[case].K_Nm_per_rad <= upper
     assert (upper - lower) / found.K_Nm_per_rad > FINE
@@ -128,7 +127,7 @@ def test_stiffness_of_the_meshes_until_then(
 def test_contact_on_one_mesh_lies_between_free_and_held(clock, exact) -> None:
     found = contact_stiffness(OUTLINE, STEEL, exact["held"], clock.deadline(1.5 * SECONDS_A_MESH))
     assert len(found.levels) == 1
-    assert of_the_machine(found.shortfall)
+    assert found.shortfall.of_the_machine
     assert found.K_Nm_per_rad == pytest.approx(exact["contact"].K_Nm_per_rad, rel=0.01)
     # the ratio of two K on one coarse mesh is off by 1 % (estimates of the free rim alone by 2 %)
     assert found.lower_Nm_per_rad == pytest.approx(exact["free"].K_Nm_per_rad, rel=0.02)
@@ -138,7 +137,7 @@ def test_contact_on_one_mesh_lies_between_free_and_held(clock, exact) -> None:
 def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
     held = lobe_stiffness(OUTLINE, STEEL, True, FINE, clock.deadline(SECONDS_A_MESH))
     found = contact_stiffness(OUTLINE, STEEL, held)
-    assert found.shortfall == held.shortfall != ""
+    assert found.shortfall == held.shortfall != MET
     lower, upper = found.bounds_Nm_per_rad
     assert lower <= exact["contact"].K_Nm_per_rad <= upper
 
@@ -153,7 +152,7 @@ def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
     for found in (on_ellipse, twisted):
         assert len(found.levels) == 2
         assert found.peak.mises_MPa == found.levels[-1].mises_MPa
-        assert of_the_machine(found.peak.shortfall)
+        assert found.peak.shortfall.of_the_machine
 
 
 def test_no_figure_before_the_first_mesh(clock: Clock) -> None:

@@ -9,14 +9,14 @@ import pytest
 from example_cup import CUP
 
 from flexspline.fea.axisymmetric import lobes, peak_refinement, stress, torsion
-from flexspline.fea.shortfall import ToleranceError, next_mesh_failed, of_the_machine, settled
+from flexspline.fea.shortfall import ToleranceError, next_mesh_failed, settled, without
 from flexspline.fea.solid import stiffness as solid
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.errors import MemoryShortError, MesherError, MesherTimeError
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.swept import swept_mesh
-from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.fea.types import Elastic, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import cup_meridian
@@ -59,7 +59,7 @@ def test_bounds_of_a_mesh_that_is_the_largest(exact: Stiffness, monkeypatch) -> 
     monkeypatch.setattr(torsion, "MOST_TRIANGLES", 100)
     found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
     assert found.guaranteed
-    assert "none is refined beyond 100" in found.shortfall
+    assert "none is refined beyond 100" in found.shortfall.words
     assert held(found, exact)
 
 
@@ -68,7 +68,7 @@ def test_bounds_before_a_mesh_that_fails(meshes: int, exact: Stiffness, monkeypa
     monkeypatch.setattr(torsion, "bracket", failing_after(meshes, torsion.bracket))
     found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
     assert len(found.levels) == meshes
-    assert WHY in found.shortfall
+    assert WHY in found.shortfall.words
     assert held(found, exact)
 
 
@@ -77,8 +77,8 @@ def test_memory_that_ends_costs_the_finer_mesh_only(exact: Stiffness, monkeypatc
     monkeypatch.setattr(torsion, "bracket", short)
     found = torsion.torsional_stiffness(OUTLINE, STEEL, "mesh", UNREACHABLE)
     assert held(found, exact)
-    assert "not enough memory 1 GiB" in found.shortfall
-    assert of_the_machine(found.shortfall)  # another machine, or this one later, may do better
+    assert "not enough memory 1 GiB" in found.shortfall.words
+    assert found.shortfall.of_the_machine  # another machine, or this one later, may do better
 
 
 def test_a_first_mesh_that_fails_is_an_error(monkeypatch) -> None:
@@ -93,7 +93,7 @@ def test_lobes_before_a_mesh_that_fails(supported: bool, monkeypatch) -> None:
     monkeypatch.setattr(lobes, "solve_lobes", failing_after(1, lobes.solve_lobes))
     found = lobes.lobe_stiffness(OUTLINE, STEEL, supported, 0.003)
     assert (len(found.levels), found.guaranteed) == (1, False)
-    assert WHY in found.shortfall
+    assert WHY in found.shortfall.words
     # one mesh: the largest factor of true over estimated error that is believed
     assert found.error_scale == lobes.EFFICIENCY[1]
     assert found.lower_Nm_per_rad <= true.K_Nm_per_rad <= found.upper_Nm_per_rad
@@ -105,7 +105,7 @@ def test_a_peak_before_a_mesh_that_fails(monkeypatch) -> None:
     found = stress.ellipse_stress(OUTLINE, STEEL, 0.2, CUP.wall_thickness_mm, 1e-3)
     assert len(found.levels) == 2
     assert found.peak.mises_MPa == found.levels[-1].mises_MPa
-    assert WHY in found.peak.shortfall
+    assert WHY in found.peak.shortfall.words
 
 
 def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
@@ -141,7 +141,7 @@ def solved(meshes: int, most: int, monkeypatch) -> tuple[Stiffness, list[str]]:
 
 def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkeypatch) -> None:
     found, said = solved(1, 5, monkeypatch)
-    assert WHY in found.shortfall
+    assert WHY in found.shortfall.words
     assert WHY in said[-1]
     assert found.error_scale == solid.USUAL_EFFICIENCY
     # one mesh: bounds as wide as twice the usual factor of true over estimated error
@@ -150,7 +150,7 @@ def test_the_solid_model_gives_the_mesh_before_the_one_that_failed(exact, monkey
 
 def test_the_solid_model_gives_the_last_of_its_meshes(exact, monkeypatch) -> None:
     found, _ = solved(9, 1, monkeypatch)
-    assert found.shortfall.startswith("1 mesh")
+    assert found.shortfall.words.startswith("1 mesh")
     assert held(found, exact)
 
 
@@ -172,4 +172,10 @@ def test_what_needs_the_tolerance_refuses_less(exact: Stiffness, monkeypatch) ->
     ids=["time", "memory of a solver", "memory", "crash"],
 )
 def test_a_better_machine_may_mend_some_faults(fault: Exception, expected: bool) -> None:
-    assert of_the_machine(next_mesh_failed(fault)) is expected
+    assert next_mesh_failed(fault).of_the_machine is expected
+
+
+@pytest.mark.parametrize("mended", [True, False])
+def test_what_misses_a_figure_out_of_tolerance_knows_why_that_was(mended: bool) -> None:
+    fault = ToleranceError("K is known to ± 1 % only", Shortfall("no time", mended))
+    assert without(fault) == Shortfall("K is known to ± 1 % only: no time", mended)

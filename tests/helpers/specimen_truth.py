@@ -90,7 +90,7 @@ def compliance(name: str, seed: int, kind: Kind, off_mm: float = 0.0) -> np.ndar
     made = batch(name, seed)
     found = []
     for i in range(SPECIMENS):
-        tables = made.design.model_dump(mode="json", exclude_none=True)
+        tables = made.design.tables
         for key, values in made.drawn.items():
             tables["flexspline"][key.partition(".")[2]] = float(values[i])
         if off_mm:

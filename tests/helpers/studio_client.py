@@ -18,7 +18,7 @@ from flexspline.results.studio.server import Studio, application
 from flexspline.results.studio.tab import Workers
 
 DESIGN = design_from(tomllib.loads(template("cup")))
-TABLES = DESIGN.model_dump(mode="json", exclude_none=True)
+TABLES = DESIGN.tables
 Check = Callable[[TestClient], Awaitable[None]]
 
 

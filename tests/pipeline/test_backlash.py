@@ -12,6 +12,7 @@ import pytest
 from example_files import EXAMPLES
 
 from flexspline.geometry.design import Design
+from flexspline.geometry.play_limit import play_limit
 from flexspline.pipeline import backlash as sums
 from flexspline.pipeline import bearing_play
 from flexspline.pipeline.backlash import (
@@ -26,7 +27,6 @@ from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
     involute_clearance_slope,
-    play_limit,
 )
 from flexspline.pipeline.play_spread import play_spread
 

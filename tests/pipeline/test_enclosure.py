@@ -10,7 +10,7 @@ import pytest
 from example_files import EXAMPLES
 from holed_designs import holed_designs
 
-from flexspline.fea.types import Stiffness
+from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.geometry.load import load_design
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
@@ -74,8 +74,9 @@ def test_the_bounds_are_theorems_where_both_bodies_are() -> None:
 def test_what_fell_short_is_said() -> None:
     bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
     cut, whole = torsion(bodies.cut, CHEAP), torsion(bodies.whole, CHEAP)
-    assert between(replace(cut, shortfall="no time"), whole).shortfall == "no time"
-    assert between(cut, replace(whole, shortfall="no room")).shortfall == "no room"
+    short = Shortfall("no time")
+    assert between(replace(cut, shortfall=short), whole).shortfall == short
+    assert between(cut, replace(whole, shortfall=short)).shortfall == short
     assert not between(cut, whole).shortfall
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexspline.fea.types import Stiffness
+from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.pipeline.attempts import Attempts
 from flexspline.pipeline.enclosure import NestingError, held_within
 
@@ -12,8 +12,9 @@ TOLERANCE = 0.005
 NO_TIME = "the next mesh would end too late"
 
 
-def solid(K: float, half: float, shortfall: str = "") -> Stiffness:
-    return Stiffness(K, K - half, K + half, False, "solid", "1/12", "estimate", (), 1.0, shortfall)
+def solid(K: float, half: float, words: str = "") -> Stiffness:
+    short = Shortfall(words)
+    return Stiffness(K, K - half, K + half, False, "solid", "1/12", "estimate", (), 1.0, short)
 
 
 def enclosure(low: float, high: float, guaranteed: bool = True) -> Stiffness:
@@ -52,7 +53,7 @@ def test_where_both_are_wide_the_narrower_bounds() -> None:
     found = held_within(solid(1000.0, 60.0, NO_TIME), enclosure(980.0, 1010.0), TOLERANCE)
     assert found.bounds_Nm_per_rad == (980.0, 1010.0)
     assert found.guaranteed
-    assert found.shortfall == NO_TIME
+    assert found.shortfall.words == NO_TIME
 
 
 def test_estimates_do_not_become_theorems() -> None:

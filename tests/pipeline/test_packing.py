@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import io
 import json
+import subprocess
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.types import MeshLevel, StressPeak
 from flexspline.pipeline.packing import packed, unpacked
 
+READS = """
+import sys
+from pathlib import Path
+from flexspline.pipeline.packing import unpacked
+found = unpacked(Path(sys.argv[1]).read_bytes())
+print(type(found).__name__, found.sector_deg)
+"""
 PEAK = StressPeak(12.5, (1.0, 2.0, 3.0), "the edges", 0.4, False, None)
 
 
@@ -27,6 +38,17 @@ def test_nested_values_come_back() -> None:
     rows = found["rows"]
     assert rows[0].tolist() == [0, 1, 2]
     assert rows[1:] == (b"abc", None, 1.5, "λ")
+
+
+def test_a_process_that_has_not_met_the_class_reads_it(tmp_path: Path) -> None:
+    """As the one that draws, which knows no layers: `run` once left two pictures out for them."""
+    empty = np.zeros((0, 3))
+    file = tmp_path / "mesh.npz"
+    file.write_bytes(packed(LayeredMesh(empty, empty, empty, empty, ("",), 90.0, empty)))
+    done = subprocess.run(
+        [sys.executable, "-c", READS, str(file)], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "LayeredMesh 90.0"
 
 
 @pytest.mark.parametrize(

@@ -106,9 +106,9 @@ def test_the_enclosure_then_answers_and_says_why(
     known = enclosure_of(part, CASES["lobes_unsupported"].revolved)
     assert known.half_width > 0.01  # as asked for
     assert found.bounds_Nm_per_rad == known.bounds_Nm_per_rad
-    assert found.shortfall.startswith(TOO_FAR)
-    assert "expected" in found.shortfall
-    assert "failed" not in found.shortfall
+    assert found.shortfall.words.startswith(TOO_FAR)
+    assert "expected" in found.shortfall.words
+    assert "failed" not in found.shortfall.words
 
 
 def test_the_case_is_told_what_is_known(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric import lobes
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.shortfall import of_the_machine
 from flexspline.geometry.load import load_design
 from flexspline.pipeline import by_harmonics
 from flexspline.pipeline.analysis import stiffnesses
@@ -49,7 +48,7 @@ def test_every_figure_is_given_and_the_wide_ones_are_said(tmp_path, slow_lobes) 
     assert found.wave_generator_peak is not None
     for name, k in found.solved.items():
         # contact is a share of K with the seat held, whose bounds are wide
-        assert of_the_machine(k.shortfall) == (name != "K_b"), name
+        assert k.shortfall.of_the_machine == (name != "K_b"), name
         assert k.lower_Nm_per_rad < k.K_Nm_per_rad < k.upper_Nm_per_rad
     said = [line for line in shortfalls(DESIGN, found) if "60 s" in line]
     assert len(said) == 3

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.pipeline.cache import Cache
-from flexspline.pipeline.process_id import ProcessId, parsed, started, this_process
+from flexspline.pipeline.process_id import UNKNOWN, ProcessId, parsed, started, this_process
 from flexspline.pipeline.temporary_files import (
     FORGOTTEN_S,
     MARK,
@@ -40,6 +40,26 @@ def of_the_dead() -> str:
     """How a process that is no more named its files."""
     done = subprocess.run([sys.executable, "-c", GONE], capture_output=True, text=True, check=True)
     return done.stdout.strip()
+
+
+def test_a_process_that_is_no_more_has_not_started() -> None:
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    assert started(ended.pid) is not None
+    ended.wait()
+    assert started(ended.pid) is None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /proc")
+def test_a_process_that_is_hidden_is_not_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As /proc mounted with hidepid=2 answers for those of other users."""
+
+    def hidden(path: Path, *_: object, **__: object) -> str:
+        raise FileNotFoundError(errno.ENOENT, "No such file or directory", str(path))
+
+    parent = _of(os.getppid())
+    monkeypatch.setattr(Path, "read_text", hidden)
+    assert started(parent.pid) == UNKNOWN
+    assert parent.fate == "alive"
 
 
 def test_the_next_write_clears_what_a_dead_process_left(of_the_dead: str, tmp_path: Path) -> None:

@@ -12,12 +12,12 @@ from math import acos, cos, degrees, pi, radians, sin, tan
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.geometry.play_limit import play_limit
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD, gap_angle, windup
 from flexspline.pipeline.bearing_play import (
     BearingPlayDomainError,
     involute_clearance,
     involute_clearance_slope,
-    play_limit,
     small_displacement_clearance,
     working_pressure_angle,
 )

@@ -93,7 +93,7 @@ def within_cycle(history: History) -> np.ndarray:
     """(n,) share of its cycle that lies before each row: of its time, or of its rows without time."""
     out = np.zeros(len(history))
     for rows in history.unit_slices:
-        t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+        t = history.time_or_rows(rows)
         starts = np.flatnonzero(np.diff(history.cycle[rows], prepend=-1) != 0)
         ends = np.append(t[starts[1:]], t[-1] + (t[-1] - t[0]) / max(1, len(t) - 1))
         number = np.searchsorted(starts, np.arange(len(t)), side="right") - 1

@@ -103,10 +103,10 @@ class Envelope:
             design, design.bearing.radial_clearance_um
         )
 
-    def limit_arcsec(self, flank_stds: float = 1.0) -> float:
-        """The total with the play where the model ends and flank clearance so many deviations up."""
+    def limit_arcsec(self) -> float:
+        """The total with the play where the model ends and flank clearance a deviation up."""
         flank = _flank_arcsec(self.design, self.design.uncertainty.flank_clearance_um)
-        return self.total_arcsec + self.play_end_arcsec + flank_stds * flank
+        return self.total_arcsec + self.play_end_arcsec + flank
 
     def explanation(self, total_arcsec: float) -> Explanation:
         """How far the clearances must be from the design to give a total, and where they are then."""

@@ -47,7 +47,6 @@ class MidPositions:
     """
 
     mid_arcsec: tuple[float, ...]
-    spread_arcsec: float
     asymmetry_reach_arcsec: float
 
 

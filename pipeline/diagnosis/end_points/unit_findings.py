@@ -83,5 +83,4 @@ def unit_findings(
 def mid_positions(deviations: UnitDeviations, prediction: Prediction) -> MidPositions:
     """Where the units' mid positions lie."""
     each = [float(deviations.mid[rows].mean()) for rows in deviations.unit_rows]
-    spread = float(np.std(each, ddof=1)) if len(each) > 1 else 0.0
-    return MidPositions(tuple(each), spread, float(deviations.torque.max()) * prediction.compliance)
+    return MidPositions(tuple(each), float(deviations.torque.max()) * prediction.compliance)

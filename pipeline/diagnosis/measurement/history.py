@@ -49,11 +49,15 @@ class History:
         """The true torque, where the reading is `offset_Nm` too high."""
         return replace(self, torque_Nm=self.torque_Nm - offset_Nm)
 
+    def time_or_rows(self, rows: np.ndarray) -> np.ndarray:
+        """(m,) time of some rows, by their indices; where it was not recorded, their numbers, from 0."""
+        return np.arange(len(rows), dtype=float) if self.time_s is None else self.time_s[rows]
+
     def timed(self) -> History:
         """With time; rows are seconds where it was not recorded."""
         if self.time_s is not None:
             return self
-        return replace(self, time_s=np.arange(len(self), dtype=float))
+        return replace(self, time_s=self.time_or_rows(np.arange(len(self))))
 
     @property
     def cycle_count(self) -> int:

@@ -62,7 +62,7 @@ def _ways(
     history: History, corners: list[Corner], unit: int, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Time (m,) of a unit's rows, and the first row of each way between two corners, the last one's end."""
-    t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+    t = history.time_or_rows(rows)
     turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
     return t, np.unique([0, *turned, len(rows)])
 

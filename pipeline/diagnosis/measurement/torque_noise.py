@@ -42,7 +42,7 @@ def _torque_noise_Nm(history: History) -> float:
         torque = history.torque_Nm[rows]
         if len(torque) < FEWEST_FOR_NOISE:
             continue
-        t = np.arange(len(rows), dtype=float) if history.time_s is None else history.time_s[rows]
+        t = history.time_or_rows(rows)
         span = np.maximum(t[2:] - t[:-2], ABOVE_ZERO)
         share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
         off = torque[1:-1] - (1 - share) * torque[:-2] - share * torque[2:]

@@ -49,7 +49,7 @@ def scatter_along_travel(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None
     left = fit.residual()[kept]
     moved = steadied(history, deadband_Nm(history))
     way = np.cumsum(np.abs(np.diff(moved, prepend=moved[0])))[kept]
-    time = np.arange(len(kept), dtype=float) if history.time_s is None else history.time_s
+    time = history.time_or_rows(np.arange(len(kept)))
     pairs = _pairs(stretches_of(history, kept), _resting(history)[kept])
     largest = prepared.rig.torque_Nm
     found = [

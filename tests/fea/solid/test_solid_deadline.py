@@ -7,7 +7,6 @@ from functools import cache
 from example_files import EXAMPLES
 
 from flexspline.fea.deadline import Deadline
-from flexspline.fea.shortfall import of_the_machine
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
@@ -45,8 +44,8 @@ def test_a_mesh_that_would_end_too_late_is_not_begun() -> None:
     """25 s for the first, twice as long for the second: 75 s."""
     found = stiffness(limit_s=74.0)
     assert len(found.levels) == 1
-    assert of_the_machine(found.shortfall)
-    assert "74 s" in found.shortfall
+    assert found.shortfall.of_the_machine
+    assert "74 s" in found.shortfall.words
 
 
 def test_one_that_would_end_in_time_is() -> None:
@@ -63,4 +62,4 @@ def test_a_first_mesh_that_comes_late_is_solved() -> None:
     """25 s for the mesh alone, where 10 s are allowed: its K is the answer."""
     found = stiffness(limit_s=10.0)
     assert len(found.levels) == 1
-    assert of_the_machine(found.shortfall)
+    assert found.shortfall.of_the_machine

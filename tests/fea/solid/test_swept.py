@@ -281,7 +281,7 @@ def test_what_cannot_be_swept_is_left_to_the_mesher(
 def test_mesh_that_fails_a_check_is_left_to_the_mesher(monkeypatch: pytest.MonkeyPatch) -> None:
     """No mesh is exact to a tolerance of 0: the check must say so, and nothing must pass it."""
     design = design_of("xb1-40.toml", "flexspline", {})
-    monkeypatch.setattr("flexspline.fea.solid.swept.TOLERANCE", 0.0)
+    monkeypatch.setattr("flexspline.fea.solid.mesh_checks.SIZE_TOLERANCE", 0.0)
     assert (
         swept_mesh(design.part("flexspline"), 30.0, first_spec(design.part("flexspline"))) is None
     )

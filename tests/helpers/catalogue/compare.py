@@ -21,11 +21,11 @@ from catalogue.table import (
     read_catalogue,
     twist_rad,
 )
+from flexspline.geometry.rated import LOST_MOTION_SHARE
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.robust import rms
-from flexspline.pipeline.gear import LOST_MOTION_SHARE
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ RACE = "wave_generator.race_thickness_mm"
 
 def test_a_row_says_what_the_command_says() -> None:
     values = {RACE: 0.6, "wave_generator.ball_count": 20.0}
-    task = Task(HOLE_FREE.model_dump(mode="json", exclude_none=True), values, ("torsion", "gear"))
+    task = Task(HOLE_FREE.tables, values, ("torsion", "gear"))
     row = evaluate(task)
     assert row.reason == ""
     gear = flexspline.gear(with_values(HOLE_FREE, values))
@@ -39,7 +39,7 @@ def test_a_gear_that_cannot_be_loaded_costs_only_its_own_figures() -> None:
         "bearing.radial_clearance_um": 450.0,  # more than twice the stroke of 0.2 mm
         "bearing.bearing_play_model": "small_displacement",
     }
-    task = Task(HOLE_FREE.model_dump(mode="json", exclude_none=True), play, ("torsion", "gear"))
+    task = Task(HOLE_FREE.tables, play, ("torsion", "gear"))
     row = evaluate(task)
     assert "gear: bearing.radial_clearance_um" in row.reason
     assert "K_b_Nm_per_rad" in row.figures
@@ -73,7 +73,7 @@ def test_what_the_design_file_leaves_to_its_default_can_be_varied_but_cannot_sca
 
 def test_jammed_teeth_are_in_the_row() -> None:
     """So that a study which wants little lost motion can keep out gears that do not run."""
-    tables = HOLE_FREE.model_dump(mode="json", exclude_none=True)
+    tables = HOLE_FREE.tables
     short, full = (
         evaluate(Task(tables, {"wave_generator.deflection_mm": stroke}, ("torsion", "gear")))
         for stroke in (0.13, 0.2)

@@ -87,7 +87,7 @@ def nominal(nominal_effect: HolesEffect) -> Figures:
     plain, corrected = (
         dict(figures_of(study.design, ("torsion",), h).figures) for h in (None, nominal_effect)
     )
-    tables = study.design.model_dump(mode="json", exclude_none=True)
+    tables = study.design.tables
     solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
     assert not solid.reason
     return plain, corrected, dict(solid.figures)

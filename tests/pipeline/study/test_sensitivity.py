@@ -14,8 +14,7 @@ from flexspline.fea.axisymmetric.shape_slope import (
     moved_stiffness,
     twist,
 )
-from flexspline.fea.shortfall import NOT_FINISHED
-from flexspline.fea.types import Elastic
+from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.keys import with_values, without_holes
@@ -39,7 +38,7 @@ def test_both_ways_meet_and_scaling_holds(name: str) -> None:
     The cup is asked by the command, in the default suite (`tests/results/study/test_study_command.py`).
     """
     slopes = slopes_of(name)
-    assert [(s.key, s.why) for s in slopes if s.agree is not True] == []
+    assert [(s.key, s.why.words) for s in slopes if s.agree is not True] == []
     for part, own in groupby(slopes, lambda s: s.part):
         total = sum(s.elasticity for s in own)
         # the solved field's K is up to 0.1 % high and its slopes with it
@@ -108,7 +107,9 @@ def test_one_side_does_where_the_other_cannot_be_built(barred: tuple[int, ...]) 
 
 
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
-FOUND = (Slope("shaft.fillet_mm", "shaft", 0.5, 447.6, None, 0.0, 43275.0, -0.046, "no room"),)
+FOUND = (
+    Slope("shaft.fillet_mm", "shaft", 0.5, 447.6, None, 0.0, 43275.0, -0.046, Shortfall("no room")),
+)
 
 
 @pytest.fixture
@@ -119,7 +120,9 @@ def solves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
     monkeypatch.setattr(
         stiffness_slopes,
         "slopes",
-        lambda design, say: asked.append(design) or Slopes(FOUND, {"shaft.grip_length_mm": "none"}),
+        lambda design, say: (
+            asked.append(design) or Slopes(FOUND, {"shaft.grip_length_mm": Shortfall("none")})
+        ),
     )
     return asked
 
@@ -147,7 +150,7 @@ def test_slopes_are_solved_again_where_they_may_change(
 def test_what_more_memory_would_find_is_not_kept(
     solves: list[Design], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    short = Slopes((), {"shaft.fillet_mm": f"{NOT_FINISHED} not enough memory"})
+    short = Slopes((), {"shaft.fillet_mm": Shortfall("not enough memory", of_the_machine=True)})
     monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: short)
     assert sensitivities(DESIGN, lambda line: None) == ()
     monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: Slopes(FOUND, {}))

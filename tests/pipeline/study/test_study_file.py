@@ -30,6 +30,9 @@ from flexspline.pipeline.study.study import StudyError
         ('[objective]\n"K_b_Nm_per_rad" = "maximize"\n[run]', "[run]\nverify = 1", "run.verify", "0"),
         ("xb1-40.toml", "no.toml", "design", "no such file"),
         ("[vary]", "[varied]", "varied", "did you mean vary?"),
+        ('method = "grid"', "colour = 1", "run.colour", "[run] takes method, evaluations"),
+        ('method = "grid"', 'seed = "1"', "run.seed", "not text; write 1 without quotation marks"),
+        ('"flexspline.length_mm"', '"shaft.segment.0.length_mm"', "segment.0", "shaft.segment[0].length_mm?"),
     ],
 )  # fmt: skip
 def test_refused(old: str, new: str, key: str, said: str) -> None:
