@@ -89,7 +89,7 @@ def diagnose(
 ) -> None:
     """What the simulation gets wrong, and why, from measured data."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
-    with answered(design, "; the diagnosis is not resumed: run the same command again"):
+    with answered(design, "; run the same command again: it starts from the beginning"):
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
         from flexspline.results.figures.diagnosis.captions import CAPTIONS
 
