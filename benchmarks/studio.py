@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from measure import cpu
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "results" / "studio")]
+sys.path.insert(0, str(ROOT / "tests" / "helpers"))
 
 from browser import chromium  # noqa: E402
 from studio_page import Page, running  # noqa: E402
