@@ -75,6 +75,8 @@ def tables_from(raw: bytes, name: object) -> dict[str, Any]:
         raise DesignFileError(
             name, f"{len(raw)} bytes; a design file has at most {LARGEST_BYTES} bytes"
         )
+    if not raw.strip():
+        raise DesignFileError(name, "the file is empty; `flexspline init` writes one to begin with")
     try:
         return toml_tables(raw)
     except TomlError as fault:

@@ -206,7 +206,7 @@ FILES = {
     "deep nesting": (b"x = " + b"[" * 50_000, "TOML|nested"),
     "huge integer": (b"x = " + b"9" * 9000, "TOML"),
     "too large": (b"#" * (LARGEST_BYTES + 1), "1000001 bytes"),
-    "empty": (b"", "name is missing"),
+    "empty": (b"", "the file is empty"),
     "not a table": (b"flexspline = 3", "flexspline = 3|name is missing"),
 }
 

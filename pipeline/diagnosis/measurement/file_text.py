@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,13 +73,16 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
             return (_strict(path, raw, codec, "UTF-16"),)
     try:
         return (FileText(raw.decode("utf-8"), "UTF-8"),)
-    except UnicodeDecodeError as error:
-        byte, line = raw[error.start], raw[: error.start].count(b"\n") + 1
-    found = []
+    except UnicodeDecodeError:
+        pass
+    found, unread = [], 0
     for codec in SINGLE_BYTE:
-        with suppress(UnicodeDecodeError):
+        try:
             found.append(FileText(raw.decode(codec), codec))
+        except UnicodeDecodeError as error:
+            unread = unread or error.start
     if not found:
+        byte, line = raw[unread], raw[:unread].count(b"\n") + 1
         raise MeasurementError(
             path, line, f"byte {byte:#04x} is neither UTF-8 nor Latin-1; save the file as UTF-8"
         )

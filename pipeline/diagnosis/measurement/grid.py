@@ -198,7 +198,7 @@ def _grid(
         if fields == width:
             continue
         if misfit is None and (fields < fewest or any(c.strip() for c in row[width:])):
-            misfit = _misfit(path, number, fields, width, head.separator)
+            misfit = _misfit(path, number, row, width, head.separator)
         row[:] = (row + [""] * (width - fields))[:width]
     units = tuple(u for _, u in paired(names, head.units)) if head.units else ()
     return CellGrid(
@@ -207,8 +207,11 @@ def _grid(
     )  # fmt: skip
 
 
-def _misfit(path: Path, line: int, fields: int, wanted: int, separator: str) -> MeasurementError:
-    reason = f"{fields} fields where the header has {wanted}"
+def _misfit(path: Path, line: int, row: list[str], wanted: int, separator: str) -> MeasurementError:
+    fields = len(row)
+    reason = f"{fields} {'field' if fields == 1 else 'fields'} where the header has {wanted}"
+    if fields == 1 and any(other in row[0] for other in SEPARATORS if other != separator):
+        reason += "; the header's separator stands nowhere in this line"
     if separator == "," and fields in (2 * wanted, 2 * wanted - 1):
         reason += "; with decimal commas, "
         if wanted == 1:  # not read so: "1,20" may be two columns of which one has no name

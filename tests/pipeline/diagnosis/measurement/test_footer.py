@@ -133,7 +133,7 @@ def test_words_below_labels_are_a_remark_unless_the_label_is_known(
 def test_words_between_rows_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text(HEAD + ROWS + "paused\n" + ROWS, encoding="utf-8")
-    with pytest.raises(MeasurementError, match="1 fields"):
+    with pytest.raises(MeasurementError, match="1 field where the header"):
         read_table(path)
 
 
