@@ -43,11 +43,12 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
     sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
     guess = first_offset(sweep.history, sweep.angle_arcsec, gap, prepared.band_Nm)
     if abs(guess) >= prepared.band_Nm / 2:
-        shifted = _raced_with(prepared, guess)
-        if shifted is not None and gained(shifted, plain) > NAMED_COST:
-            return shifted
+        # the last, or the first, where a few rows are on the wrong side of the place that was found from it
+        for shifted in reversed(_raced_with(prepared, guess)):
+            if gained(shifted, plain) > NAMED_COST:
+                return shifted
     if seen is not None and _counts(seen, prepared):
-        return _raced_with(prepared, seen.offset_Nm) or plain
+        return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
     return plain
 
 
@@ -63,22 +64,23 @@ def offset_of(explained: ExplainedSweep) -> float:
     return seen.offset_Nm if seen is not None and _counts(seen, explained.prepared) else 0.0
 
 
-def _raced_with(plain: PreparedSweep, offset_Nm: float) -> ExplainedSweep | None:
-    """The race with an offset taken off, and the offset found anew from it; None where it vanishes."""
+def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep, ...]:
+    """The first race with an offset taken off, and the last with it found anew; none where it vanishes."""
+    found: list[ExplainedSweep] = []
     for _ in range(OFFSET_ROUNDS):
         try:
-            explained = run_race(prepare(plain.sweep, plain.prediction, offset_Nm, plain.ahead))
+            found.append(run_race(prepare(plain.sweep, plain.prediction, offset_Nm, plain.ahead)))
         except TooFewRowsError:
-            return None
-        seen, prepared = explained.crossing, explained.prepared
+            return ()
+        seen, prepared = found[-1].crossing, found[-1].prepared
         if seen is None or not _counts(seen, prepared):
-            return None
+            return ()
         if abs(seen.offset_Nm - offset_Nm) < max(
             SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.torque_Nm
         ):
-            return explained
+            return (found[0], found[-1])
         offset_Nm = seen.offset_Nm
-    return replace(explained, offset_Nm=offset_Nm)
+    return (found[0], replace(found[-1], offset_Nm=offset_Nm))
 
 
 def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:

@@ -1,0 +1,13 @@
+"""A shifted torque reading whose place, found anew, leaves a few rows on the wrong side of the gap."""
+
+from __future__ import annotations
+
+from hidden.adapter import diagnose
+from hidden.cases import draw_case
+from hidden.mark import mark
+
+
+def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> None:
+    """A staircase, read 0.316 N·m too low; the place found from its first race, 0.268, passes some rows."""
+    found = mark(draw_case(1600001, 55), diagnose)
+    assert (found.verdict, found.found) == ("named", ("torque_offset",))
