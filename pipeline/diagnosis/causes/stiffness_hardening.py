@@ -101,10 +101,7 @@ class StiffnessHardening(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
-        slope = (self._slope_at_the_largest, lambda shape: 1.0, self._slope_at_zero)[
-            int(shape["held"])
-        ](shape)
-        return ((self._law(shape, x) - slope * x) * history.sign)[:, None]
+        return ((self._law(shape, x) - self._slope_held(shape) * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
         return self.spread_share * rig.prediction.compliance * rig.torque_Nm
@@ -132,15 +129,24 @@ class StiffnessHardening(Cause):
                 return x**p
             case 3:
                 return 1.5 * x - 0.5 * x**3
-            case 6:  # x (1 + p) = q + p q³, by Cardano
-                return (
-                    2 / np.sqrt(3 * p) * np.sinh(np.arcsinh(1.5 * np.sqrt(3 * p) * (1 + p) * x) / 3)
-                )
             case 5:
                 q, share = shape["second"], shape["share"]
                 return share * np.minimum(x, p) / p + (1 - share) * np.minimum(x, q) / q
+            case 6:  # x (1 + p) = q + p q³, by Cardano
+                root = np.sqrt(3 * p)
+                return 2 / root * np.sinh(np.arcsinh(1.5 * root * (1 + p) * x) / 3)
             case _:
                 return x * (1 + p) / (x + p)
+
+    def _slope_held(self, shape: Shape) -> float:
+        """Of the law [1 per share of the largest torque], where the stiffness is as simulated."""
+        match int(shape["held"]):
+            case 0:
+                return self._slope_at_the_largest(shape)
+            case 1:
+                return 1.0
+            case _:
+                return self._slope_at_zero(shape)
 
     @staticmethod
     def _slope_at_the_largest(shape: Shape) -> float:
@@ -158,9 +164,9 @@ class StiffnessHardening(Cause):
                 return float(1 / p / np.tanh(1 / p))
             case 3:
                 return 1.5
-            case 6:
-                return 1 + p
             case 5:
                 return shape["share"] / p + (1 - shape["share"]) / shape["second"]
+            case 6:
+                return 1 + p
             case _:
                 return (1 + p) / p

@@ -80,7 +80,7 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
         try:
             found.append(FileText(raw.decode(codec), codec))
         except UnicodeDecodeError as error:
-            unread = unread or error.start
+            unread = max(unread, error.start)
     if not found:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
         raise MeasurementError(

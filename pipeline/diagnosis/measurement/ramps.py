@@ -102,14 +102,11 @@ def ramp_rate(history: History) -> float:
 
 
 def _ramp_rate(history: History) -> float:
-    if history.time_s is None:
-        return 0.0
     found = []
     for rows in history.unit_slices:
-        if len(rows) < 2 * FEWEST_HOLD_ROWS or np.ptp(history.time_s[rows]) == 0:
+        if (rates := moving_rates(history, rows)) is None:
             continue
-        rates = rates_of(history, rows)
-        rate = np.abs(rates.values[rates.travel_Nm > 0])  # most rows may lie in holds
+        rate = rates.values[rates.travel_Nm > 0]  # most rows may lie in holds
         if len(rate):
             fast = np.quantile(rate, FAST_QUANTILE)
             found.append(float(np.median(rate[rate > MOVING * fast])))

@@ -78,7 +78,7 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep,
         if abs(seen.offset_Nm - offset_Nm) < max(
             SETTLED_STDS * seen.std_Nm, OFFSET_SETTLED_SHARE * prepared.rig.torque_Nm
         ):
-            return (found[0], found[-1])
+            return (found[0], *found[1:][-1:])  # one race is both
         offset_Nm = seen.offset_Nm
     return (found[0], replace(found[-1], offset_Nm=offset_Nm))
 
