@@ -23,9 +23,8 @@ def sensitivities(design: Design, say: Callable[[str], None]) -> tuple[Slope, ..
     cache = Cache(cache_folder(), say)
 
     def solve() -> Slopes:
-        from flexspline.pipeline.study.stiffness_slopes import (
-            slopes,  # the solvers take a second to load
-        )
+        # here, as the solvers take a second to load
+        from flexspline.pipeline.study.stiffness_slopes import slopes
 
         return slopes(design, say)
 
