@@ -69,9 +69,9 @@ def field(design: Design, view: StressCase) -> RevolvedField:
 
 
 def first_field(design: Design) -> RevolvedField:
-    """`field` of the wave generator before any refinement, in a third of the time.
+    """`field` of the wave generator on the first mesh fine where its peak may be: a third of the time.
 
-    Of 40 cups and hats drawn about the examples its peak was within 1 % for 37, at worst 11 % off.
+    Of 60 random cups and hats its peak was within 2 % for 53, at worst 2.7 % off.
     """
     w0 = design.w0_mm
     return first_ellipse_field(design.part("flexspline"), w0, PEAK_STRESS_TOLERANCE)

@@ -12,16 +12,16 @@ def refined(mesh: MeridianMesh, marked: np.ndarray) -> MeridianMesh:
 
     New nodes of fillets are put on the exact arc.
     """
-    return _refined(mesh, marked)[0]
+    return refined_with_parents(mesh, marked)[0]
 
 
 def refined_twice(mesh: MeridianMesh, once: np.ndarray, again: np.ndarray) -> MeridianMesh:
     """As `refined` with the mask `once` (m,), then the pieces of the triangles `again` (m,) once more."""
-    finer, parent = _refined(mesh, once)
+    finer, parent = refined_with_parents(mesh, once)
     return refined(finer, again[parent])
 
 
-def _refined(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
+def refined_with_parents(mesh: MeridianMesh, marked: np.ndarray) -> tuple[MeridianMesh, np.ndarray]:
     """As `refined`, and of which triangle of `mesh` each of its triangles is a piece."""
     tri = _longest_first(mesh.points, mesh.triangles)
     pairs = np.sort(tri[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)

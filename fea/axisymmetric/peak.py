@@ -39,6 +39,7 @@ class MeridianPeak:
     at_sine : whether it stands where sin² nφ = 1 rather than cos² nφ = 1.
     counted : (m,) mask of triangles with a point that counts.
     local_mises : (m,) largest value that counts in each triangle, 0 if none [MPa].
+    anywhere : (m,) largest value in each triangle, at points that do not count too [MPa].
     largest : the largest value at other distances from sharp corners and patch edges.
     """
 
@@ -47,6 +48,7 @@ class MeridianPeak:
     at_sine: bool
     counted: np.ndarray
     local_mises: np.ndarray
+    anywhere: np.ndarray
     largest: Largest
 
 
@@ -110,6 +112,7 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
         found.at_sine,
         np.asarray(found.counts.any(axis=1)),
         np.sqrt(np.where(found.counts, either, 0.0).max(axis=1)),
+        np.sqrt(either.max(axis=1)),
         largest,
     )
 
@@ -123,8 +126,9 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     corner = mesh.points[mesh.triangles]
     longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
     # nodes at the border average over triangles that begin up to half a distance beyond it
-    near = _distance(corner, _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
-    return near & (longest > exclusion_mm / 2)
+    coarse = longest > exclusion_mm / 2
+    coarse[coarse] = _distance(corner[coarse], _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
+    return np.asarray(coarse)
 
 
 def _singular(mesh: MeridianMesh) -> np.ndarray:

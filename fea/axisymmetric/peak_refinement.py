@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, pi, sin
 
-from flexspline.fea.axisymmetric.bisection import refined
+from flexspline.fea.axisymmetric.bisection import refined_with_parents
 from flexspline.fea.axisymmetric.harmonics import Amplitudes, Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.peak import coarse_at_border, peak_stress
@@ -27,8 +27,16 @@ PEAK_BULK = 0.5
 """Share of the estimated energy error in the triangles that are refined, beside those that LOCAL adds."""
 LOCAL = 0.5
 """Triangles whose stress is off by more than this share of the wanted tolerance are refined too."""
+BORDER_SHARE = 0.25
+"""Borders of the excluded neighbourhoods are meshed finely from this share of the peak on. A coarse mesh may
+see too little there: stress grows at most as distance^-1/2 towards a singular point, to four times within
+16 exclusion distances, which no first triangle exceeds by much. Of 60 random cups and hats, peaks came
+within 0.6 % of those to 0.1 %; with all borders fine within 0.75 %, in 1.4 times the time."""
 QUIET_ROUNDS = 2
 """So many refinements in a row must leave the peak unchanged within the tolerance."""
+ENERGY_SHARE = 0.5
+"""The estimated energy error must be below this share of the tolerance: a thick hat's peak was 1.4 % too high
+after two quiet rounds with 0.9 % of the energy in doubt."""
 
 
 @dataclass(frozen=True)
@@ -66,29 +74,30 @@ class StressProblem:
         MeshingError, HarmonicError, StressError, OutOfTimeError : of the first mesh.
         """
         found = _MeshedField(self)
-        shortfall = refine(found, self._first_mesh(), self.deadline, MOST_TRIANGLES)
+        shortfall = refine(found, triangulate(self.outline), self.deadline, MOST_TRIANGLES)
         return found.field(shortfall)
 
     def fields(self) -> Iterator[RevolvedField]:
-        """What each mesh gives; the last is `field`. Errors as there."""
+        """What each mesh gives whose peak counts; the last is `field`. Errors as there."""
         found = _MeshedField(self)
-        mesh = self._first_mesh()
-        for shortfall in refinements(found, mesh, self.deadline, MOST_TRIANGLES):
-            yield found.field(shortfall)
-
-    def _first_mesh(self) -> MeridianMesh:
         mesh = triangulate(self.outline)
-        while (coarse := coarse_at_border(mesh, self.exclusion_mm)).any():
-            mesh = refined(mesh, coarse)
-        return mesh
+        for shortfall in refinements(found, mesh, self.deadline, MOST_TRIANGLES):
+            if found.peaks or shortfall:
+                yield found.field(shortfall)
 
 
 class _MeshedField:
-    """What the finest mesh gave, and the figures of all; a field is made only where it is asked for."""
+    """What the finest mesh gave, and the figures of all; a field is made only where it is asked for.
+
+    Attributes
+    ----------
+    peaks : the largest stress of each mesh [MPa], but that of a first mesh with coarse borders.
+    """
 
     def __init__(self, problem: StressProblem) -> None:
         self._problem = problem
         self._levels: list[StressLevel] = []
+        self.peaks: list[float] = []
 
     def solve(self, mesh: MeridianMesh) -> None:
         wanted, load = self._problem, self._problem.load
@@ -101,19 +110,28 @@ class _MeshedField:
         self._levels.append(
             StressLevel(mesh.elements, solved.unknowns, peak.mises_MPa, energy_error)
         )
+        loud = peak.anywhere > BORDER_SHARE * peak.mises_MPa
+        self._coarse = loud & coarse_at_border(mesh, wanted.exclusion_mm)
+        if len(self._levels) > 1 or not self._coarse.any():
+            self.peaks.append(peak.mises_MPa)
 
     @property
     def change(self) -> float:
         """Of the peak, relative, over the last refinements."""
-        if len(self._levels) <= QUIET_ROUNDS:
+        if len(self.peaks) <= QUIET_ROUNDS:
             return inf
-        last = [level.mises_MPa for level in self._levels[-1 - QUIET_ROUNDS :]]
+        last = self.peaks[-1 - QUIET_ROUNDS :]
         return max(last) / min(last) - 1
 
     @property
     def met(self) -> bool:
         tolerance = self._problem.tolerance
-        return self.change < tolerance and self._levels[-1].energy_error < tolerance
+        energy_error = self._levels[-1].energy_error
+        return (
+            not self._coarse.any()
+            and self.change < tolerance
+            and energy_error < ENERGY_SHARE * tolerance
+        )
 
     def finer(self, mesh: MeridianMesh) -> MeridianMesh:
         found, peak = self._found, self._peak
@@ -121,7 +139,13 @@ class _MeshedField:
         wrong = peak.counted & (found.misfit > allowed)
         # no smaller than needed where the peak is not: those far below it may be a few percent off
         near = peak.local_mises > peak.mises_MPa / 2
-        return refined(mesh, bulk(found.error, PEAK_BULK) | (wrong & near))
+        marked = bulk(found.error, PEAK_BULK) | (wrong & near) | self._coarse
+        mesh, parent = refined_with_parents(mesh, marked)
+        border = self._coarse[parent]
+        while (still := border & coarse_at_border(mesh, self._problem.exclusion_mm)).any():
+            mesh, parent = refined_with_parents(mesh, still)
+            border = border[parent]
+        return mesh
 
     def field(self, shortfall: Shortfall) -> RevolvedField:
         """The field, its peak judged: does it go on rising into the excluded zone?"""

@@ -33,7 +33,7 @@ def test_the_last_of_the_refinements_is_what_is_found_in_one_go() -> None:
         design.part("flexspline").meridian, Elastic(own.youngs_modulus_GPa * 1e3, own.poissons_ratio),
         design.gear.centre_distance_mm, 0.41, PEAK_STRESS_TOLERANCE,
     )  # fmt: skip
-    assert len(first.levels) == 1 < len(last.levels) == len(whole.levels)
+    assert len(first.levels) < len(last.levels) == len(whole.levels)
     # the page solves for 1 GPa and 1 mm and scales: equal but for rounding
     assert last.peak.mises_MPa == pytest.approx(whole.peak.mises_MPa, rel=1e-9)
     # two rounds of refinement change the peak by the tolerance at most; before them it is coarser

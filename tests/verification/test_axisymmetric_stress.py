@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 from axisymmetric_shapes import annular_plate, tube
 from example_cup import CUP
+from example_files import EXAMPLES
 
 from flexspline.fea.axisymmetric.peak import StressError
+from flexspline.fea.axisymmetric.peak_refinement import BORDER_SHARE
+from flexspline.fea.axisymmetric.recovery import mises_parts
 from flexspline.fea.axisymmetric.stress import ellipse_stress, torsion_stress
 from flexspline.fea.types import NMM_PER_NM, Elastic
+from flexspline.geometry.load import load_design
 from flexspline.geometry.meridian import cup_meridian
 from flexspline.geometry.outline import Meridian, Segment
 
@@ -151,3 +155,19 @@ def test_von_mises_over_the_angle_peaks_where_reported():
 def test_a_clearance_that_leaves_nothing_is_refused():
     with pytest.raises(StressError, match="100 mm"):
         torsion_stress(tube(5, 8, 30), STEEL, "grip", 2.0, 100.0, 0.01)
+
+
+@pytest.mark.parametrize("name", ["xb1-40", "hat-25"])
+def test_borders_that_count_are_meshed_finely(name):
+    """A triangle that reaches from a singular point past the distance carries its false peak along."""
+    part = load_design(EXAMPLES / f"{name}.toml").part("flexspline").without_holes()
+    away_mm = part.exclusion_mm
+    found = ellipse_stress(part.meridian, STEEL, 0.2, away_mm, 0.01)
+    corners = found.places[found.triangles[:, :3]]
+    singular = np.array([*part.meridian.sharp_corners, *part.meridian.patch_edges])
+    near = np.linalg.norm(corners[:, :, None] - singular, axis=3).min(axis=(1, 2)) < 1.5 * away_mm
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    mises = np.sqrt(np.maximum(*mises_parts(dict(enumerate(found.stress.T)))))
+    loud = mises[found.triangles].max(axis=1) > BORDER_SHARE * found.peak.mises_MPa
+    assert (near & loud).sum() > 10
+    assert not (near & loud & (longest > away_mm / 2)).any()
