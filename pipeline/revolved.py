@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness
+from flexspline.fea.axisymmetric.lobes import lobe_stiffnesses
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Design
@@ -27,10 +27,15 @@ from flexspline.pipeline.drawn_teeth import of_toothed
 from flexspline.pipeline.enclosure import enclosed
 from flexspline.pipeline.parts import AnalysisContext
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.refining import Refining
 from flexspline.pipeline.storage import cache_folder
 
 KEPT_PARTS = 512
 """Solved parts remembered: enough for a study's worker, and to go back and forth with a slider."""
+
+
+BEGUN = 2
+"""Of them those that may be refined on: both bodies of the newest part, for they hold their meshes."""
 
 
 def revolved(design: Design) -> Design:
@@ -83,6 +88,11 @@ def lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
     return _of_holed(part, lambda body: _lobes(body, supported, tolerance))
 
 
+def first_lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
+    """`lobes` on one mesh of each body; to be asked for before it, lest the work is done twice."""
+    return _of_holed(part, lambda body: _begun_lobes(body, supported, tolerance).newest)
+
+
 def contact(part: Part, tolerance: float) -> Stiffness:
     """K_b under the lobe load, the seat resting on the wave generator; errors as `torsion`."""
     return _of_holed(part, lambda body: _contact(body, tolerance))
@@ -116,7 +126,12 @@ def _torsion(part: Part, tolerance: float) -> Stiffness:
 
 @lru_cache(maxsize=KEPT_PARTS)
 def _lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
-    return lobe_stiffness(part.meridian, _elastic(part), supported, tolerance)
+    return _begun_lobes(part, supported, tolerance).last()
+
+
+@lru_cache(maxsize=BEGUN)
+def _begun_lobes(part: Part, supported: bool, tolerance: float) -> Refining[Stiffness]:
+    return Refining(lobe_stiffnesses(part.meridian, _elastic(part), supported, tolerance))
 
 
 @lru_cache(maxsize=KEPT_PARTS)

@@ -5,7 +5,6 @@ Solved for 1 GPa, 1 mm and 1 N·m and remembered; `tolerance` is relative, of th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
@@ -13,8 +12,8 @@ from flexspline.fea.axisymmetric.peak_refinement import StressProblem
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.axisymmetric.stress import ellipse, ellipse_stress, torsion_stress
 from flexspline.fea.types import Elastic, StressPeak
-from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.part import Part
+from flexspline.pipeline.refining import Refining
 from flexspline.pipeline.revolved import KEPT_PARTS, of_1_GPa
 
 KEPT_FIELDS = 32
@@ -89,25 +88,11 @@ def _torque_field(part: Part, tolerance: float) -> RevolvedField:
     )
 
 
-class _Refining:
-    """A field that is solved as far as somebody asked."""
-
-    def __init__(self, meshes: Iterator[RevolvedField]) -> None:
-        self._meshes = meshes
-        self.newest = next(meshes)
-
-    def last(self) -> RevolvedField:
-        """The one within the tolerance."""
-        for field in self._meshes:
-            self.newest = field
-        return self.newest
-
-
 @lru_cache(maxsize=1)
-def _begun(part: Part, tolerance: float) -> _Refining:
+def _begun(part: Part, tolerance: float) -> Refining[RevolvedField]:
     """For w0 = 1 mm; only the newest, for it holds its model."""
     unit = ellipse(w0_mm=1.0)
-    return _Refining(
+    return Refining(
         StressProblem(
             part.meridian, Elastic.of(part.material), unit, part.exclusion_mm, tolerance
         ).fields()
@@ -117,8 +102,4 @@ def _begun(part: Part, tolerance: float) -> _Refining:
 @lru_cache(maxsize=KEPT_FIELDS)
 def _ellipse_field(part: Part, tolerance: float) -> RevolvedField:
     """For w0 = 1 mm."""
-    try:
-        return _begun(part, tolerance).last()
-    except ComputationError:
-        _begun.cache_clear()  # what ended in an error must not pass for the last mesh
-        raise
+    return _begun(part, tolerance).last()

@@ -98,6 +98,7 @@ def _stiffness(name: str, figures: Found) -> Message:
     if key not in figures:
         return _waiting(key)
     row = figure(key, figures[key])
+    row["rough"] = bool(figures.get(f"{name}_rough"))
     if bounds in figures:
         low, high = figures[bounds]
         half = 50 * (high - low) / figures[key]

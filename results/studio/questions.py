@@ -6,12 +6,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError, DesignError
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.fast_model import (
     field,
     first_field,
+    first_lobes,
     gear,
     profile,
     rim,
@@ -28,6 +30,8 @@ RIM: Mapping[str, RimCase] = {figure_of(case): case for case in RIM_CASES}
 """The load cases of the rim by the figure that each answers with."""
 FIRST_STRESS = "first field wave_generator"
 """The stress on the wave generator before any refinement; its `PEAK_rough` says so."""
+FIRST_LOBES = "first K_b_lobes"
+"""K_b at the lobes before any refinement; its `_rough` says so."""
 GEAR = "gear"
 """The whole gear's figures and the positive branch of its curve."""
 CHORDS_PER_WALL = 40
@@ -53,7 +57,11 @@ def _torsion(design: Design) -> Found:
 
 
 def _rim(name: str) -> Callable[[Design], Found]:
-    return lambda design: bounded_record(name, rim(design, RIM[name]))
+    return lambda design: _bounded(name, rim(design, RIM[name]), rough=False)
+
+
+def _bounded(name: str, found: Stiffness, rough: bool) -> Found:
+    return bounded_record(name, found) | {f"{name}_rough": rough}
 
 
 def _gear(design: Design) -> Found:
@@ -95,6 +103,7 @@ _QUESTIONS: dict[str, Callable[[Design], Found]] = {
     "torsion": _torsion,
     GEAR: _gear,
     FIRST_STRESS: _first,
+    FIRST_LOBES: lambda design: _bounded("K_b_lobes", first_lobes(design), rough=True),
     **{name: _rim(name) for name in RIM},
     **{f"field {view}": _field(view) for view in STRESS_CASES},
     **{f"profile {view}": _profile(view) for view in STRESS_CASES},

@@ -20,13 +20,13 @@ from flexspline.pipeline.fast_model import left_out
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.results.studio.answer import agreement, message
 from flexspline.results.studio.fields import received
-from flexspline.results.studio.questions import FIRST_STRESS, GEAR, RIM
+from flexspline.results.studio.questions import FIRST_LOBES, FIRST_STRESS, GEAR, RIM
 from flexspline.results.studio.worker import Fault, Worker
 
 Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
 STILL_S = 0.35
 """The slow questions wait until no slider has moved for so long: they would only delay the others."""
-QUICK = ("torsion", "K_b_lobes")
+QUICK = ("torsion", FIRST_LOBES, "K_b_lobes")
 ROUGH = f"{PEAK_OF['wave_generator']}_rough"
 
 

@@ -17,7 +17,8 @@ from flexspline.pipeline.ellipse_peak import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.revolved import revolved
 from flexspline.pipeline.rim_case import RIM_CASES
 
-CUP = revolved(design_from(tomllib.loads(template("cup"))))
+HOLED = design_from(tomllib.loads(template("cup")))
+CUP = revolved(HOLED)
 
 
 def walled(wall_mm: float) -> Design:
@@ -60,10 +61,9 @@ def test_refinements_cut_short_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_shaft_without_its_holes_and_teeth_as_a_ring_have_no_guaranteed_bounds() -> None:
-    holed = design_from(tomllib.loads(template("cup")))
-    assert holed.flexspline.bolt_count
-    assert holed.shaft.bolt_count
-    kinds = [[k.guaranteed for k in fast_model.torsion(design)] for design in (CUP, holed)]
+    assert HOLED.flexspline.bolt_count
+    assert HOLED.shaft.bolt_count
+    kinds = [[k.guaranteed for k in fast_model.torsion(design)] for design in (CUP, HOLED)]
     assert kinds == [[True, True], [True, False]]
     toothed = with_values(CUP, {"flexspline.bolt_count": 0})
     drawn = toothed.flexspline.model_copy(update={"teeth": "drawn"})
@@ -75,3 +75,13 @@ def test_a_shaft_without_its_holes_and_teeth_as_a_ring_have_no_guaranteed_bounds
 
 def test_lobe_cases_are_estimates() -> None:
     assert not any(fast_model.rim(CUP, case).guaranteed for case in RIM_CASES)
+
+
+@pytest.mark.parametrize(("cup", "wall_mm"), [(CUP, 0.4237), (HOLED, 0.4337)])
+def test_the_first_answer_at_the_lobes_holds_the_last(cup: Design, wall_mm: float) -> None:
+    design = with_values(cup, {"flexspline.wall_thickness_mm": wall_mm})  # nobody asked for it
+    first, last = fast_model.first_lobes(design), fast_model.rim(design, "lobes")
+    assert len(first.levels) == 1 < len(last.levels)
+    assert first.lower_Nm_per_rad < last.lower_Nm_per_rad < last.upper_Nm_per_rad
+    assert last.upper_Nm_per_rad <= first.upper_Nm_per_rad
+    assert last.half_width < design.solver.tolerance < first.half_width
