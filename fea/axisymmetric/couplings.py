@@ -13,8 +13,9 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
+from skfem.assembly.form.coo_data import COOData
 
-from flexspline.fea.axisymmetric.space import Space, assembled
+from flexspline.fea.axisymmetric.space import Space
 from flexspline.fea.types import Elastic
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
@@ -72,22 +73,37 @@ class Couplings:
         }
 
     @cached_property
+    def _first(self) -> COOData:
+        return RR.elemental(self.space.basis)
+
+    @cached_property
+    def _places(self) -> tuple[np.ndarray, np.ndarray]:
+        """The matrices' entries, row·count + column, and to which of them each triangle's entry is added."""
+        rows, columns = self._first.indices.astype(np.int64)
+        return np.unique(rows * self.space.count + columns, return_inverse=True)
+
+    @cached_property
     def _pattern(self) -> csr_matrix:
-        return assembled(RR, self.space.basis)
+        """Of all the forms; its data are the numbers of its entries."""
+        rows, columns = np.divmod(self._places[0], self.space.count)
+        starts = np.searchsorted(rows, np.arange(self.space.count + 1))
+        shape = 2 * (self.space.count,)
+        return csr_matrix((np.arange(len(rows)), columns, starts), shape=shape)
 
     @cached_property
     def _transposed(self) -> np.ndarray:
         """Where the entries of the transposed matrix stand."""
-        p = self._pattern
-        numbered = csr_matrix((np.arange(p.nnz), p.indices, p.indptr), shape=p.shape)
-        return numbered.T.tocsr().data
+        return self._pattern.T.tocsr().data
 
     def _entries(self, form: BilinearForm) -> np.ndarray:
-        return assembled(form, self.space.basis).data
+        return self._summed(form.elemental(self.space.basis))
+
+    def _summed(self, entries: COOData) -> np.ndarray:
+        return np.bincount(self._places[1], entries.data, len(self._places[0]))
 
     @cached_property
     def _rr(self) -> np.ndarray:
-        return self._pattern.data
+        return self._summed(self._first)
 
     @cached_property
     def _rz(self) -> np.ndarray:

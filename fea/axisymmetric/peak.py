@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from flexspline.fea.axisymmetric.recovery import mises_parts
 from flexspline.fea.axisymmetric.space import shape_functions
 from flexspline.fea.stress_rule import Largest
 from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.outline import Meridian
 
 LATTICE_STEPS = 8
 """Stress is looked at on a lattice of so many steps along each side of a triangle."""
@@ -74,23 +76,22 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
     StressError
         If no point is that far away.
     """
-    s, singular = model.space, _singular(model.mesh)
-    values = _lattice_values()
+    s, values = model.space, _lattice_values()
+    lattice, rim = _Lattice(model), _Rim(model)
     acting = np.flatnonzero(nodal.any(axis=0))
     parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
     either = np.maximum(*parts)
 
-    places = np.matmul(values.T, s.places[s.dofs])
-
     def search(distance_mm: float, at: np.ndarray, within_mm: float) -> _Found | None:
-        counts = _counting(s.places[s.dofs], values, singular, distance_mm)
+        counts = lattice.counting(distance_mm)
         if within_mm < inf:
-            counts &= np.linalg.norm(places - at, axis=2) <= within_mm
+            counts &= np.linalg.norm(lattice.places - at, axis=2) <= within_mm
         if not counts.any():
             return None
         top = np.unravel_index(np.where(counts, either, 0.0).argmax(), either.shape)
-        best, place, at_sine = float(either[top]), places[top], bool(parts[1][top] > parts[0][top])
-        for rim_place, rim_stress in _at_distance(model, nodal, singular, distance_mm):
+        best, place = float(either[top]), lattice.places[top]
+        at_sine = bool(parts[1][top] > parts[0][top])
+        for rim_place, rim_stress in rim.crossings(nodal, distance_mm):
             direct, shear = mises_parts(dict(enumerate(rim_stress)))
             if max(direct, shear) > best and np.linalg.norm(rim_place - at) <= within_mm:
                 best, place = float(max(direct, shear)), rim_place
@@ -127,12 +128,22 @@ def coarse_at_border(mesh: MeridianMesh, exclusion_mm: float) -> np.ndarray:
     longest = edge_lengths(mesh.points, mesh.triangles).max(axis=1)
     # nodes at the border average over triangles that begin up to half a distance beyond it
     coarse = longest > exclusion_mm / 2
-    coarse[coarse] = _distance(corner[coarse], _singular(mesh)).min(axis=1) < 1.5 * exclusion_mm
+    near = _distance(corner[coarse], mesh.outline).min(axis=1) < 1.5 * exclusion_mm
+    coarse[coarse] = near
     return np.asarray(coarse)
 
 
-def _singular(mesh: MeridianMesh) -> np.ndarray:
-    return np.array([*mesh.outline.sharp_corners, *mesh.outline.patch_edges])
+@lru_cache(maxsize=2)
+def _singular(outline: Meridian) -> Any:
+    """A tree of the sharp corners and patch edges."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(np.array([*outline.sharp_corners, *outline.patch_edges]))
+
+
+def _distance(places: np.ndarray, outline: Meridian) -> np.ndarray:
+    """To the nearest sharp corner or patch edge."""
+    return np.asarray(_singular(outline).query(places)[0])
 
 
 @cache
@@ -143,45 +154,49 @@ def _lattice_values() -> np.ndarray:
     return shape_functions(np.stack([i[inside], j[inside]]) / LATTICE_STEPS)
 
 
-def _counting(
-    nodes: np.ndarray, values: np.ndarray, singular: np.ndarray, exclusion_mm: float
-) -> np.ndarray:
-    """Mask (m, q) of lattice points at the distance or farther; nodes (m, 6, 2).
+class _Lattice:
+    """The lattice points of all triangles, and how far they are from what is singular."""
 
-    Most triangles lie wholly on one side of it; only the others' points are looked at.
-    """
-    # a point at the distance but for rounding is at the distance
-    limit = exclusion_mm * (1 - 1e-9)
-    corner = _distance(nodes[:, 0], singular)
-    reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
-    counts = np.repeat((corner > limit)[:, None], values.shape[1], axis=1)
-    split = np.abs(corner - limit) <= reach
-    places = np.matmul(values.T, nodes[split])
-    counts[split] = _distance(places, singular) >= limit
-    return counts
+    def __init__(self, model: HarmonicModel) -> None:
+        nodes = model.space.places[model.space.dofs]
+        self._outline = model.mesh.outline
+        self._corner = _distance(nodes[:, 0], self._outline)
+        self._reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
+        self.places = np.matmul(_lattice_values().T, nodes)
 
+    def counting(self, distance_mm: float) -> np.ndarray:
+        """Mask (m, q) of the points at the distance or farther.
 
-def _distance(places: np.ndarray, singular: np.ndarray) -> np.ndarray:
-    """To the nearest of the singular points."""
-    from scipy.spatial import cKDTree
-
-    return cKDTree(singular).query(places)[0]
+        Most triangles lie wholly on one side of it; only the others' points are looked at.
+        """
+        # a point at the distance but for rounding is at the distance
+        limit = distance_mm * (1 - 1e-9)
+        counts = np.repeat((self._corner > limit)[:, None], self.places.shape[1], axis=1)
+        split = np.abs(self._corner - limit) <= self._reach
+        counts[split] = _distance(self.places[split], self._outline) >= limit
+        return counts
 
 
-def _at_distance(
-    model: HarmonicModel, nodal: np.ndarray, singular: np.ndarray, exclusion_mm: float
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Places and stresses where the outline leaves the excluded neighbourhoods."""
-    s = model.space
-    t = np.linspace(0, 1, LATTICE_STEPS + 1)
-    shape = _edge_shape(t)
-    beyond = _distance(np.einsum("qi,kid->kqd", shape, s.places[s.rim]), singular) - exclusion_mm
-    edge, step = np.nonzero(beyond[:, 1:] * beyond[:, :-1] < 0)
-    before, after = beyond[edge, step], beyond[edge, step + 1]
-    crossing = _edge_shape((step + before / (before - after)) / LATTICE_STEPS)
-    places = np.einsum("ki,kid->kd", crossing, s.places[s.rim[edge]])
-    stresses = np.einsum("ki,kic->kc", crossing, nodal[s.rim[edge]])
-    return list(zip(places, stresses, strict=True))
+class _Rim:
+    """The outline's edges, and how far their points are from what is singular."""
+
+    def __init__(self, model: HarmonicModel) -> None:
+        self._edges = model.space.rim
+        self._nodes = model.space.places[self._edges]
+        shape = _edge_shape(np.linspace(0, 1, LATTICE_STEPS + 1))
+        self._away = _distance(np.einsum("qi,kid->kqd", shape, self._nodes), model.mesh.outline)
+
+    def crossings(
+        self, nodal: np.ndarray, distance_mm: float
+    ) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Places and stresses where the outline leaves the excluded neighbourhoods."""
+        beyond = self._away - distance_mm
+        edge, step = np.nonzero(beyond[:, 1:] * beyond[:, :-1] < 0)
+        before, after = beyond[edge, step], beyond[edge, step + 1]
+        crossing = _edge_shape((step + before / (before - after)) / LATTICE_STEPS)
+        places = np.einsum("ki,kid->kd", crossing, self._nodes[edge])
+        stresses = np.einsum("ki,kic->kc", crossing, nodal[self._edges[edge]])
+        return list(zip(places, stresses, strict=True))
 
 
 def _edge_shape(t: np.ndarray) -> np.ndarray:

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
-from skfem import Basis, BilinearForm, ElementTriP2
+from scipy.sparse import csr_matrix
+from skfem import Basis, ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
 from flexspline.fea.entities import CurvedTriangles, Triangles
@@ -164,12 +164,6 @@ def shape_functions(at: np.ndarray) -> np.ndarray:
     """P2 shape functions (6, q) at points (2, q) of the reference triangle."""
     element = ElementTriP2()
     return np.stack([element.lbasis(at, i)[0] for i in range(6)])
-
-
-def assembled(form: BilinearForm, basis: Any, **fields: np.ndarray) -> csr_matrix:
-    """As `form.assemble`, but entries that happen to be 0 stay: one basis, one sparsity pattern."""
-    entries = form.elemental(basis, **fields)
-    return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()
 
 
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
