@@ -17,6 +17,7 @@ from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.first_values import MODELS, Table, first_values
 from flexspline.geometry.load import design_from
+from flexspline.geometry.percent import percent
 from flexspline.geometry.ranges import Range
 from flexspline.geometry.rated import (
     LOST_MOTION_SHARE,
@@ -118,7 +119,7 @@ def sized_values(
         raise DesignError("--rated", rated_Nm, reason)
     values["load"]["torque_Nm"] = _rounded(LOST_MOTION_SHARE * rated, 3)
     why[("load", "torque_Nm")] = (
-        f"{LOST_MOTION_SHARE:.0%} of rated torque, where makers measure lost motion"
+        f"{percent(LOST_MOTION_SHARE)} of rated torque, where makers measure lost motion"
     )
     whole = design_from(tomllib.loads(text_of("", values, kind, {})))
     for assumed in (*circular_spline(whole).assumed, *flexible_bearing(whole).assumed):

@@ -246,7 +246,9 @@ def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> 
     else:
         said += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
-    said += plain(f"The wanted tolerance of ±{content.design.solver.tolerance_pct:g}{NBSP}% was ")
+    said += plain(
+        f"The wanted tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+    )
     return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 
 
