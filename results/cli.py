@@ -115,7 +115,7 @@ def run(
             write_run_report(job.folder / "report.pdf", result, pictures, name, files)
         write_run_page(job.folder / "report.html", job.context, result, pictures, name, files)
         missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
-        deliver(job.folder, record() | missing, json)
+        deliver(job, record() | missing, json)
 
 
 @app.command()
@@ -147,7 +147,7 @@ def backlash(
             record = backlash_answer(
                 job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
             )
-        deliver(job.folder, record, json)
+        deliver(job, record, json)
 
 
 @app.command()
@@ -168,7 +168,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
         tell_all(gear_warnings(curve))
         record = gear_record(job.design, curve, shaft, job.wall_s)
         write_gear(job.folder, curve, record)
-        present(job.folder, record, json)
+        present(job, record, json)
 
 
 @app.command()
