@@ -97,7 +97,10 @@ def _why_pressing(pressing: PressingFlanks) -> str:
 def _note(note: GearNote) -> str:
     match note:
         case HalvedBalls(count, computed):
-            return f"{count} balls are computed as {computed}, half of them in each lobe"
+            return (
+                f"the model has {computed} balls in place of {count}: an even number, half of them at each "
+                "lobe"
+            )
         case LowRatio(limit):
             return (
                 f"below a ratio of {limit:g} the model is too stiff: with thicknesses in proportion to the "
@@ -121,7 +124,8 @@ def _note(note: GearNote) -> str:
         case LoadedLastPair(at):
             return (
                 f"the last pair of teeth within the working depth, {at:.0f}° from "
-                "the major axis, carries much: the figures depend on gear.working_depth_mm"
+                "the major axis, carries much: its force depends on gear.working_depth_mm and is no load to "
+                "design teeth for; K2 and K3 depend on it too"
             )
         case TwoTorques(load, lost_motion):
             return (

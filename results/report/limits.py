@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flexspline.geometry.part_name import PART_NAMES
+from flexspline.geometry.percent import percent
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
@@ -98,7 +99,7 @@ def fatigue(content: ReportContent) -> str:
             "stress rises further."
         )
     return (
-        f"{said} lies at the border of what is left out, {peak.exclusion_mm:.3g} mm from an edge, towards "
+        f"{said} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge, towards "
         "which the stress rises further: it does not tell whether the part keeps to the stated fatigue limit "
         f"of {limit:g} MPa."
     )
@@ -161,8 +162,8 @@ def _teeth(content: ReportContent) -> str:
         f"Drawn with {f.tooth_flank} flanks on a rim of {f.ring_thickness_mm:g} mm. Every K_b uses a "
         f"plain ring of {bending}, {difference} more than the rim: it is as stiff in "
         f"bending. Equivalent thickness in hoop stiffness: {membrane}; in torsion about the axis: "
-        f"{torsion}. The mesh leaves less than {100 * ring.change:.1g} %; root fillets "
-        "and the axial stiffness of the teeth are not in it. Stress at the tooth roots is not that "
+        f"{torsion}. The mesh error of these thicknesses is below {percent(ring.change, 1)}; root fillets "
+        "and the axial stiffness of the teeth are not included. Stress at the tooth roots is not that "
         "of the plain ring."
     )
 

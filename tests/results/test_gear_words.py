@@ -57,7 +57,7 @@ WARNINGS: dict[GearWarning, str] = {
     "play_closes_gap": "reduce the play",
 }
 NOTES: dict[GearNote, str] = {
-    HalvedBalls(23, 24): "23 balls are computed as 24, half of them in each lobe",
+    HalvedBalls(23, 24): "24 balls in place of 23",
     LowRatio(45): "below a ratio of 45 the model is too stiff",
     RelievedFlanks(35.3, 14.6, 54.0): "beyond 35° from the major axis",
     ShapedFaces(16.4): "up to 16 µm at its ends",
