@@ -50,7 +50,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.study.why import unfollowed
 
         raw = read_raw(file, "study")
-        asked = study_from(tables_from(raw, file), file.parent, file.stem)
+        asked = study_from(tables_from(raw, file, "study"), file.parent, file.stem)
         base = file.parent / asked.file.design
         attached = (
             Attachment(file.name, raw, "Study file"),
