@@ -68,5 +68,5 @@ def test_the_page_names_every_key_and_method() -> None:
 
 def test_an_empty_file_is_said_to_be_empty(tmp_path: Path) -> None:
     (tmp_path / "study.toml").touch()
-    with pytest.raises(DesignFileError, match="the file is empty$"):
+    with pytest.raises(DesignFileError, match=r"the file is empty$"):
         load_study(tmp_path / "study.toml")
