@@ -40,11 +40,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
         left = f"left over in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
         lines += prose(left, "  ", "    ")
     if diagnosis.calibration is not None:
-        lines += prose(
-            calibrated_sentences(
-                diagnosis.calibration, diagnosis.prediction, bool(outcome.unexplained)
-            )
-        )
+        lines += prose(calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome))
     lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement
