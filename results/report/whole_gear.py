@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
-from flexspline.pipeline.gear_remarks import LoadedLastPair
 from flexspline.pipeline.gear_terms import TIGHT
 from flexspline.results.file_names import CURVE, LOADS
 from flexspline.results.gear_terms import term_names
@@ -72,8 +71,6 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     )
     slopes = "Angle of the output over torque, and the torques between which the slopes are taken."
     loads = "What tooth pairs and balls carry at rated torque, around one lobe."
-    if any(isinstance(note, LoadedLastPair) for note in curve.notes):
-        loads += " The last tooth pair’s force depends on gear.working_depth_mm."
     yield from shown(content, roomy, Picture(CURVE, slopes, 66))
     yield from shown(content, roomy, Picture(LOADS, loads, 66))
     yield _beside(content.backlash, curve)
