@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts
 from flexspline.results.diagnosis.reading import columns_record, form_record
 from flexspline.results.diagnosis.words import plus_minus, title_of
-from flexspline.results.numbers import grouped
+from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
 """Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
@@ -97,7 +97,7 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         return f"{found} (as simulated: this record does not narrow it)"
-    off = f"{(measured.value - simulated) / std:+.1f}".replace("-", "−")
+    off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} deviations)"
 
 

@@ -10,6 +10,7 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, U
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
 from flexspline.results.figures.words import fit
+from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
@@ -63,7 +64,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
             said.append(axes.annotate(
-                f"{unit.total_arcsec:.1f} arcsec, {words} ({unit.z:+.1f} σ)".replace("-", "−"),
+                f"{unit.total_arcsec:.1f} arcsec, {words} ({signed(unit.z, 1)} σ)",
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
@@ -120,7 +121,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
                 unit.mid_arcsec, row + 0.08, "o", color=INK, ms=5, label="middle" if first else None
             )
             axes.annotate(
-                f"middle {unit.mid_arcsec:+.1f} arcsec".replace("-", "−"), (1.02, row),
+                f"middle {signed(unit.mid_arcsec, 1)} arcsec", (1.02, row),
                 xycoords=("axes fraction", "data"), va="center", fontsize=9.5, annotation_clip=False,
             )  # fmt: skip
         axes.set_ylim(len(units) - 0.5, -0.5)
