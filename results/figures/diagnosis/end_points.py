@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.figures.words import fit
+from flexspline.results.figures.words import angle_title, fit
 from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -79,7 +79,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
         ])  # fmt: skip
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
-        axes.set_xlabel("angle between −T and +T in arcsec")
+        axes.set_xlabel(angle_title("angle between −T and +T"))
         titled(figure, 1 - 0.28 / height, "Lost motion of each unit against the prediction")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
@@ -128,7 +128,7 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
         axes.set_yticks(range(len(units)), [f"unit {n}" for n in names])
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
-        axes.set_xlabel("angle read in arcsec")
+        axes.set_xlabel(angle_title("angle read"))
         titled(figure, 1 - 0.28 / height, "Where each unit's ends lie")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
