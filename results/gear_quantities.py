@@ -54,7 +54,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "free_angle_arcsec",
         "free_angle_arcsec",
         "arcsec",
-        "Free angle, clearance of both ways; K1 leaves it out",
+        "Free angle (clearance both ways), not in K1",
         "θ_0",
         decimals=1,
         group="gear",

@@ -37,7 +37,7 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
             lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
         rms = f"{figures_text(u.rms)} {u.unit} rms"
-        left = f"left over in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
+        left = f"unexplained in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
         lines += prose(left, "  ", "    ")
     if diagnosis.calibration is not None:
         lines += prose(calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome))

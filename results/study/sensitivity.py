@@ -72,8 +72,8 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
             f"{s.backlash_arcsec_per_mm:10.3f}{word}"
         )
     out.append(
-        "dK/dp in N·m/rad per mm: of K_b by keys of the flexspline, of K_e by keys of the shaft, both without "
-        "bolt holes and keyway"
+        "dK/dp in N·m/rad per mm: of K_b by keys of the flexspline, of K_e by keys of the shaft, both "
+        "without bolt holes and keyway"
     )
     if design.flexspline.teeth != "none":
         out.append(

@@ -105,7 +105,7 @@ def test_what_specimens_leave_is_in_percent_everywhere() -> None:
     record = diagnosis_record(found)
     assert record["unexplained"][0]["unit"] == "%"
     table = diagnosis_table(found, Path("out"))
-    assert "left over in the order of the specimens: 6.50 % rms" in " ".join(table.split())
+    assert "unexplained in the order of the specimens: 6.50 % rms" in " ".join(table.split())
     report = repr(diagnosis_document(found, (), StiffnessPair(1.0, 1.0)).blocks)
     assert "Size, % rms" in report
     page = job_summary("diagnose", DESIGN, as_json(record))
