@@ -153,7 +153,7 @@ def _which(load_case: str) -> Words:
         *plain("Which stiffness of the flexspline to use: teeth bring the torque in at the two lobes, and "
                "the rim only rests on the wave generator, so "),
         *resting,
-        *plain(" is nearest to a mounted gear. The uniform case is the stiffest: it compares parts. "),
+        *plain(" is nearest to a mounted gear. The uniform case is the stiffest; use it to compare parts. "),
         *free,
         *plain(" shows how much the wave generator carries. No case includes teeth, wave-generator bearing "
                f"and bolts. The backlash sum uses the case “{load_case}” (solver.load_case)."),

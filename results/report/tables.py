@@ -148,7 +148,7 @@ def _stress_rows(content: ReportContent) -> list[Row]:
                 said.append(limit_note(peak, content.design.part(part).material))
             if entry is wave and content.half_seat_peak is not None:
                 half = entry.with_unit(content.half_seat_peak.mises_MPa)
-                said.append(f"seat as wide as the ring; {half} on one half as wide")
+                said.append(f"seat as wide as the ring; {half} with a seat half as wide")
             rows.append(
                 _row(entry, peak.mises_MPa, "")
                 | {"note": "; ".join(said), "alarm": "; ".join(passed)}
