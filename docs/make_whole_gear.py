@@ -14,6 +14,7 @@ import whole_gear_ratcheting as ratcheting
 import whole_gear_wall as wall
 
 from flexspline.fea.threads import one_thread
+from flexspline.geometry.percent import percent
 
 PAGE = Path(__file__).with_name("whole-gear.md")
 MARK = "<!-- made by docs/make_whole_gear.py: {} -->\n"
@@ -62,7 +63,7 @@ def aims(found: list[figures.Row]) -> str:
     lines = []
     for words, index, aim in (("K3", 2, AIM_K3), ("K3/K1", 3, AIM_RATIO)):
         alone, with_shaft = (figures.within(found, index, aim, shaft) for shaft in (False, True))
-        lines.append(f"| {words} within ± {aim:.0%} | {alone} | {with_shaft} |")
+        lines.append(f"| {words} within ± {percent(aim)} | {alone} | {with_shaft} |")
     return "\n".join(lines)
 
 

@@ -86,6 +86,14 @@ _FIRST: dict[str, tuple[Table, Table]] = {"cup": (_CUP, _CUP_SHAFT), "hat": (_HA
 MODELS = {"cup": "examples/xb1-40.toml", "hat": "`flexspline init hat`"}
 """Which design the first of a kind is."""
 
+LESS_BENT = {
+    "cup": "Thinner parts lower the stress",
+    "hat": "A longer tube or a narrower ring lowers the stress",
+}
+"""What lowers the stress on the wave generator."""
+BENT = {"hat": "The wave generator stresses it above its fatigue limit (`flexspline run`)"}
+"""Of the first design of a kind where it does."""
+
 
 def first_values(kind: str) -> Table:
     """The tables of the first design of a kind.

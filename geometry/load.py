@@ -16,7 +16,7 @@ from flexspline.geometry.errors import MISSING, DesignError, DesignFileError
 from flexspline.geometry.input_file import InputFileError, read_input
 from flexspline.geometry.plain_words import kind_of, translate, without_tag
 from flexspline.geometry.schema import ends_of
-from flexspline.geometry.toml_read import TomlError, toml_tables
+from flexspline.geometry.toml_read import EmptyTomlError, TomlError, toml_tables
 
 LARGEST_BYTES = 1_000_000
 """A design takes 2 kB; a file beyond this is some other file."""
@@ -48,7 +48,7 @@ def read_toml(path: Path | str, what: str = "design") -> dict[str, Any]:
     ------
     DesignFileError : no such file, not a regular file, too large, not UTF-8, not TOML.
     """
-    return tables_from(read_raw(path, what), path)
+    return tables_from(read_raw(path, what), path, what)
 
 
 def read_raw(path: Path | str, what: str = "design") -> bytes:
@@ -64,21 +64,22 @@ def read_raw(path: Path | str, what: str = "design") -> bytes:
         raise DesignFileError(path, str(fault)) from None
 
 
-def tables_from(raw: bytes, name: object) -> dict[str, Any]:
-    """The tables of a design file's bytes; `name` is what an error calls the file.
+def tables_from(raw: bytes, name: object, what: str = "design") -> dict[str, Any]:
+    """The tables of a file's bytes; `name` is what an error calls the file, `what` kind it should be.
 
     Raises
     ------
-    DesignFileError : too large, not UTF-8, not TOML.
+    DesignFileError : too large, empty, not UTF-8, not TOML.
     """
     if len(raw) > LARGEST_BYTES:
         raise DesignFileError(
-            name, f"{len(raw)} bytes; a design file has at most {LARGEST_BYTES} bytes"
+            name, f"{len(raw)} bytes; a {what} file has at most {LARGEST_BYTES} bytes"
         )
-    if not raw.strip():
-        raise DesignFileError(name, "the file is empty; `flexspline init` writes one to begin with")
     try:
         return toml_tables(raw)
+    except EmptyTomlError as fault:
+        hint = "; `flexspline init` writes one to begin with" if what == "design" else ""
+        raise DesignFileError(name, f"{fault}{hint}") from None
     except TomlError as fault:
         raise DesignFileError(name, str(fault)) from fault
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flexspline.geometry.assumed import Assumed
 from flexspline.geometry.bounds import span
 from flexspline.geometry.errors import DesignError
+from flexspline.geometry.percent import percent
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -26,7 +27,7 @@ UNUSUAL = 3.0
 LOST_MOTION_SHARE = 0.04
 """Of rated torque, each way: where lost motion is measured (GB/T 35089-2018; Hrcek et al., Materials 14
 (2021) 5057)."""
-LOST_MOTION_TORQUE = f"{100 * LOST_MOTION_SHARE:g} % of rated torque"
+LOST_MOTION_TORQUE = f"{percent(LOST_MOTION_SHARE)} of rated torque"
 """The same in words."""
 RATED_SHARES = (1e-3, 1e2)
 """Of that: plastic gears carry a hundredth. Below, rounding shows in the forces; above, nothing holds."""

@@ -13,6 +13,7 @@ from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint, root_radius_mm
+from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
 
 ROOT_TOLERANCE = 0.15
@@ -168,8 +169,8 @@ def _clearance(design: Design) -> Iterator[str]:
     clearance, thick = design.gear.flank_clearance_um, UM_PER_MM * design.gear.tooth_thickness_mm
     if clearance > LARGEST_CLEARANCE * thick:
         yield (
-            f"gear.flank_clearance_um = {clearance:g} is {clearance / thick:.0%} of a tooth's thickness, "
-            f"{thick:.4g} µm; usually below {LARGEST_CLEARANCE:.0%}"
+            f"gear.flank_clearance_um = {clearance:g} is {percent(clearance / thick)} of a tooth's "
+            f"thickness, {thick:.4g} µm; usually below {percent(LARGEST_CLEARANCE)}"
         )
 
 

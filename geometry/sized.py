@@ -15,8 +15,9 @@ from flexspline.geometry.basic_rack import DEDENDUM
 from flexspline.geometry.bounds import span
 from flexspline.geometry.circular_spline import circular_spline
 from flexspline.geometry.errors import DesignError
-from flexspline.geometry.first_values import MODELS, Table, first_values
+from flexspline.geometry.first_values import LESS_BENT, MODELS, Table, first_values
 from flexspline.geometry.load import design_from
+from flexspline.geometry.percent import percent
 from flexspline.geometry.ranges import Range
 from flexspline.geometry.rated import (
     LOST_MOTION_SHARE,
@@ -37,8 +38,9 @@ RATIOS = Range(30, 320)
 WALL_SHARE = 0.0123
 """Of the pitch radius. The tube then buckles at the torque that a catalogue gives for it: its 15 sizes
 ask for 0.0117 to 0.0127, at all ratios alike (docs/whole-gear.md)."""
-FAR_BENT = 90
-"""Stress goes with the stroke: at ratio 100 it is 0.9 of what the first cup's steel endures (448 MPa)."""
+FAR_BENT = {"cup": 90, "hat": 144}
+"""By kind. Stress on the wave generator goes with the stroke: at ratio 100 it is 448 MPa in cups and 718 in
+hats; the first designs' steel endures 500."""
 LENGTH_DIGITS = 4
 """Significant ones of a length: closer than any tolerance of ISO 2768-f."""
 
@@ -62,10 +64,10 @@ def sized_template(kind: str, size: float, ratio: int, rated_Nm: float | None = 
         "# Catalogues do not give inner dimensions: "
         f'what is marked "assumed" is a proportion of {MODELS[kind]}, or says its source.'
     )
-    if ratio < FAR_BENT:
+    if ratio < (least := FAR_BENT.get(kind, 0)):
         title += (
-            f"\n# Below a ratio of {FAR_BENT} the stroke bends these thicknesses far: `flexspline run` shows "
-            "the stress.\n# Thinner ones have less of it; makers' are not published."
+            f"\n# Below a ratio of {least} the wave generator stresses these proportions above the fatigue "
+            f"limit (`flexspline run`).\n# {LESS_BENT[kind]}; makers' dimensions are not published."
         )
     stated = frozenset() if rated_Nm is None else frozenset({RATED})
     return text_of(title, values, kind, why, stated)
@@ -118,7 +120,7 @@ def sized_values(
         raise DesignError("--rated", rated_Nm, reason)
     values["load"]["torque_Nm"] = _rounded(LOST_MOTION_SHARE * rated, 3)
     why[("load", "torque_Nm")] = (
-        f"{LOST_MOTION_SHARE:.0%} of rated torque, where makers measure lost motion"
+        f"{percent(LOST_MOTION_SHARE)} of rated torque, where makers measure lost motion"
     )
     whole = design_from(tomllib.loads(text_of("", values, kind, {})))
     for assumed in (*circular_spline(whole).assumed, *flexible_bearing(whole).assumed):

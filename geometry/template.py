@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from flexspline.geometry.design import Design
-from flexspline.geometry.first_values import Table, first_values
+from flexspline.geometry.first_values import BENT, LESS_BENT, Table, first_values
 from flexspline.geometry.schema import Location, allowed, json_schema, node_at
 from flexspline.geometry.toml_text import quoted
 
@@ -37,6 +37,8 @@ def template(kind: str = "cup") -> str:
     DesignError : no such kind.
     """
     title = f"# A strain wave gear with a {kind}. Keys carry their units; unknown keys are refused."
+    if kind in BENT:
+        title += f"\n# {BENT[kind]}.\n# {LESS_BENT[kind]}."
     return text_of(title, first_values(kind), kind, {})
 
 

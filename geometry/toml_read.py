@@ -31,11 +31,16 @@ class TomlError(FlexsplineError, ValueError):
     """Bytes that are no TOML; the message says why."""
 
 
+class EmptyTomlError(TomlError):
+    """No byte, or comments alone."""
+
+
 def toml_tables(raw: bytes) -> dict[str, Any]:
     """The tables of a TOML file; a mark at its start is allowed.
 
     Raises
     ------
+    EmptyTomlError : no key in it.
     TomlError : not UTF-8, not TOML, or nested too deeply.
     """
     if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or b"\0" in raw[:4]:
@@ -49,13 +54,16 @@ def toml_tables(raw: bytes) -> dict[str, Any]:
     if _deepest_key(text) > DEEPEST_KEY:
         raise TomlError("is nested too deeply")
     try:
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
     except RecursionError as fault:
         raise TomlError("is nested too deeply") from fault
     except ValueError as fault:  # also integers of more digits than Python converts
         again = str(fault).startswith(_AGAIN)
         reason = (again and _twice(text, fault)) or f"{fault}{'' if again else _help(text, fault)}"
         raise TomlError(f"is not valid TOML: {reason}") from fault
+    if not tables:
+        raise EmptyTomlError("holds only comments" if text.strip() else "the file is empty")
+    return tables
 
 
 def number_help(text: str) -> str:

@@ -14,6 +14,7 @@ from flexspline.fea.types import MET, Stiffness
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
+from flexspline.geometry.percent import percent
 
 PARABOLA_SLACK = 1e-4
 """Of K: what parabolas for arcs may do to a solid model, ten times what was measured (`fea.solid.swept`)."""
@@ -76,7 +77,7 @@ def between(cut: Stiffness, whole: Stiffness) -> Stiffness:
         symmetry="two bodies of revolution",
         method=(
             "from the part with the ring of its holes cut out to the part without holes (less material is "
-            f"never stiffer), whose K are {gap:.2%} apart; of each: {whole.method}"
+            f"never stiffer); their K differ by {percent(gap)}; of each: {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -108,7 +109,10 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     if half <= enclosure.half_width:
         K, how = solid, f"the solid model's, within its bounds: {solid.method}"
     else:
-        K, how = enclosure, f"the middle of its bounds, which the solid model knows to ± {half:.2%}"
+        K, how = (
+            enclosure,
+            f"the middle of its bounds, which the solid model knows to ± {percent(half)}",
+        )
     return replace(
         solid,
         K_Nm_per_rad=min(max(K.K_Nm_per_rad, lower), upper),

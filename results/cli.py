@@ -65,13 +65,13 @@ def run(
             "--model",
             metavar="MODEL.toml",
             parser=named_file,
-            help="Add what this extended model found.",
+            help="Add the backlash of this extended model (from `diagnose`).",
         ),
     ] = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """The whole way: CAD, mesh, K_b, K_e, backlash, pictures, report.pdf and report.html."""
+    """Full analysis: stiffness, stress, backlash, whole gear; writes report.pdf and report.html."""
     with answered(design, RESUMES):
         from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 
@@ -115,12 +115,12 @@ def run(
             write_run_report(job.folder / "report.pdf", result, pictures, name, files)
         write_run_page(job.folder / "report.html", job.context, result, pictures, name, files)
         missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
-        deliver(job.folder, record() | missing, json)
+        deliver(job, record() | missing, json)
 
 
 @app.command()
 def stiffness(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """K_b and K_e with error bounds only."""
+    """Stiffness of flexspline and shaft, K_b and K_e, with bounds."""
     with answered(design, RESUMES):
         job = begin(design, out, ONE_RECORD)
         from flexspline.pipeline.analysis import stiffnesses
@@ -138,7 +138,7 @@ def backlash(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """The four-term backlash sum."""
+    """Backlash as the sum of four terms."""
     with answered(design, RESUMES):
         job = begin(design, out, ONE_RECORD)
         from flexspline.results.backlash import backlash_answer
@@ -147,12 +147,12 @@ def backlash(
             record = backlash_answer(
                 job, stiffness_option("--Kb", kb), stiffness_option("--Ke", ke)
             )
-        deliver(job.folder, record, json)
+        deliver(job, record, json)
 
 
 @app.command()
 def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """The whole gear, wave generator locked: torque-angle curve, K1, K2, K3, lost motion."""
+    """Torque-angle curve of the whole gear: K1, K2, K3, lost motion."""
     with answered(design, RESUMES):
         job = begin(design, out, GEAR)
         from flexspline.pipeline.analysis import stiffnesses
@@ -168,7 +168,7 @@ def gear(design: DesignFile, out: Out = None, json: Json = False) -> None:
         tell_all(gear_warnings(curve))
         record = gear_record(job.design, curve, shaft, job.wall_s)
         write_gear(job.folder, curve, record)
-        present(job.folder, record, json)
+        present(job, record, json)
 
 
 @app.command()
@@ -176,20 +176,21 @@ def export(
     design: DesignFile,
     out: Out = None,
     deck: Annotated[
-        bool, typer.Option("--deck", help="Also the torsion case as CalculiX/Abaqus decks (.inp).")
+        bool,
+        typer.Option("--deck", help="Also write the torsion case as CalculiX/Abaqus decks (.inp)."),
     ] = False,
     formats: Annotated[
         list[str] | None,
         typer.Option(
             "--format",
             metavar="FORMAT",
-            help="Also the whole parts' meshes with named patches: msh, med, bdf, inp, vtu, xdmf;"
-            " several with commas between, or the option again.",
+            help="Also write the whole parts' meshes with named patches: msh, med, bdf, inp, vtu,"
+            " xdmf; several separated by commas, or the option again.",
         ),
     ] = None,
     json: Json = False,
 ) -> None:
-    """STEP and STL of both parts, and the solved fields as VTU."""
+    """Write both parts as STEP and STL, the solved fields as VTU."""
     with answered(design, RESUMES):
         from flexspline.results.mesh_files import chosen_formats
 
@@ -214,19 +215,21 @@ def init(
         typer.Option(
             metavar="S",
             parser=number("25, as a catalogue names it"),
-            help="Of a catalogue: in proportion, assumptions marked.",
+            help="Catalogue size: dimensions in proportion, assumptions marked.",
         ),
     ] = None,
     ratio: Annotated[
         int | None,
-        typer.Option(metavar="I", parser=whole_number, help="Reduction, with a size; default 100."),
+        typer.Option(
+            metavar="I", parser=whole_number, help="Reduction ratio, with --size; default 100."
+        ),
     ] = None,
     rated: Annotated[
         float | None,
         typer.Option(
             metavar="T",
             parser=number("87, in N·m"),
-            help="Rated torque in N·m, with a size; default in proportion.",
+            help="Rated torque in N·m, with --size; default in proportion.",
         ),
     ] = None,
 ) -> None:
@@ -243,7 +246,7 @@ def init(
 
 @app.command()
 def schema() -> None:
-    """Print the design file's JSON Schema, for editors that complete and check it."""
+    """Print the JSON Schema of design files, for editors."""
     with answered():
         from flexspline.geometry.template import json_schema
         from flexspline.results.records import as_json

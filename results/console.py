@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,14 @@ from flexspline.results.terminal import row
 STD_KEY = "backlash_arcsec.std"
 NAMES = 64
 """Width of the column of names."""
+NO_NOTES: Mapping[str, str] = {}
 
 
-def table(record: dict[str, Any], folder: Path) -> str:
-    """One line per figure of the record that stands in the table of quantities, then what was assumed."""
+def table(record: dict[str, Any], folder: Path, notes: Mapping[str, str] = NO_NOTES) -> str:
+    """One line per figure of the record that stands in the table of quantities, then what was assumed.
+
+    `notes` stand beside figures, by key.
+    """
     lines = [f"{record['design']}"]
     gear = record.get("gear", {})  # a run's; `flexspline gear` has its figures beside the others
     for entry in QUANTITIES:
@@ -34,7 +39,7 @@ def table(record: dict[str, Any], folder: Path) -> str:
             kind = record.get(entry.key.replace("_bounds_Nm_per_rad", "_bounds_kind"), "")
             shown = f"{entry.range_text(*value)} {entry.unit}" + (f", {kind}" if kind else "")
         else:
-            mark = marked(record, entry.key)
+            mark = marked(record, entry.key) or notes.get(entry.key)
             shown = f"{entry.text(value)} {entry.unit}" + (f", {mark}" if mark else "")
         lines += row((entry.name, shown), (NAMES,))
     if terms := record.get("terms_arcsec"):

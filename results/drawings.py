@@ -29,7 +29,7 @@ from flexspline.results.renders.stress_picture import (
 from flexspline.results.renders.webp import write_webp
 
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
-DRAWING = 9
+DRAWING = 10
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
 TURNING = 2
 """The same of the 3-D views."""

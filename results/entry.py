@@ -38,9 +38,10 @@ def main() -> None:
 
     try:
         signal.signal(signal.SIGTERM, end)
+        from flexspline.results.stopping import answered_at_once
         from flexspline.results.streams import readable_streams
 
-        with readable_streams():
+        with readable_streams(), answered_at_once():
             from flexspline.results.cli import app
             from flexspline.results.scratch import own_scratch
 

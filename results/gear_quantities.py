@@ -14,6 +14,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
             f"{key} of the whole gear, {name}",
             f"K_{key[1]}",
             rounded=True,
+            short_name=name,
             group="gear",
         )
         for key, name in (
@@ -37,6 +38,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         f"Lost motion, between ± {LOST_MOTION_TORQUE}",
         "θ_lm",
         decimals=1,
+        short_name=f"lost motion, ± {LOST_MOTION_TORQUE}",
         group="gear",
     ),
     Quantity(
@@ -52,7 +54,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "free_angle_arcsec",
         "free_angle_arcsec",
         "arcsec",
-        "Free angle, clearance of both ways; K1 leaves it out",
+        "Free angle (clearance both ways), not in K1",
         "θ_0",
         decimals=1,
         group="gear",
@@ -64,6 +66,7 @@ GEAR_QUANTITIES: tuple[Quantity, ...] = (
         "Teeth in contact at rated torque",
         "z_c",
         kind="count",
+        short_name="teeth in contact, rated torque",
         group="gear",
     ),
     Quantity(

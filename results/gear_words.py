@@ -64,7 +64,7 @@ def _warning(warning: GearWarning) -> str:
                 "rated torque: teeth and rim are not elastic there"
             )
         case EarlyEnd(end, torque, rated):
-            return f"{ENDS[end]} at some {_rounded(torque)} N·m, below the rated torque of {rated:.4g} N·m"
+            return f"{ENDS[end]} at about {_rounded(torque)} N·m, below the rated torque of {rated:.4g} N·m"
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
@@ -97,7 +97,10 @@ def _why_pressing(pressing: PressingFlanks) -> str:
 def _note(note: GearNote) -> str:
     match note:
         case HalvedBalls(count, computed):
-            return f"{count} balls are computed as {computed}, half of them in each lobe"
+            return (
+                f"the model has {computed} balls in place of {count}: an even number, half of them at each "
+                "lobe"
+            )
         case LowRatio(limit):
             return (
                 f"below a ratio of {limit:g} the model is too stiff: with thicknesses in proportion to the "
@@ -105,13 +108,13 @@ def _note(note: GearNote) -> str:
             )
         case RelievedFlanks(start, removed, end):
             return (
-                f"straight flanks come closer again beyond {start:.0f}° from the major axis: relieved flanks "
-                f"are assumed, {_rounded(removed)} µm of each removed at {end:.0f}°"
+                f"beyond {start:.0f}° from the major axis straight flanks would come closer again: relieved "
+                f"flanks are assumed, {_rounded(removed)} µm removed from each at {end:.0f}°"
             )
         case ShapedFaces(removed):
             return (
-                "the rim opens as a cone: teeth that are shaped for it along their face are assumed, up to "
-                f'{_rounded(removed)} µm at its ends; gear.tooth_face = "straight" computes straight teeth'
+                "the rim opens as a cone: teeth relieved along their face are assumed, by up to "
+                f'{_rounded(removed)} µm at the ends; gear.tooth_face = "straight" computes straight teeth'
             )
         case StraightFlanks(angle):
             return (
@@ -121,7 +124,8 @@ def _note(note: GearNote) -> str:
         case LoadedLastPair(at):
             return (
                 f"the last pair of teeth within the working depth, {at:.0f}° from "
-                "the major axis, carries much: the figures depend on gear.working_depth_mm"
+                "the major axis, carries much: its force depends on gear.working_depth_mm and is no load to "
+                "design teeth for; K2 and K3 depend on it too"
             )
         case TwoTorques(load, lost_motion):
             return (
@@ -130,14 +134,15 @@ def _note(note: GearNote) -> str:
             )
         case JointClearances(alone, term):
             return (
-                f"flank clearance and bearing play act together: without play alone the free angle is "
-                f"{_rounded(alone)} arcsec smaller; the terms take the flank clearance away first, and "
-                f"leave {_rounded(term)} arcsec to the play"
+                f"flank clearance and bearing play act together: without the play alone the free angle is "
+                f"{_rounded(alone)} arcsec smaller; the terms remove the flank clearance first, which leaves "
+                f"{_rounded(term)} arcsec to the play"
             )
         case BucklingTube(torque, stress):
             return (
-                f"the flexspline's tube buckles at some {_rounded(torque)} N·m, the lower edge of tests, at "
-                f"a shear stress of {_rounded(stress)} MPa; a wall whose yield stress is lower fails earlier"
+                f"the flexspline's tube buckles at about {_rounded(torque)} N·m (lower bound of tests), "
+                f"where its shear stress is {_rounded(stress)} MPa; a wall of lower yield stress fails "
+                "earlier"
             )
         case "play_beside_stroke":
             return (
@@ -148,9 +153,8 @@ def _note(note: GearNote) -> str:
             return "no torque was found at which the gear ratchets"
         case "ratcheting_is_upper":
             return (
-                "the ratcheting torque is an upper limit: only elastic parts yield in it; catalogues' gears "
-                "ratchet at a fiftieth (ratio 30) to a fifth (ratio 160) of it, and at 0.3 to 0.8 of the "
-                "torque at which they buckle"
+                "the ratcheting torque is an upper limit, as the model is elastic; catalogues' gears ratchet "
+                "at 1/50 (ratio 30) to 1/5 (ratio 160) of it, and at 0.3 to 0.8 of their buckling torque"
             )
         case _:
             assert_never(note)

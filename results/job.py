@@ -116,10 +116,10 @@ def begin(path: Path, out: Path | None, files: Iterable[str]) -> Job:
     return Job(design, Progress(tell), folder, Attachment(path.name, raw, "Design file"), began)
 
 
-def deliver(folder: Path, record: dict[str, Any], as_json: bool) -> None:
+def deliver(job: Job, record: dict[str, Any], as_json: bool) -> None:
     """Write result.json and print it."""
-    put(folder, record)
-    present(folder, record, as_json)
+    put(job.folder, record)
+    present(job, record, as_json)
 
 
 def put(folder: Path, record: dict[str, Any]) -> None:
@@ -130,13 +130,17 @@ def put(folder: Path, record: dict[str, Any]) -> None:
         tell(f"note: {note}")
 
 
-def present(folder: Path, record: dict[str, Any], as_json: bool) -> None:
+def present(job: Job, record: dict[str, Any], as_json: bool) -> None:
     """Print a record, for machines or for people."""
     from flexspline.results.console import table
+    from flexspline.results.limit_words import stiffness_notes
     from flexspline.results.records import as_json as text
     from flexspline.results.streams import show
 
-    show(text(record) if as_json else table(record, folder), as_json)
+    if as_json:
+        show(text(record), as_json)
+    else:
+        show(table(record, job.folder, stiffness_notes(job.design)))
 
 
 def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
@@ -145,7 +149,7 @@ def keep(job: Job, found: Stiffnesses, as_json: bool) -> None:
 
     warn(job.design, found)
     record = {**heading(job.design), **stiffness_record(job.design, found, job.wall_s)}
-    deliver(job.folder, record, as_json)
+    deliver(job, record, as_json)
 
 
 def warn(

@@ -16,6 +16,17 @@ NOT_SOLVED = (
 )
 
 
+def stiffness_notes(design: Design) -> dict[str, str]:
+    """What must be said beside a stiffness, by its key of result.json."""
+    f = design.flexspline
+    touched = f.size(f.land.inner)
+    if f.inward or design.shaft.segment[0].inner_diameter_mm >= touched:
+        return {}
+    return {
+        "K_e_Nm_per_rad": "too large: held on its whole first face, not only under the hat's flange"
+    }
+
+
 def beside_figure(passed: PassedLimit) -> str:
     """What is passed, where the peak's figure stands already."""
     if passed.key:
@@ -45,7 +56,7 @@ def reason(limit: LinearLimit) -> str:
         case ToothTwist(teeth):
             said = f"the twist reaches one tooth, 360°/{teeth}"
         case ReachedStress():
-            said = f"{_place(why)} reaches {_stress(why)}"
+            said = f"{_place(why)} under torque alone reaches {_stress(why)}"
         case _:
             assert_never(why)
     return said if limit.peaks_solved else f"{said} ({NOT_SOLVED})"

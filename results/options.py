@@ -30,17 +30,17 @@ Out = Annotated[
         "--out",
         metavar="DIR",
         parser=_folder,
-        help="Where files go; default beside the input, NAME.out/",
+        help="Output folder; default: NAME.out/ beside the input.",
     ),
 ]
 _K = number("31300 or 3.13e4, in N·m/rad")
 Kb = Annotated[
     float | None,
-    typer.Option("--Kb", metavar="X", parser=_K, help="K_b in N·m/rad, instead of FEA"),
+    typer.Option("--Kb", metavar="X", parser=_K, help="K_b in N·m/rad; it is then not computed."),
 ]
 Ke = Annotated[
     float | None,
-    typer.Option("--Ke", metavar="X", parser=_K, help="K_e in N·m/rad, instead of FEA"),
+    typer.Option("--Ke", metavar="X", parser=_K, help="K_e in N·m/rad; it is then not computed."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
 

@@ -44,7 +44,7 @@ def limit_note(peak: StressPeak, material: Material) -> str:
         return "no fatigue limit stated"
     share = share_of_limit(peak, material)
     if share is None:
-        return f"no share of the fatigue limit of {limit:g} MPa"
+        return f"not compared with the fatigue limit of {limit:g} MPa"
     return (
         f"{grouped(100 * share, 0 if share >= 0.1 else 2)} % of the fatigue limit of {limit:g} MPa"
     )

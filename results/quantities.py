@@ -191,7 +191,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "linear_torque_limit_Nm",
         "linear_torque_limit_Nm",
         "N·m",
-        "Torque beyond which the linear model is not valid",
+        "Torque limit of the linear model, ellipse stress not counted",
         "T_lin",
         digits=3,
     ),

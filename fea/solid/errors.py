@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flexspline.geometry.errors import ComputationError
+from flexspline.geometry.percent import percent
 
 
 class SolidError(ComputationError):
@@ -52,7 +53,8 @@ class NoBetterMeshError(SolidError):
     def __init__(self, expected: float, known: float) -> None:
         self.expected, self.known = expected, known
         super().__init__(
-            f"of solid meshes bounds of ± {expected:.2%} or wider were expected, and ± {known:.2%} is known"
+            f"a solid mesh was expected to give bounds of ± {percent(expected, 3)} at best, and "
+            f"± {percent(known, 3)} is known"
         )
 
 

@@ -28,6 +28,7 @@ from flexspline.fea.solid.stiffness import EFFICIENCY, USUAL_EFFICIENCY, level_o
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.swept_sizing import MOST_ELEMENTS, Finer
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
+from flexspline.geometry.percent import percent
 
 LOBE_STEP = 0.37
 """Of √(t/R), about the axis, for 0.5 %: 3.0° on a wall of a fiftieth of the radius. The error of quadratic
@@ -147,7 +148,8 @@ class _SolidLobes:
             error = energy_error(solved.mesh, solved.displacement, self.material)
         self.estimate.add(level_of(solved), error.relative)
         self.progress(
-            f"{solved.mesh.elements} elements, {self.symmetry} of the part, K ± {self.estimate.relative:.2%}"
+            f"{solved.mesh.elements} elements, {self.symmetry} of the part, "
+            f"K ± {percent(self.estimate.relative)}"
         )
 
     @property

@@ -18,6 +18,7 @@ from flexspline.fea.solid.unroll import Cartesian, MeshingMap, Unrolled
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.nearest import nearest_triangles
+from flexspline.geometry.percent import percent
 from flexspline.geometry.tagged import TaggedSurface
 
 ASTRAY_SHARE = 0.002
@@ -125,7 +126,8 @@ def _tag(
     astray = areas[(triangle < 0) | ~agrees].sum() / areas.sum()
     if astray > ASTRAY_SHARE or (triangle < 0).any():
         raise MeshQualityError(
-            f"{astray:.2%} of the mesh's boundary lies on no CAD surface, allowed {ASTRAY_SHARE:.2%}"
+            f"{percent(astray)} of the mesh's boundary lies on no CAD surface, allowed "
+            f"{percent(ASTRAY_SHARE)}"
         )
     return surface.surface_of[triangle]
 

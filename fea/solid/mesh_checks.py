@@ -11,6 +11,7 @@ from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.flatness import longest_edges
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
+from flexspline.geometry.percent import percent
 from flexspline.geometry.surfaces import sector_planes
 from flexspline.geometry.tagged import TaggedSurface
 
@@ -74,5 +75,5 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
         if abs(area / wanted - 1) > AREA_TOLERANCE:
             raise MeshQualityError(
                 f"patch '{patch}' has {area:.6g} mm² in the mesh, {wanted:.6g} mm² in the CAD,"
-                f" allowed difference {AREA_TOLERANCE:.0%}"
+                f" allowed difference {percent(AREA_TOLERANCE)}"
             )

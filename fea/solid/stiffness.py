@@ -26,6 +26,7 @@ from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
 from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.types import Elastic, MeshLevel, Shortfall, Stiffness, TetMesh
+from flexspline.geometry.percent import percent
 
 Mesher = Callable[[MeshSpec], TetMesh]
 FinerByError = Callable[[TetMesh, np.ndarray, float], TetMesh | None]
@@ -90,7 +91,7 @@ def solid_stiffness(
     late = deadline.elapsed() >= deadline.limit_s
     shortfall = refine(found, mesh, NO_DEADLINE if late else deadline, most_elements(mesh))
     if shortfall and len(found.meshes) < MAX_LEVELS:
-        progress(f"K ± {found.half:.2%} stays, {shortfall}")
+        progress(f"K ± {percent(found.half)} stays, {shortfall}")
     answer = _stiffness(found.estimate, symmetry, shortfall)
     return SolidStiffness(answer, tuple(found.meshes), found.solved)
 
@@ -125,7 +126,7 @@ class _SolidTorsion:
         self.solved, self._errors = solved, error.error
         self.meshes.append(mesh)
         self.estimate.add(level_of(solved), error.relative)
-        self._progress(f"{mesh.elements} elements, K ± {self.half:.2%}")
+        self._progress(f"{mesh.elements} elements, K ± {percent(self.half)}")
 
     @property
     def half(self) -> float:

@@ -56,6 +56,12 @@ class NamedCause:
         """Whether the simulation has too much of it, not too little: compliance that the gear lacks."""
         return self.id == SERIES and self.magnitude < 0
 
+    @property
+    def stiffer_pct(self) -> tuple[float, float]:
+        """Of a surplus: by how much the gear is stiffer than simulated, and the standard deviation [%]."""
+        left = 1 + self.magnitude / 100
+        return 100 * (1 / left - 1), self.magnitude_std / left**2
+
 
 @dataclass(frozen=True)
 class Unexplained:

@@ -31,7 +31,8 @@ SHOWS_STRUCTURE = {
     "repeats belongs to the gear, and how it grows with the amplitude says what it may be",
     "torque_amplitude": "sweep to a quarter, half and all of the largest torque, each twice",
     "torque_rate": "repeat the sweep ten times slower and ten times faster",
-    "temperature_C": "repeat the sweep at three temperatures, soaked, wave generator untouched",
+    "temperature_C": "repeat the sweep at the same temperatures in another order, soaked, wave generator "
+    "untouched: what comes with time does not follow the temperature",
     "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "

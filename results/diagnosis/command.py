@@ -23,13 +23,18 @@ MeasuredFile = Annotated[
 TorqueFile = Annotated[
     Path,
     typer.Argument(
-        metavar="TORQUE.csv", parser=named_file, help="A history with torque_Nm, as measured data."
+        metavar="TORQUE.csv",
+        parser=named_file,
+        help="Torque history: a column torque_Nm, as in measured data.",
     ),
 ]
 ModelPath = Annotated[
     Path,
     typer.Option(
-        "--model", metavar="MODEL.toml", parser=named_file, help="An extended model of `diagnose`."
+        "--model",
+        metavar="MODEL.toml",
+        parser=named_file,
+        help="Extended model that `diagnose` wrote.",
     ),
 ]
 CountsPerTurn = Annotated[
@@ -38,7 +43,7 @@ CountsPerTurn = Annotated[
         "--counts-per-turn",
         metavar="N",
         parser=number("4096"),
-        help="Counts of a turn of the encoder, where an angle is in counts",
+        help="Encoder counts per turn, where the angle is in counts.",
     ),
 ]
 
@@ -87,7 +92,7 @@ def diagnose(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """What the simulation gets wrong, and why, from measured data."""
+    """Compare measured data with the simulation and name the causes."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
     with answered(design, "; run the same command again: it starts from the beginning"):
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
@@ -107,7 +112,7 @@ def predict(
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """The angle for a torque history, by an extended model."""
+    """Angle for a torque history, by an extended model."""
     order = "predict DESIGN.toml --model MODEL.toml TORQUE.csv"
     in_order(design, torque, order)
     in_order(model, torque, order)

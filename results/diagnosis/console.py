@@ -37,14 +37,10 @@ def diagnosis_table(diagnosis: Diagnosis, folder: Path) -> str:
             lines += prose(f"or: {', '.join(map(title_of, cause.alternatives))}", "      ")
     for u in outcome.unexplained:
         rms = f"{figures_text(u.rms)} {u.unit} rms"
-        left = f"left over in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
+        left = f"unexplained in {channel_words(u.channel)}: {rms}, {structure_words(u)}"
         lines += prose(left, "  ", "    ")
     if diagnosis.calibration is not None:
-        lines += prose(
-            calibrated_sentences(
-                diagnosis.calibration, diagnosis.prediction, bool(outcome.unexplained)
-            )
-        )
+        lines += prose(calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome))
     lines += _errors(outcome)
     if outcome.next_measurement is not None:
         after = outcome.next_measurement

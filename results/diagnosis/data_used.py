@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
+from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.row_selection import RowCounts
 from flexspline.results.diagnosis.reading import columns_record, form_record
-from flexspline.results.diagnosis.words import plus_minus
-from flexspline.results.numbers import grouped
+from flexspline.results.diagnosis.words import plus_minus, title_of
+from flexspline.results.numbers import grouped, signed
 
 AS_SIMULATED = 0.8
 """Of the simulated deviation: a record that leaves more of it has half as much to say as the simulation."""
@@ -67,10 +69,9 @@ def _calibrated(calibration: Calibration) -> dict[str, float]:
 
 
 def calibrated_sentences(
-    calibration: Calibration, prediction: Prediction, unexplained: bool
+    calibration: Calibration, prediction: Prediction, outcome: DiagnosisOutcome
 ) -> str:
-    """Gap and compliance as fitted to the record, each with the simulated one; `unexplained`: structure is
-    left over."""
+    """Gap and compliance as fitted to the record, each with the simulated one, and what else moves them."""
     gap = _against(calibration.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)
     parts = [f"gap {gap} arcsec"]
     if calibration.compliance is not None:
@@ -80,7 +81,12 @@ def calibrated_sentences(
         parts.append(f"compliance {compliance} arcsec per N·m")
     beside = ", without the effects found" if calibration.beside_effects else ""
     said = f"Calibrated on this record{beside}: {'; '.join(parts)}."
-    if unexplained:
+    known = known_causes()
+    elastic = [c for c in outcome.causes if c.id in known and known[c.id].elastic]
+    if elastic and calibration.compliance is not None:
+        titles = " and ".join(title_of(c.id, c.magnitude) for c in elastic)
+        said += f" The measured slope is this compliance and the effect of: {titles}."
+    if outcome.unexplained:
         said += " An effect is unexplained and may have moved them by more than ± says."
     return said
 
@@ -91,7 +97,7 @@ def _against(measured: Estimate, simulated: float, std: float) -> str:
         return f"{found} (simulated {simulated:.4g})"
     if measured.std > AS_SIMULATED * std:  # an effect found beside it may stand for it
         return f"{found} (as simulated: this record does not narrow it)"
-    off = f"{(measured.value - simulated) / std:+.1f}".replace("-", "−")
+    off = signed((measured.value - simulated) / std, 1)
     return f"{found} (simulated {plus_minus(simulated, std)}, {off} deviations)"
 
 

@@ -7,6 +7,7 @@ from math import isfinite
 from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.end_points.envelope import Envelope
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
+from flexspline.results.numbers import signed
 
 LISTED = 12
 """Units that are spelt out in a note; of more, the furthest."""
@@ -22,11 +23,11 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
     common, std = analysis.common
     if len(analysis.units) > 1:
         notes.append(
-            f"common to all units: {common:+.1f} ± {std:.1f} arcsec of gap, within the stated uncertainty by "
-            "its prior; the rest is each unit's own"
+            f"common to all units: {signed(common, 1)} ± {std:.1f} arcsec of gap, within the stated "
+            "uncertainty by its prior; the rest is each unit's own"
         )
     mids = analysis.mids
-    told = listed((f"{m:+.1f}" for m in mids.mid_arcsec), "units")
+    told = listed((signed(m, 1) for m in mids.mid_arcsec), "units")
     notes.append(
         f"mid positions {told} arcsec: the symmetric model predicts 0, but where an angle reading has its "
         "zero is free for each unit, so they neither support nor refute it; stiffness that differs with "
@@ -39,8 +40,8 @@ def end_point_notes(analysis: EndPointAnalysis) -> tuple[str, ...]:
 def _unit_note(u: UnitFinding) -> str:
     where = "within" if u.within else "beyond"
     return (
-        f"unit {u.unit} at ±{u.torque_Nm:g} N·m: {u.total_arcsec:.1f} against {u.predicted_arcsec:.1f} ± "
-        f"{u.std_arcsec:.1f} arcsec, {u.z:+.1f} standard deviations, {where} the stated uncertainty "
+        f"unit {u.unit} at ± {u.torque_Nm:g} N·m: {u.total_arcsec:.1f} against {u.predicted_arcsec:.1f} ± "
+        f"{u.std_arcsec:.1f} arcsec, {signed(u.z, 1)} standard deviations, {where} the stated uncertainty "
         f"(p = {u.p_value:.2g}, {u.p_corrected:.2g} for all units)"
     )
 

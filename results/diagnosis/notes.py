@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.geometry.listed import listed
-from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
@@ -20,7 +19,7 @@ from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
 from flexspline.results.diagnosis.reading import heads, reading_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
-from flexspline.results.diagnosis.words import plus_minus, title_of
+from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
 from flexspline.results.numbers import grouped
 
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
@@ -56,11 +55,10 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 def _ratios(causes: Iterable[NamedCause]) -> list[str]:
     """Of what the sizes in % are shares."""
-    known = known_causes()
     return [
-        f"size of {title_of(c.id, c.magnitude)}: {known[c.id].ratio}"
+        f"size of {title_of(c.id, c.magnitude)}: {ratio}"
         for c in causes
-        if c.id in known and known[c.id].ratio
+        if (ratio := ratio_words(c))
     ]
 
 

@@ -57,10 +57,10 @@ def reading_notes(read_as: ReadAs) -> list[str]:
         found.append(f"columns empty in every row: {heads(read_as.empty)}")
     if read_as.heads_again:
         lines = listed(read_as.heads_again, "lines")
-        found.append(f"the header again, or data types, passed over: line {lines}")
+        found.append(f"skipped, header again or data types: line {lines}")
     if read_as.footer:
         lines = listed(read_as.footer, "lines")
-        found.append(f"words below the last row, left out: line {lines}")
+        found.append(f"skipped, text below the last row: line {lines}")
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
+from flexspline.geometry.percent import percent
 from flexspline.pipeline.diagnosis.absurd_size import slope_words
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import (
@@ -98,7 +99,7 @@ def words_of(structure: Structure, channel: str) -> str:
             return f"a trace like {title_of(structure.cause)}"
         case Slip():
             return (
-                f"the output slips: each time torque passes {LOADED_SHARE:.0%} of its largest value and "
+                f"the output slips: each time torque passes {percent(LOADED_SHARE)} of its largest value and "
                 f"comes back, the angle has gone on by {structure.way_arcsec:.0f} arcsec, "
                 f"{structure.times:.0f} times what springs there; a lock, a clamp or a friction joint "
                 "gives way"

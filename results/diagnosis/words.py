@@ -60,7 +60,12 @@ def plus_minus(value: float, std: float) -> str:
 
 
 def magnitude_words(cause: NamedCause) -> str:
-    """Magnitude, deviation and unit; of a loop that is wider elsewhere, where it has that."""
+    """Magnitude, deviation and unit; of a loop that is wider elsewhere, where it has that.
+
+    A gear that is stiffer than simulated is told in stiffness; the magnitude of the record is of compliance.
+    """
+    if cause.is_surplus:
+        return f"+{plus_minus(*cause.stiffer_pct)} %"
     where = " at T = 0" if _is_wider(cause) else ""
     size = plus_minus(cause.magnitude, cause.magnitude_std)
     return f"{size} {unit_words(cause.unit)}".rstrip() + where
@@ -80,6 +85,14 @@ def title_of(cause_id: str, magnitude: float = 0.0) -> str:
         return f"{channel_words(cause_id.removeprefix(GEOMETRY))} other than drawn"
     cause = known_causes().get(cause_id)
     return cause.title_at(magnitude) if cause else cause_id
+
+
+def ratio_words(cause: NamedCause) -> str:
+    """Of which ratio a size in % or 1 is; "" of one that has its own unit."""
+    if cause.is_surplus:
+        return "in % of the simulated stiffness"
+    known = known_causes().get(cause.id)
+    return known.ratio if known else ""
 
 
 def cause_title(cause: NamedCause) -> str:

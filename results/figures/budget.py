@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from flexspline.pipeline.backlash import TERMS, Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
-from flexspline.results.figures.words import fit, wrapped
+from flexspline.results.figures.words import angle_title, fit, wrapped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -134,7 +134,7 @@ def _waterfall(axes: Axes, rows: Sequence[BudgetBar], backlash: Backlash) -> Non
     axes.grid(axis="x")
     # matplotlib before 3.11 writes the power of ten of such an axis at the right end, as high as the label
     side: Literal["left", "center"] = "left" if high >= POWER_OF_TEN else "center"
-    axes.set_xlabel(f"angle at the output in {quantity('backlash_arcsec.total').unit}", loc=side)
+    axes.set_xlabel(angle_title("angle at the output"), loc=side)
 
 
 def _figures(axes: Axes, rows: Sequence[BudgetBar]) -> None:

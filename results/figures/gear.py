@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from flexspline.pipeline.gear import GearCurve
+from flexspline.pipeline.gear_remarks import LoadedLastPair
+from flexspline.results.figures.words import angle_title, torque_title
 from flexspline.results.numbers import grouped
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, MUTED, PALETTE, new_figure, save_png, styled
@@ -35,8 +37,8 @@ def write_gear_angle(path: Path, curve: GearCurve) -> None:
         )
         axes.text(0.97, 0.06, words, transform=axes.transAxes, ha="right", va="bottom")
         axes.set_title("Whole gear, wave generator locked")
-        axes.set_xlabel("Torque in N·m")
-        axes.set_ylabel("Angle in arcsec")
+        axes.set_xlabel(torque_title("Torque"))
+        axes.set_ylabel(angle_title("Angle"))
         axes.margins(y=0.12)  # "rated" stands above the curve's end
         axes.grid(True)
         save_png(figure, path)
@@ -52,14 +54,18 @@ def write_gear_loads(path: Path, curve: GearCurve) -> None:
             ("pair of teeth", teeth, np.array(curve.tooth_force_N), 1.2),
             ("ball", balls, np.array(curve.ball_force_N), 5.0),
         )
+        newton = quantity("preload_tooth_force_N").unit
+        last = any(isinstance(note, LoadedLastPair) for note in curve.notes)
         for i, (what, angle, force, width) in enumerate(forces):
             axes = figure.add_axes((0.11, 0.59 - 0.47 * i, 0.86, 0.32))
             edge = angle == -90  # the same ball stands at 90°
             angle, force = np.append(angle, -angle[edge]), np.append(force, force[edge])
             axes.bar(angle, force, width=width, color=PALETTE[i], edgecolor="none")
-            axes.set_title(f"Force of a {what} in N")
+            axes.set_title(f"Force of a {what} in {newton}")
             most = int(np.abs(force).argmax())
-            words = f"largest: {force[most]:.3g} N at {grouped(angle[most], 0)}°"
+            words = f"largest: {force[most]:.3g} {newton} at {grouped(angle[most], 0)}°"
+            if last and i == 0 and most in (0, len(teeth) - 1):
+                words += ", last pair in the working depth"
             axes.annotate(  # beside the title, where no bar and no line is
                 words, (1.0, 1.0), xycoords="axes fraction", xytext=(0, 6), textcoords="offset points",
                 ha="right",

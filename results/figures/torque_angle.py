@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexspline.pipeline.backlash import Backlash
-from flexspline.results.figures.words import GROUND, keep_inside
+from flexspline.results.figures.words import GROUND, angle_title, keep_inside, torque_title
 from flexspline.results.quantities import quantity
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -115,8 +115,8 @@ def _annotate(
     axes.set_xlim(-DRAWN_RATIO * load, DRAWN_RATIO * load)
     axes.set_ylim(-top, top)
     axes.grid(True)
-    axes.set_xlabel("output torque T in N·m")
-    axes.set_ylabel(f"output angle θ in {arcsec.unit}")
+    axes.set_xlabel(torque_title("output torque T"))
+    axes.set_ylabel(angle_title("output angle θ"))
     axes.set_title("Angle at the output, wave generator locked")
     axes.legend(loc="upper left", ncols=2)
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from flexspline.results.quantities import quantity
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.text import Text
@@ -14,6 +16,16 @@ if TYPE_CHECKING:
 
 GROUND: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5}
 """Frame of words that a line may pass behind."""
+
+
+def angle_title(name: str) -> str:
+    """Of an axis over which an angle stands."""
+    return f"{name} in {quantity('backlash_arcsec.total').unit}"
+
+
+def torque_title(name: str) -> str:
+    """Of an axis over which a torque stands."""
+    return f"{name} in {quantity('rated_torque_Nm').unit}"
 
 
 def wrapped(text: str, letters: int, lines: int = 2) -> str:

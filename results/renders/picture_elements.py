@@ -99,7 +99,7 @@ def peak_mark(
     """
     places = _copies(np.array(peak.at_mm), sector_deg)
     copies = [int(np.argmin(((nodes - place) ** 2).sum(axis=1))) for place in places]
-    name = "peak, at border\nof what is left out" if peak.at_excluded_border else "peak"
+    name = "peak, at border\nof excluded zone" if peak.at_excluded_border else "peak"
     text = f"{name}\n" + quantity("torque_peak_mises_MPa").with_unit(peak.mises_MPa)
     for seen in (main, inset):
         drawn = surface(seen.points, seen.shown.facets)

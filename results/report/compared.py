@@ -79,7 +79,7 @@ def compared(diagnosis: Diagnosis, used: StiffnessPair) -> str:
             f"{p.bend.torque_Nm[-1]:.4g} N·m, and up to {most:.3g} arcsec beside that chord. "
             f"{_what_counts(p)}"
         )
-    source = "as given" if used.given else f"computed, ±{100 * used.error:.2g} %"
+    source = "as given" if used.given else f"computed, ± {100 * used.error:.2g} %"
     return (
         f"Compared with the simulation: K_b = {grouped(used.K_b_Nm_per_rad, 0)} and "
         f"K_e = {grouped(used.K_e_Nm_per_rad, 0)} N·m/rad ({source}), {gap}, and an elastic twist of "

@@ -86,9 +86,7 @@ def _verdict(diagnosis: Diagnosis, used: StiffnessPair) -> Iterable[Block]:
     yield Facts((*facts, ("SHA-256", code(diagnosis.measurement.read_as.sha256))))
     yield Paragraph(worded(compared(diagnosis, used)))
     if diagnosis.calibration is not None:
-        sentence = calibrated_sentences(
-            diagnosis.calibration, diagnosis.prediction, bool(diagnosis.outcome.unexplained)
-        )
+        sentence = calibrated_sentences(diagnosis.calibration, diagnosis.prediction, outcome)
         yield Paragraph(worded(sentence))
 
 

@@ -34,7 +34,7 @@ def weights(design: Design) -> str:
     m = masses(design)
     grams = (("flexspline", m.flexspline_g), ("shaft", m.shaft_g))
     each = (f"{name} {quantity(f'{name}_mass_g').with_unit(g)}" for name, g in grams)
-    return f"{', '.join(each)}; teeth left out"
+    return f"{', '.join(each)}; without teeth"
 
 
 def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from flexspline.geometry.part_name import PART_NAMES
+from flexspline.geometry.percent import percent
 from flexspline.pipeline.linear_limit import LinearLimit
 from flexspline.pipeline.stress_limits import share_of_limit
 from flexspline.results.doubt import spread_sentence
@@ -84,7 +85,7 @@ def fatigue(content: ReportContent) -> str:
     if limit is None or peak is None:
         return ""
     stress = quantity("wave_generator_peak_mises_MPa").with_unit(peak.mises_MPa)
-    said = f"The wave generator's ellipse alternates twice per turn: its peak of {stress}"
+    said = f"The stress of the wave generator's ellipse alternates twice per turn: its peak of {stress}"
     share = share_of_limit(peak, material)
     if share is not None:
         beyond = " It is above that limit." if share > 1 else ""
@@ -98,9 +99,9 @@ def fatigue(content: ReportContent) -> str:
             "stress rises further."
         )
     return (
-        f"{said} lies at the border of what is left out, {peak.exclusion_mm:.3g} mm from an edge, towards "
-        "which the stress rises further: it does not tell whether the part keeps to the stated fatigue limit "
-        f"of {limit:g} MPa."
+        f"{said} lies at the border of the excluded zone, {peak.exclusion_mm:.3g} mm from an edge, towards "
+        "which the stress rises further. So it does not show whether the part stays below the stated fatigue "
+        f"limit of {limit:g} MPa."
     )
 
 
@@ -112,7 +113,7 @@ def _ellipse(content: ReportContent) -> str:
         f"A given ellipse, w₀ cos 2φ with w₀ = {design.w0_mm:.3g} mm, that "
         "the seat follows without friction and without lifting off. In load case “lobes” the "
         "seat is held radially both ways, so it cannot lift off either. The seat is taken as wide as the "
-        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. That sets its stress."
+        f"toothed ring, {width:g} mm, and stays cylindrical: the ring cannot tilt. This sets the stress."
     )
     if content.wave_generator_peak is None:
         return said
@@ -135,8 +136,8 @@ def _linear(content: ReportContent, limit: LinearLimit) -> str:
     return (
         f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
         f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and "
-        "the bolts may end it earlier, and so may the wave generator's stress, which is there at no torque; "
-        "they are not in this figure."
+        "the bolts may end it earlier, and so may the wave generator's stress, which exists without torque; "
+        "none of these is included."
     )
 
 
@@ -146,7 +147,7 @@ def _teeth(content: ReportContent) -> str:
         return (
             "Not drawn. The toothed ring is a plain ring of "
             f"{f.ring_thickness_mm:g} mm, the thickness under the tooth roots as "
-            "the design file gives it; teeth that stiffen the ring must be in that figure."
+            "the design file gives it; where teeth stiffen the ring, that thickness must include it."
         )
     bending, membrane, torsion = (
         quantity(f"equivalent_ring_thickness{leaf}_mm").with_unit(value)
@@ -161,8 +162,8 @@ def _teeth(content: ReportContent) -> str:
         f"Drawn with {f.tooth_flank} flanks on a rim of {f.ring_thickness_mm:g} mm. Every K_b uses a "
         f"plain ring of {bending}, {difference} more than the rim: it is as stiff in "
         f"bending. Equivalent thickness in hoop stiffness: {membrane}; in torsion about the axis: "
-        f"{torsion}. The mesh leaves less than {100 * ring.change:.1g} %; root fillets "
-        "and the axial stiffness of the teeth are not in it. Stress at the tooth roots is not that "
+        f"{torsion}. The mesh error of these thicknesses is below {percent(ring.change, 1)}; root fillets "
+        "and the axial stiffness of the teeth are not included. Stress at the tooth roots is not that "
         "of the plain ring."
     )
 

@@ -153,7 +153,7 @@ def _which(load_case: str) -> Words:
         *plain("Which stiffness of the flexspline to use: teeth bring the torque in at the two lobes, and "
                "the rim only rests on the wave generator, so "),
         *resting,
-        *plain(" is nearest to a mounted gear. The uniform case is the stiffest: it compares parts. "),
+        *plain(" is nearest to a mounted gear. The uniform case is the stiffest; use it to compare parts. "),
         *free,
         *plain(" shows how much the wave generator carries. No case includes teeth, wave-generator bearing "
                f"and bolts. The backlash sum uses the case “{load_case}” (solver.load_case)."),
@@ -246,7 +246,9 @@ def _bounds_of(content: ReportContent, method: str, these: list[tables.Row]) -> 
     else:
         said += plain("This is an estimate, not a guarantee. ")
     wide = [s["symbol"] for s in these if s["wide"]]
-    said += plain(f"The wanted tolerance of ±{content.design.solver.tolerance_pct:g}{NBSP}% was ")
+    said += plain(
+        f"The wanted tolerance of ±{NBSP}{content.design.solver.tolerance_pct:g}{NBSP}% was "
+    )
     return said + (plain("not met by ") + _listed(wide) + plain(".") if wide else plain("met."))
 
 

@@ -7,7 +7,7 @@ from flexspline.geometry.material import ElasticMaterial, Material
 from flexspline.geometry.shapes import Flexspline
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed
 from flexspline.results.doubt import plus_minus, spread_text
-from flexspline.results.limit_words import beside_figure
+from flexspline.results.limit_words import beside_figure, stiffness_notes
 from flexspline.results.numbers import beyond, grouped, with_power
 from flexspline.results.peaks import border_note, limit_note
 from flexspline.results.quantities import bounds_kind, quantity
@@ -36,11 +36,13 @@ def answers(content: ReportContent) -> list[Row]:
         )
         | {"note": f"with K_b of load case “{case}”", "kind": bounds_kind(both)}
     )
+    notes = stiffness_notes(content.design)
     for name, stiffness in content.stiffnesses.items():
         entry = quantity(f"{name}_Nm_per_rad")
         bounds = entry.range_text(*stiffness.bounds_Nm_per_rad)
         row = _row(entry, stiffness.K_Nm_per_rad, bounds)
-        rows.append(row | {"note": entry.note, "kind": bounds_kind(stiffness.guaranteed)})
+        said = [entry.note, *([more] if (more := notes.get(entry.key)) else [])]
+        rows.append(row | {"note": "; ".join(said), "kind": bounds_kind(stiffness.guaranteed)})
     return rows + _stress_rows(content)
 
 
@@ -70,7 +72,7 @@ def solves(content: ReportContent) -> list[Row]:
                 "meshes": str(len(s.levels)),
                 "elements": quantity("solver.elements").text(last.elements),
                 "dofs": quantity("solver.dofs").text(last.dofs),
-                "half_width": f"±{beyond(half, asked)} %",
+                "half_width": f"± {beyond(half, asked)} %",
                 "wide": "yes" if half > asked else "",
                 "kind": bounds_kind(s.guaranteed),
                 "residual": UNCHECKED if last.residual is None else with_power(last.residual),
@@ -146,7 +148,7 @@ def _stress_rows(content: ReportContent) -> list[Row]:
                 said.append(limit_note(peak, content.design.part(part).material))
             if entry is wave and content.half_seat_peak is not None:
                 half = entry.with_unit(content.half_seat_peak.mises_MPa)
-                said.append(f"seat as wide as the ring; {half} on one half as wide")
+                said.append(f"seat as wide as the ring; {half} with a seat half as wide")
             rows.append(
                 _row(entry, peak.mises_MPa, "")
                 | {"note": "; ".join(said), "alarm": "; ".join(passed)}

@@ -112,7 +112,7 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
             Column("Whole gear", "right"), Column("Difference", "right"),
         ),
         rows=tuple(rows),
-        caption="The backlash sum beside the whole gear. The whole gear’s flexspline wind-up includes "
+        caption="Backlash sum and whole gear compared. The whole gear’s flexspline wind-up includes "
         "teeth and bearing; the angle of a clearance is what the free angle loses when first the flanks’ "
         "clearance is taken away, then the bearing’s too. The gap without any clearance: balls, race and "
         "rim yield, so that the teeth do not reach full depth; the sum has no such term.",

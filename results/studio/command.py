@@ -22,18 +22,18 @@ def studio(
         typer.Argument(
             metavar="[DESIGN.toml]",
             parser=named_file,
-            help="The design file; without: a cup to start from.",
+            help="The design file; default: a cup to start from.",
         ),
     ] = None,
     host: Annotated[
         str, typer.Option(help="Address to listen on; 127.0.0.1 is reached from this machine only.")
     ] = "127.0.0.1",
     port: Annotated[
-        int, typer.Option(metavar="N", parser=whole_number, help="0: any free port.")
+        int, typer.Option(metavar="N", parser=whole_number, help="Port; 0: any free one.")
     ] = 0,
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
 ) -> None:
-    """A page on this machine: every dimension a slider, stiffness, stress and backlash follow."""
+    """Live page in the browser: a slider for every dimension."""
     with answered(design):
         from flexspline.results.studio.serve import serve, starting_design
 

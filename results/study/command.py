@@ -27,7 +27,7 @@ def register(app: typer.Typer) -> None:
 
 
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
-    """Sweep, optimise or tolerance a design; resumable at any moment."""
+    """Sweep, optimisation or tolerance analysis; can be resumed."""
     with answered(file, RESUMES):
         from flexspline.geometry.errors import ComputationError
         from flexspline.geometry.load import read_raw, tables_from
@@ -50,7 +50,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.study.why import unfollowed
 
         raw = read_raw(file, "study")
-        asked = study_from(tables_from(raw, file), file.parent, file.stem)
+        asked = study_from(tables_from(raw, file, "study"), file.parent, file.stem)
         base = file.parent / asked.file.design
         attached = (
             Attachment(file.name, raw, "Study file"),
@@ -99,7 +99,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
 
 
 def sensitivity(design: DesignFile, out: Out = None, json: Json = False) -> None:
-    """How K_b and K_e change with every dimension, found in two ways; the sum with each clearance."""
+    """Derivatives of K_b and K_e by dimension, of backlash by clearance."""
     with answered(design):
         from flexspline.geometry.load import load_design
         from flexspline.pipeline.study.sensitivity import sensitivities

@@ -137,7 +137,7 @@ def _why(result: StudyResult) -> Iterable[Block]:
         yield Heading("No design keeps to every constraint")
         yield Bullets(missed)
     if why := (*unbeaten_start(result), *influences(result), *limits(result)):
-        yield Heading("Why they win" if result.pareto else "What moves what")
+        yield Heading("Why they are best" if result.pareto else "Effects of the varied dimensions")
         yield Bullets(why)
 
 

@@ -53,7 +53,7 @@ def source_words(s: Scatter) -> str:
         return (
             "Distribution, indices and tightening come from one quadratic surface through all designs; at "
             f"designs left out of the fit it misses {said} of the variance (root mean square "
-            f"{s.surface.misfit**0.5:.2g} {entry(s.key).unit}), which the intervals hold."
+            f"{s.surface.misfit**0.5:.2g} {entry(s.key).unit}), which the intervals include."
         )
     tried = ""
     if explained is not None:

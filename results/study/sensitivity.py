@@ -71,7 +71,15 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
             f"{s.backlash_arcsec_per_mm:10.3f}{word}"
         )
-    out.append("dK/dp in N·m/rad per mm, of K_b or K_e without bolt holes and keyway")
+    out.append(
+        "dK/dp in N·m/rad per mm: of K_b by keys of the flexspline, of K_e by keys of the shaft, both "
+        "without bolt holes and keyway"
+    )
+    if design.flexspline.teeth != "none":
+        out.append(
+            "flexspline.ring_thickness_mm is here the thickness of the plain ring that stands for the drawn "
+            f"teeth, not the file's {design.flexspline.ring_thickness_mm:g} mm"
+        )
     out.append(f"{'clearance':42} {'µm':>8} {'in the sum, arcsec':>20} {'arcsec/µm':>11}")
     out += [
         f"{c.key:42} {c.value_um:8.4g} {c.arcsec:20.1f} {c.arcsec_per_um:11.3f}"

@@ -79,7 +79,7 @@ def _bought(axes: Axes, s: Scatter, order: np.ndarray) -> None:
         axes.barh(y, values, 0.62, color=shades[i], label=said)
     axes.set_yticks(y, [""] * len(order))
     axes.tick_params(axis="y", length=0)
-    axes.set_xlabel(f"95 % range narrower by, {entry(s.key).unit}")
+    axes.set_xlabel(f"95 % range narrower by, in {entry(s.key).unit}")
     _legend_above(axes, 4)
 
 

@@ -207,6 +207,7 @@ FILES = {
     "huge integer": (b"x = " + b"9" * 9000, "TOML"),
     "too large": (b"#" * (LARGEST_BYTES + 1), "1000001 bytes"),
     "empty": (b"", "the file is empty"),
+    "comments alone": (b"# nothing\n", "holds only comments"),
     "not a table": (b"flexspline = 3", "flexspline = 3|name is missing"),
 }
 

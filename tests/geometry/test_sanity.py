@@ -42,7 +42,7 @@ def test_unusual_value_is_warned_of_with_numbers(key: str) -> None:
     ("key", "value", "says"),
     [
         # a tooth is 0.2 π/2 = 314.2 µm thick
-        ("gear.flank_clearance_um", 60.0, ("= 60", "19%", "314.2 µm")),
+        ("gear.flank_clearance_um", 60.0, ("= 60", "19 %", "314.2 µm")),
         # stress stays below the fatigue limit of 500 MPa up to 5 pairs of teeth
         ("gear.teeth_circular_spline", 210, ("200/10 = 20", "usually 30 or more")),
         # 19.2 mm inside the tube

@@ -12,6 +12,7 @@ from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.sized import sized_template, sized_values
+from flexspline.geometry.template import template
 from flexspline.results.cli import app
 
 
@@ -91,3 +92,13 @@ def test_init_says_it() -> None:
     assert done.exit_code == 0
     assert "warning: gear.rated_torque_Nm = 2000 is 62" in done.stderr
     assert CliRunner().invoke(app, [*words[:-1], "31"]).stderr == ""
+
+
+def test_a_file_whose_stress_exceeds_its_fatigue_limit_says_so() -> None:
+    """On the wave generator, by `flexspline stiffness`: hats 718 MPa at ratio 100 and 479 at 150; cups 448 at
+    100; the first hat 681 and the first cup 436; the limit is 500."""
+    beyond = "above the fatigue limit"
+    for kind, ratio, exceeds in (("hat", 100, True), ("hat", 150, False), ("cup", 100, False)):
+        assert (beyond in sized_template(kind, 25, ratio)) is exceeds
+    assert "above its fatigue limit" in template("hat")
+    assert "above its fatigue limit" not in template("cup")

@@ -10,6 +10,8 @@ from pathlib import Path
 from catalogue.compare import CatalogueFinding, compare
 from example_files import EXAMPLES
 
+from flexspline.geometry.rated import LOST_MOTION_SHARE, LOST_MOTION_TORQUE
+
 ROOT = Path(__file__).parents[2]
 DATA = EXAMPLES / "catalogue"
 PAGE = ROOT / "docs" / "catalogue.md"
@@ -81,11 +83,12 @@ A line with the stiffness K3, drawn through the curve above T2, does not pass th
 leave a gap, which the four-term sum would call clearance. For {len(refuted)} of the {len(limited)} rows \
 with a stated limit that gap
 alone is larger than all the lost motion that the maker allows. Clearance would show at any torque, at
-± 4 % of rated torque too; so it is not clearance.
+± {LOST_MOTION_TORQUE} too; so it is not clearance.
 
 ## Lost motion is mostly elastic
 
-Twist between ± 4 % of rated torque, 2·0.04·T_N/K1: {100 * least:.0f} to {100 * most:.0f} % of the limit of 1′
+Twist between ± {LOST_MOTION_TORQUE}, 2·{LOST_MOTION_SHARE:g}·T_N/K1: {100 * least:.0f} to \
+{100 * most:.0f} % of the limit of 1′
 for the sizes whose rated torque is in the data.
 
 | size | T_N [N·m] | K1 [N·m/rad] | elastic [′] |

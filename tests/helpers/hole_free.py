@@ -19,6 +19,7 @@ from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.types import Elastic, Stiffness, TetMesh
 from flexspline.geometry.design import Design
 from flexspline.geometry.load import load_design
+from flexspline.geometry.percent import percent
 from flexspline.geometry.symmetry import sector_of
 
 DRIVEN = {"flexspline": "mesh", "shaft": "grip"}
@@ -72,7 +73,7 @@ def is_long(name: str, kind: str, tolerance: float) -> bool:
 
 SOLUTIONS = [
     pytest.param(
-        name, kind, tolerance, id=f"{kind}, to {tolerance:.1%}-{name}",
+        name, kind, tolerance, id=f"{kind}, to {percent(tolerance)}-{name}",
         marks=[pytest.mark.long] * is_long(name, kind, tolerance),
     )
     for kind, tolerance in (("chosen", TOLERANCE), ("chosen", FINE), ("fTetWild", TOLERANCE))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,7 +32,7 @@ NUMBERS: tuple[float | int | bool, ...] = (
 )  # fmt: skip
 BASES = {
     "cup": template("cup").replace("# [shaft.keyway]", "[shaft.keyway]").replace("\n# ", "\n"),
-    "hat": template("hat").replace("\n# ", "\n"),
+    "hat": re.sub(r"(?m)^# (?=\[|\w+ = )", "", template("hat")),
     "keyed": (EXAMPLES / "keyed-shaft.toml").read_text(encoding="utf-8"),
 }
 

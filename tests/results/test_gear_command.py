@@ -110,7 +110,7 @@ def test_teeth_that_press_without_torque_are_said_with_the_reason() -> None:
 def test_the_gear_as_drawn_is_free_without_torque(curve: GearCurve) -> None:
     assert curve.preload_tooth_force_N == 0
     assert curve.warnings == ()
-    assert any("23 balls" in line for line in gear_notes(curve))
+    assert any("in place of 23" in line for line in gear_notes(curve))
 
 
 def test_the_free_angle_does_not_hang_on_the_load() -> None:

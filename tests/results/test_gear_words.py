@@ -52,15 +52,15 @@ WARNINGS: dict[GearWarning, str] = {
     LoadBeyondRated(5000.0, 900.0): "load.torque_Nm = 5000 is 5.56 times the rated torque",
     EarlyEnd(
         "ratchets", 1043.0, 2300.0
-    ): "the gear ratchets at some 1000 N·m, below the rated torque of 2300 N·m",
-    EarlyEnd("buckles", 788.0, 900.0): "the flexspline's tube buckles at some 790 N·m, below",
+    ): "the gear ratchets at about 1000 N·m, below the rated torque of 2300 N·m",
+    EarlyEnd("buckles", 788.0, 900.0): "the flexspline's tube buckles at about 790 N·m, below",
     "play_closes_gap": "reduce the play",
 }
 NOTES: dict[GearNote, str] = {
-    HalvedBalls(23, 24): "23 balls are computed as 24, half of them in each lobe",
+    HalvedBalls(23, 24): "24 balls in place of 23",
     LowRatio(45): "below a ratio of 45 the model is too stiff",
     RelievedFlanks(35.3, 14.6, 54.0): "beyond 35° from the major axis",
-    ShapedFaces(16.4): "up to 16 µm at its ends",
+    ShapedFaces(16.4): "up to 16 µm at the ends",
     StraightFlanks(20.0): "straight flanks of 20°, not of the drawn ones",
     LoadedLastPair(54.0): "54° from the major axis, carries much",
     TwoTorques(
@@ -68,11 +68,11 @@ NOTES: dict[GearNote, str] = {
     ): "at load.torque_Nm = 0.5, the lost motion at 0.8 N·m, 4 % of rated torque",
     JointClearances(
         24.1, 7.04
-    ): "is 24 arcsec smaller; the terms take the flank clearance away first, and "
-    "leave 7 arcsec to the play",
+    ): "is 24 arcsec smaller; the terms remove the flank clearance first, which "
+    "leaves 7 arcsec to the play",
     BucklingTube(
         788.0, 832.0
-    ): "at some 790 N·m, the lower edge of tests, at a shear stress of 830 MPa",
+    ): "at about 790 N·m (lower bound of tests), where its shear stress is 830 MPa",
     "play_beside_stroke": "read bearing_play and tight_gear together",
     "no_ratcheting": "no torque was found at which the gear ratchets",
     "ratcheting_is_upper": "the ratcheting torque is an upper limit",

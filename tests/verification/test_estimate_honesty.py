@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from hole_free import CASES, REFERENCE, SOLUTIONS, TOLERANCE, solved
 
+from flexspline.geometry.percent import percent
+
 
 def ratio(name: str, kind: str = "chosen", tolerance: float = TOLERANCE) -> float:
     pair = solved(name, kind, tolerance)
@@ -20,7 +22,7 @@ def test_true_error_over_estimate(name: str, kind: str, tolerance: float, record
     """The demand: between 0.3 and 3 on the finest mesh, the one that is reported."""
     pair, found = solved(name, kind, tolerance), ratio(name, kind, tolerance)
     how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
-    what = f"True over estimated error, {name}, to {tolerance:.1%}{how}"
+    what = f"True over estimated error, {name}, to {percent(tolerance)}{how}"
     record(what, "demanded", (0.3, 3.0), found, digits=2)
     # the bounds' half width is what the true error is uncertain by: small beside the estimate
     assert REFERENCE / 2 * pair.exact.K_Nm_per_rad < 0.2 * pair.estimated_error

@@ -21,6 +21,7 @@ from flexspline.fea.solid.stress import energy_error
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import Elastic
 from flexspline.geometry.load import design_from
+from flexspline.geometry.percent import percent
 from flexspline.geometry.tagged import tagged_surface
 
 
@@ -32,7 +33,7 @@ def test_solid_stiffness_lies_within_its_bounds(
     found, exact = pair.solid, pair.exact
     how = {"chosen": "", "fTetWild": " (fTetWild)"}[kind]
     record(
-        f"K of {name}, to {tolerance:.1%}{how}", "Michell 1899, bounds", exact.K_Nm_per_rad,
+        f"K of {name}, to {percent(tolerance)}{how}", "Michell 1899, bounds", exact.K_Nm_per_rad,
         found.K_Nm_per_rad, "N·m/rad",
     )  # fmt: skip
     # the tolerance asked for is the program's own promise

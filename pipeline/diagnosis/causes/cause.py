@@ -95,6 +95,8 @@ class Cause(ABC):
     """Whether physics forbids negative amplitudes."""
     exact: ClassVar[bool] = False
     """Whether the columns are the cause's only shape, so that it leaves no misfit."""
+    elastic: ClassVar[bool] = False
+    """Whether it changes the mean slope of angle over torque, which the calibrated compliance then is not."""
     shape_doubt: ClassVar[float] = 0.007
     """Share of the magnitude by which the shapes tried may miss a real gear's.
 

@@ -54,6 +54,7 @@ class Creep(Cause):
     ratio = "in % of the elastic twist for each decade of time within holds"
     positive = True
     tunable = ("shortest_s", "longest_s", "exponent")
+    elastic = True
     shape_doubt = 0.045
     """One and two deviations cover 69 and 96 % of 26 sizes."""
     made_of = frozenset({SERIES, RATE})

@@ -34,6 +34,7 @@ class DirectionAsymmetry(Cause):
     """Both directions load the same parts; keys, bolts and flanks differ by some tenths at most."""
     ratio = "difference between the two directions in % of their mean"
     tunable = ("exponent", "rounding_Nm")
+    elastic = True
     shape_doubt = 0.02
     """One and two deviations cover 75 and 96 % of 28 sizes."""
     reveals = "the same sweep with the gear turned round on the rig, to exclude the torque cell"

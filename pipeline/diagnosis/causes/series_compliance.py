@@ -24,6 +24,7 @@ class SeriesCompliance(Cause):
     """A joint or a bearing left out yields nearly as much as what is simulated."""
     ratio = "in % of the simulated compliance"
     exact = True
+    elastic = True
     shape_doubt = 0.0007
     """One and two deviations cover 59 and 90 % of 29 sizes."""
     vary = "torque_amplitude"

@@ -60,6 +60,7 @@ class StiffnessHardening(Cause):
     """Soft wind-up is up to a third of the twist in catalogues."""
     ratio = "stiffness near the largest torque over that at 5 to 20 % of it"
     none = 1.0
+    elastic = True
     shape_doubt = 0.008
     """One and two deviations cover 71 and 86 % of 28 sizes. Beside other causes a law
     that bends below a tenth of the torque is missed by up to a fifth."""

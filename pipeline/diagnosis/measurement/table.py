@@ -72,9 +72,7 @@ def _toml_instead(path: Path) -> MeasurementError | None:
     """The refusal of a design or another TOML file that was given in place of a record; None of others."""
     try:
         tables = read_toml(path)
-    except DesignFileError:  # no TOML, which a record is not
-        return None
-    if not tables:  # empty, or comments alone
+    except DesignFileError:  # empty, or no TOML, which a record is not
         return None
     what = "a design file" if "flexspline" in tables else "a TOML file"
     return MeasurementError(path, None, f"is {what}; a measured record (CSV or .xlsx) is expected")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Cause
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import Decision
@@ -20,7 +21,7 @@ from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors, model_of
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.splits import rate_range
+from flexspline.pipeline.diagnosis.sweep.splits import rate_range, whole_levels
 
 PLANNED_CYCLE_ROWS = 64
 """Of one triangular cycle."""
@@ -154,7 +155,7 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     if len(models) < 2:
         vary = known_causes()[cause].vary
         doing: Doing | None = None
-        if aim == "confirm" and vary == "torque_rate" and _has_rates(explained):
+        if aim == "confirm" and _has_shown(known_causes()[cause], explained):
             vary, doing = "torque_amplitude", LARGER
         if rivals == (SERIES,):  # a loop shrinks with its amplitude, a spring does not
             vary, doing = "torque_amplitude", LARGER
@@ -177,10 +178,20 @@ def after_late(late: BackwardLoop | LateAngle) -> NextMeasurement:
     )
 
 
-def _has_rates(explained: ExplainedSweep) -> bool:
-    """Whether the record's own cycles are as many times faster and slower as would be asked for."""
-    quickest, slowest = rate_range(explained.prepared.sweep.history)
-    return quickest >= FASTER * slowest > 0
+def _has_shown(cause: Cause, explained: ExplainedSweep) -> bool:
+    """Whether the record itself varies what would be asked for to confirm a cause, as far as that."""
+    history = explained.prepared.sweep.history
+    if cause.vary == "torque_rate":
+        quickest, slowest = rate_range(history)
+        return quickest >= FASTER * slowest > 0
+    if cause.vary != cause.shows_over:  # it is confirmed by something else
+        return False
+    if cause.vary == "input_angle_deg":
+        positions = history.input_angle_deg
+        return positions is not None and len(np.unique(positions)) >= len(POSITIONS_DEG)
+    if cause.vary == "cycle":
+        return int(history.cycle.max()) >= MORE_CYCLES
+    return any(split.what.channel == cause.vary for split in whole_levels(history, timed=False))
 
 
 def _rival_models(explained: ExplainedSweep, decision: Decision, cause: str) -> list[ExtendedModel]:

@@ -28,14 +28,15 @@ CAPTIONS = {
         explains lies in: {where}; the figure of the model's parts shows its course.""",
     "envelope": """
         The angle between −T and +T of each unit. The band holds 95 of 100 units that are as the
-        design says; a unit beyond it has something that the design's clearances and stiffness do
-        not.""",
+        design says; the design's clearances and stiffness do not explain a unit
+        beyond it.""",
     "positions": """
         Where the two ends of each unit lie. The symmetric simulation puts every middle on zero; the
         zero of an angle reading is free, so a middle elsewhere proves nothing alone.""",
     "rivals": """
         Above, how the odds are shared among the explanations; bars of like length cannot be told
-        apart. Below, where shown, what a further measurement would do about it.""",
+        apart. Below, where shown, by how much a further measurement would separate
+        them.""",
     "stiffness": """
         Measured stiffness of each specimen as deviation from the simulation. With the cause found,
         the diamonds lie on the measured points.""",

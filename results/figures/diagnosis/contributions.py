@@ -13,16 +13,16 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.results.figures.diagnosis.contribution_parts import ContributionPanel, parts
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
-from flexspline.results.figures.words import thin_labels
+from flexspline.results.figures.words import angle_title, thin_labels, torque_title
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 YLABELS: Mapping[Effect, str] = {
-    "angle": "added angle in arcsec",
-    "gap": "added gap in arcsec",
-    "compliance": "added arcsec per N·m",
+    "angle": angle_title("added angle"),
+    "gap": angle_title("added gap"),
+    "compliance": f"{angle_title('added compliance')} per N·m",
 }
 FAR_TORQUE_SHARE = 0.4
 """Share of the largest torque beyond which angle over torque is a compliance."""
@@ -127,6 +127,6 @@ def _offset(axes: Axes, shown: SweepPictureData) -> None:
     t = np.linspace(-reach, reach, 601)
     axes.plot(t, np.sign(t) * gap / 2, color=PALETTE[2], lw=1.2, ls=(0, (4, 3)))
     axes.plot(t, np.sign(t - offset) * gap / 2, color=INK, lw=1.4)
-    axes.set_xlabel("torque reading in N·m (dashed: the gap if the reading were right)")
-    axes.set_ylabel("gap alone, arcsec")
+    axes.set_xlabel(f"{torque_title('torque reading')} (dashed: the gap if the reading were right)")
+    axes.set_ylabel(angle_title("gap alone"))
     axes.grid(True)

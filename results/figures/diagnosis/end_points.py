@@ -9,7 +9,8 @@ import numpy as np
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis, UnitFinding
 from flexspline.results.figures.diagnosis.panels import DPI, titled
 from flexspline.results.figures.diagnosis.seen import plain_names
-from flexspline.results.figures.words import fit
+from flexspline.results.figures.words import angle_title, fit
+from flexspline.results.numbers import signed
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
 MOST_UNITS = 30
@@ -63,7 +64,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
             ends += [low, high, unit.total_arcsec]
             words = "within" if unit.within else "beyond"
             said.append(axes.annotate(
-                f"{unit.total_arcsec:.1f} arcsec, {words} ({unit.z:+.1f} σ)".replace("-", "−"),
+                f"{unit.total_arcsec:.1f} arcsec, {words} ({signed(unit.z, 1)} σ)",
                 (1.02, row), xycoords=("axes fraction", "data"), va="center", fontsize=9.5,
                 color=colour, weight="normal" if unit.within else "bold", annotation_clip=False,
             ))  # fmt: skip
@@ -78,7 +79,7 @@ def write_envelope(path: Path, analysis: EndPointAnalysis) -> None:
         ])  # fmt: skip
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
-        axes.set_xlabel("angle between −T and +T in arcsec")
+        axes.set_xlabel(angle_title("angle between −T and +T"))
         titled(figure, 1 - 0.28 / height, "Lost motion of each unit against the prediction")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,
@@ -120,14 +121,14 @@ def write_positions(path: Path, analysis: EndPointAnalysis) -> None:
                 unit.mid_arcsec, row + 0.08, "o", color=INK, ms=5, label="middle" if first else None
             )
             axes.annotate(
-                f"middle {unit.mid_arcsec:+.1f} arcsec".replace("-", "−"), (1.02, row),
+                f"middle {signed(unit.mid_arcsec, 1)} arcsec", (1.02, row),
                 xycoords=("axes fraction", "data"), va="center", fontsize=9.5, annotation_clip=False,
             )  # fmt: skip
         axes.set_ylim(len(units) - 0.5, -0.5)
         axes.set_yticks(range(len(units)), [f"unit {n}" for n in names])
         axes.tick_params(axis="y", length=0)
         axes.grid(axis="x")
-        axes.set_xlabel("angle read in arcsec")
+        axes.set_xlabel(angle_title("angle read"))
         titled(figure, 1 - 0.28 / height, "Where each unit's ends lie")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 1 - 0.64 / height), ncols=4, fontsize=9,

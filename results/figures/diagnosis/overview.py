@@ -12,7 +12,7 @@ import numpy as np
 from flexspline.results.diagnosis.data_used import kinds_left_out
 from flexspline.results.figures.diagnosis.panels import DPI, FALLING, RISING, titled
 from flexspline.results.figures.diagnosis.seen import SweepPictureData, thinned
-from flexspline.results.figures.words import keep_inside
+from flexspline.results.figures.words import angle_title, keep_inside, torque_title
 from flexspline.results.numbers import grouped
 from flexspline.results.style import ACCENT, INK, MUTED, PALETTE, new_figure, save_png, styled
 
@@ -70,9 +70,9 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
         high = 1.12 * float(np.quantile(np.abs(shown.nominal[shown.kept]), 0.999))
         below.set_ylim(-high, high)
         above.tick_params(labelbottom=False)
-        above.set_ylabel("output angle in arcsec")
-        below.set_ylabel("difference in arcsec")
-        below.set_xlabel("output torque in N·m")
+        above.set_ylabel(angle_title("output angle"))
+        below.set_ylabel(angle_title("difference"))
+        below.set_xlabel(torque_title("output torque"))
         titled(figure, 0.955, "Measured and simulated angle, wave generator locked")
         named = dict(zip(*reversed(above.get_legend_handles_labels()), strict=True))
         named |= dict(zip(*reversed(below.get_legend_handles_labels()), strict=True))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexspline.results.figures.diagnosis.seen import Channel, SweepPictureData, thinned
-from flexspline.results.figures.words import thin_labels
+from flexspline.results.figures.words import angle_title, thin_labels
 from flexspline.results.style import INK, MUTED, PALETTE, new_figure, save_png, styled
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def write_channels(
     """
     high = _reach(shown, left_arcsec)
     with styled():
-        figure, panels = panel_sheet(len(shown.channels), title, "residual in arcsec")
+        figure, panels = panel_sheet(len(shown.channels), title, angle_title("residual"))
         for axes, channel in zip(panels, shown.channels, strict=True):
             _panel(axes, shown, channel, left_arcsec, high)
             if told and channel.key in told:

@@ -52,7 +52,7 @@ def write_stiffness(path: Path, found: SpecimenAnalysis) -> None:
         )
         axes.grid(axis="y")
         axes.set_xlabel("specimen")
-        axes.set_ylabel("stiffness over simulated, %")
+        axes.set_ylabel("stiffness over simulated in %")
         titled(figure, 0.945, "Measured stiffness against the simulation")
         figure.legend(
             loc="center left", bbox_to_anchor=(0.025, 0.865), ncols=4, fontsize=9, columnspacing=1.3,
@@ -95,7 +95,7 @@ def write_held_out_specimens(path: Path, found: SpecimenAnalysis, gain: Gain) ->
         step = -(-n // 12)
         axes.set_xticks(x[::step], names[::step], rotation=40 if max(map(len, names)) > 4 else 0)
         axes.set_xlabel("specimen, predicted from all others")
-        axes.set_ylabel("error of 1/stiffness, %")
+        axes.set_ylabel("error of 1/stiffness in %")
         axes.grid(axis="y")
         names = ("as it\nstands", "modulus\nfitted", "with what\nwas found")
         before_and_after(bars, gain, names, "noise")

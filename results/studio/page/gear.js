@@ -3,13 +3,6 @@
 import { differenceCell, dot, ticks } from "./charts.js";
 import { el, grouped, svg, symbol } from "./dom.js";
 
-const SHORT = {
-  K1_Nm_per_rad: "from 0 to T1",
-  K2_Nm_per_rad: "from T1 to T2",
-  K3_Nm_per_rad: "from T2 to rated torque",
-  lost_motion_arcsec: "lost motion, ± 4 % of rated torque",
-  teeth_in_contact: "teeth in contact, rated torque",
-};
 const W = 400;
 const H = 126;
 const EDGE = { left: 40, right: 8, top: 8, bottom: 22 };
@@ -19,7 +12,7 @@ export function gearPanel(gear, pinned) {
     const value = el("td", { class: "value" }, row.text);
     value.dataset.value = row.value;
     return el("tr", { "data-key": row.key },
-      el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, SHORT[row.key] ?? row.name),
+      el("td", { class: "sym" }, symbol(row.symbol)), el("td", { class: "what", title: row.name }, row.short || row.name),
       value, el("td", { class: "side" }, row.unit),
       pinned ? differenceCell(row, pinned.rows.find((other) => other.key === row.key)) : null);
   });

@@ -1,13 +1,16 @@
 """A wrong study file is refused with one line: key, value, what works."""
 
+from pathlib import Path
 from typing import get_args
 
 import pytest
 from example_files import EXAMPLES
 from study_bench import GRID, study_of
 
+from flexspline.geometry.errors import DesignFileError
 from flexspline.pipeline.study.database import StorageError
 from flexspline.pipeline.study.figures import SIZES
+from flexspline.pipeline.study.load import load_study
 from flexspline.pipeline.study.schema import WORDS, Method
 from flexspline.pipeline.study.study import StudyError
 
@@ -61,3 +64,9 @@ def test_the_page_names_every_key_and_method() -> None:
         assert f'`"{method}"`' in text
     for key in SIZES:
         assert f"`{key}`" in text
+
+
+def test_an_empty_file_is_said_to_be_empty(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").touch()
+    with pytest.raises(DesignFileError, match=r"the file is empty$"):
+        load_study(tmp_path / "study.toml")

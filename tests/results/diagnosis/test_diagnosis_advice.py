@@ -3,7 +3,12 @@
 import pytest
 
 from flexspline.pipeline.diagnosis.calibration import Calibration, Estimate
-from flexspline.pipeline.diagnosis.outcome import NextMeasurement
+from flexspline.pipeline.diagnosis.outcome import (
+    DiagnosisOutcome,
+    NamedCause,
+    NextMeasurement,
+    Unexplained,
+)
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.results.diagnosis.advice import SHOWS_STRUCTURE, why
@@ -25,14 +30,33 @@ def test_structure_is_sought_in_words_not_in_keys(channel: str) -> None:
 def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
     prediction = Prediction(10.0, 0.0, 70.0, 0.0)
     calibration = Calibration(Estimate(70.0, 0.1), False, Estimate(10.0, 0.01))
-    unknown = calibrated_sentences(calibration, prediction, True)
-    assert calibrated_sentences(calibration, prediction, False) in unknown
+    left = Unexplained("time_s", 1.0, 1e-6, (UnnamedForm("wave"),))
+    unknown = calibrated_sentences(
+        calibration, prediction, DiagnosisOutcome("unknown", unexplained=(left,))
+    )
+    assert calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent")) in unknown
     assert "unexplained and may have moved them" in unknown
+
+
+def test_an_elastic_cause_makes_the_calibrated_compliance_a_part_of_the_slope() -> None:
+    prediction = Prediction(10.0, 0.3, 70.0, 10.0)
+    calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.01))
+    titles = {"series_compliance": "elastic part left out", "friction_hysteresis": "friction"}
+    said = {
+        cause: calibrated_sentences(
+            calibration,
+            prediction,
+            DiagnosisOutcome("named", (NamedCause(cause, 1.0, (), 12.0, 0.5, "%", 20.0, 3.0),)),
+        )
+        for cause in titles
+    }
+    assert "the effect of: elastic part left out" in said["series_compliance"]
+    assert "slope" not in said["friction_hysteresis"]
 
 
 def test_what_a_record_does_not_narrow_is_not_called_measured() -> None:
     prediction = Prediction(10.0, 0.3, 70.0, 10.0)
     calibration = Calibration(Estimate(70.0, 0.1), True, Estimate(10.0, 0.29))
-    said = calibrated_sentences(calibration, prediction, False)
+    said = calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent"))
     assert "gap 70.00 ± 0.10 (simulated 70 ± 10" in said
     assert "as simulated: this record does not narrow it" in said

@@ -53,7 +53,8 @@ def test_a_stiffer_gear_is_no_part_left_out() -> None:
     friction = named("friction_hysteresis", 12.0, "arcsec")
     said = "elastic part left out of the simulation, 12.00 ± 0.50 %"
     assert left_out([soft]) == f"The simulation leaves out: {said}."
-    stiffer = "gear stiffer than simulated, −36.80 ± 0.50 %"
+    # 1/(1 − 0.368) = 1.5823, and 0.5 %/0.632² = 1.25 %
+    stiffer = "gear stiffer than simulated, +58.2 ± 1.3 %"
     assert left_out([stiff]) == f"The simulation is too soft: {stiffer}."
     assert left_out([stiff, friction]) == (
         "The simulation leaves out: friction hysteresis, 12.00 ± 0.50 arcsec. "
@@ -71,10 +72,10 @@ def test_many_units_are_counted_and_not_all_listed() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_writes_a_magnitude_alike(kind: str) -> None:
     """A true minus sign, and digits to the second of the standard deviation."""
-    outcome = DiagnosisOutcome("named", (named("series_compliance", -19.5),))
+    outcome = DiagnosisOutcome("named", (named("thermal_clearance", -19.5, "arcsec/K"),))
     diagnosis = Diagnosis(DESIGN, KINDS[kind], Prediction(10.0, 0.2, 60.0, 5.0), outcome)
     assert diagnosis.kind == kind
-    assert "−19.50 ± 0.50 %" in summary(diagnosis)
+    assert "−19.50 ± 0.50 arcsec/K" in summary(diagnosis)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -104,7 +105,7 @@ def test_what_specimens_leave_is_in_percent_everywhere() -> None:
     record = diagnosis_record(found)
     assert record["unexplained"][0]["unit"] == "%"
     table = diagnosis_table(found, Path("out"))
-    assert "left over in the order of the specimens: 6.50 % rms" in " ".join(table.split())
+    assert "unexplained in the order of the specimens: 6.50 % rms" in " ".join(table.split())
     report = repr(diagnosis_document(found, (), StiffnessPair(1.0, 1.0)).blocks)
     assert "Size, % rms" in report
     page = job_summary("diagnose", DESIGN, as_json(record))

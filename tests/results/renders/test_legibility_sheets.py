@@ -36,7 +36,7 @@ SHEETS = {
         "Displacements drawn 1000 times as large. Red: edges before deformation.\n"
         + stress_note(BORDER, True),
         bar(436.0, "436"),
-        mark("peak, at border\nof what is left out\n436 MPa\n(hidden)", shown_by="none"),
+        mark("peak, at border\nof excluded zone\n436 MPa\n(hidden)", shown_by="none"),
     ),
     "cup": Sheet(
         TITLE, ELLIPSE, "along the axis", stress_note(PEAK, True), bar(436.0, "436"),

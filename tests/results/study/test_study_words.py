@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from example_files import EXAMPLES
 
+from flexspline.geometry.load import load_design
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome
 from flexspline.pipeline.study.load import study_from
@@ -17,6 +18,7 @@ from flexspline.results.study.labels import valued
 from flexspline.results.study.notes import border_warnings, notes
 from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
+from flexspline.results.study.sensitivity import lines
 from flexspline.results.study.unbeaten import unbeaten_start
 from flexspline.results.study.why import (
     disagreement,
@@ -199,3 +201,11 @@ def test_a_peak_at_the_excluded_border_is_marked_in_study_table_and_notes() -> N
     assert "in 4 of 10 designs" in line
     assert not any("at excluded border" in n for n in notes(result))  # of a study begun before
     assert "†" in str(payload_of(study_document(said, ())))
+
+
+def test_with_drawn_teeth_the_ring_of_the_sensitivities_is_said_not_to_be_the_files() -> None:
+    plain = load_design(EXAMPLES / "xb1-40.toml")
+    drawn = plain.changed({"flexspline.teeth": "drawn"})
+    (said,) = (line for line in lines(drawn, ()) if "ring_thickness_mm" in line)
+    assert "not the file's 0.55 mm" in said
+    assert not any("ring_thickness_mm" in line for line in lines(plain, ()))

@@ -198,7 +198,10 @@ def test_the_header_again_is_passed_over_and_said(
     assert found.history.torque_Nm == pytest.approx(TORQUE)
     assert found.angle_arcsec == pytest.approx(ANGLE, abs=1e-5)
     assert found.read_as.heads_again == lines
-    assert any(f"passed over: line {lines[0]}" in note for note in reading_notes(found.read_as))
+    assert any(
+        f"header again or data types: line {lines[0]}" in note
+        for note in reading_notes(found.read_as)
+    )
 
 
 def test_one_column_with_quoted_decimal_commas(tmp_path: Path) -> None:

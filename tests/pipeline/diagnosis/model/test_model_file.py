@@ -133,7 +133,7 @@ def test_faults_are_named(name: str, tmp_path: Path) -> None:
     ("data", "needle"),
     [
         (b"\xff\xfe", "not UTF-8"),
-        (b"", "format is missing"),
+        (b"", "the file is empty"),
         (b"name = 'XB1-40 cup'", "no extended model"),
         (b"#" * 1_000_001, "at most"),
         (b"a = " + b"[" * 5000, "nested too deeply"),

@@ -95,3 +95,25 @@ def test_other_rates_lie_beyond_those_of_the_record() -> None:
     # the record's rate is of steps between rows, a triangle's first row lies within its way
     assert max(new) == pytest.approx(10 * now[0], rel=0.1)
     assert min(new) == pytest.approx(now[1] / 10, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("warmer_K", "vary", "doing"), [(6.0, "torque_amplitude", LARGER), (0.6, "temperature_C", None)]
+)
+def test_temperatures_that_the_record_has_are_not_asked_for(
+    warmer_K: float, vary: str, doing: Doing | None
+) -> None:
+    """Cycles 6 K apart have shown what the gap does with temperature; 3 K in all are a room’s own drift."""
+    record = sliding_record((60.0,) * 6, width=0.0)
+    warm = 20.0 + warmer_K * record.history.cycle
+    gap = -2.0 * (warm - 20.0)
+    record = replace(
+        record,
+        history=replace(record.history, temperature_C=warm),
+        angle_arcsec=record.angle_arcsec + np.sign(record.history.torque_Nm) * gap / 2,
+    )
+    outcome, _ = diagnose_sweep(record, PREDICTION)
+    assert [c.id for c in outcome.causes] == ["thermal_clearance"]
+    after = outcome.next_measurement
+    assert after is not None
+    assert (after.aim, after.vary, after.doing) == ("confirm", vary, doing)
