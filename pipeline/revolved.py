@@ -16,10 +16,12 @@ from functools import lru_cache
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffness
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.material import Material
+from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.cache import Cache
@@ -31,6 +33,24 @@ from flexspline.pipeline.storage import cache_folder
 
 KEPT_PARTS = 512
 """Solved parts remembered: enough for a study's worker, and to go back and forth with a slider."""
+
+
+RimSolve = Callable[[Meridian, Elastic, float, Deadline], Stiffness]
+"""K_b of a body of revolution in a load case of its rim; the number is the wanted tolerance."""
+
+
+def held_rim(
+    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+) -> Stiffness:
+    """The lobe load, the seat held radially."""
+    return lobe_stiffness(outline, material, True, tolerance, deadline)
+
+
+def free_rim(
+    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+) -> Stiffness:
+    """The lobe load, the seat free."""
+    return lobe_stiffness(outline, material, False, tolerance, deadline)
 
 
 def revolved(design: Design) -> Design:
@@ -80,7 +100,12 @@ def torsion(part: Part, tolerance: float) -> Stiffness:
 
 def lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
-    return _of_holed(part, lambda body: _lobes(body, supported, tolerance))
+    return rim(part, held_rim if supported else free_rim, tolerance)
+
+
+def rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+    """K_b of a load case of the rim. Errors as `torsion`."""
+    return _of_holed(part, lambda body: _rim(body, solve, tolerance))
 
 
 def contact(part: Part, tolerance: float) -> Stiffness:
@@ -115,10 +140,10 @@ def _torsion(part: Part, tolerance: float) -> Stiffness:
 
 
 @lru_cache(maxsize=KEPT_PARTS)
-def _lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
-    return lobe_stiffness(part.meridian, _elastic(part), supported, tolerance)
+def _rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+    return solve(part.meridian, _elastic(part), tolerance, NO_DEADLINE)
 
 
 @lru_cache(maxsize=KEPT_PARTS)
 def _contact(part: Part, tolerance: float) -> Stiffness:
-    return contact_stiffness(part.meridian, _elastic(part), _lobes(part, True, tolerance))
+    return contact_stiffness(part.meridian, _elastic(part), _rim(part, held_rim, tolerance))
