@@ -22,6 +22,9 @@ class Land:
     thickness: str
 
 
+_KINDS_IN_WORDS = "cup or hat"
+
+
 class _Flexspline(Bolted):
     land: ClassVar[Land]
     inward: ClassVar[bool]
@@ -107,7 +110,7 @@ class Cup(_Flexspline):
 
     land = Land("boss", "bore_diameter_mm", "boss_diameter_mm", "boss_thickness_mm")
     inward = True
-    kind: Literal["cup"] = Field(description="cup or hat")
+    kind: Literal["cup"] = Field(description=_KINDS_IN_WORDS)
     boss_diameter_mm: Length = Field(description="mm, thick centre that bolts to the shaft")
     boss_thickness_mm: Length = Field(description="mm, from z = 0")
     bore_diameter_mm: LengthOrZero = Field(
@@ -122,7 +125,7 @@ class Hat(_Flexspline):
         "flange", "flange_inner_diameter_mm", "flange_outer_diameter_mm", "flange_thickness_mm"
     )
     inward = False
-    kind: Literal["hat"] = Field(description="cup or hat")
+    kind: Literal["hat"] = Field(description=_KINDS_IN_WORDS)
     flange_outer_diameter_mm: Length = Field(description="mm, outside of the bolted flange")
     flange_inner_diameter_mm: Length = Field(description="mm, where the flange's thick part begins")
     flange_thickness_mm: Length = Field(description="mm, from z = 0")

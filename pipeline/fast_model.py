@@ -12,12 +12,11 @@ from flexspline.fea.axisymmetric.revolved_field import RevolvedField
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.part import Part
-from flexspline.pipeline import revolved
 from flexspline.pipeline.ellipse_peak import PEAK_STRESS_TOLERANCE
 from flexspline.pipeline.gear import GearCurve, curve_of
 from flexspline.pipeline.gear_chain import fast_chain
 from flexspline.pipeline.load_cases import CASES
-from flexspline.pipeline.revolved import stiffness, with_equivalent_ring
+from flexspline.pipeline.revolved import first_rim, held_rim, stiffness, with_equivalent_ring
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
 from flexspline.pipeline.rim_case import RimCase
 from flexspline.pipeline.stress_limits import StressCase
@@ -57,7 +56,7 @@ def rim(design: Design, case: RimCase) -> Stiffness:
 def first_lobes(design: Design) -> Stiffness:
     """`rim` of "lobes" on one mesh of each body, in half the time, its bounds some percent apart."""
     part = with_equivalent_ring(design).part("flexspline")
-    return revolved.first_lobes(part, True, design.solver.tolerance)
+    return first_rim(part, held_rim, design.solver.tolerance)
 
 
 def gear(design: Design) -> GearCurve:

@@ -11,11 +11,8 @@ from functools import partial
 from math import inf
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
-from flexspline.fea.axisymmetric.lobes import lobe_stiffness as revolved_lobe_stiffness
-from flexspline.fea.deadline import Deadline
 from flexspline.fea.types import Stiffness
 from flexspline.geometry.errors import ComputationError
-from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.pipeline.by_harmonics import by_harmonics
 from flexspline.pipeline.enclosed_part import (
@@ -26,7 +23,8 @@ from flexspline.pipeline.enclosed_part import (
 from flexspline.pipeline.enclosure import answered_within
 from flexspline.pipeline.part_stiffness import torsion_enclosure
 from flexspline.pipeline.parts import PartModel
-from flexspline.pipeline.revolved import contact, lobes
+from flexspline.pipeline.refining import Refining
+from flexspline.pipeline.revolved import RimSolve, contact, free_rim, held_rim, rim
 from flexspline.pipeline.rim_case import RIM_CASES, RimCase, figure_of
 from flexspline.pipeline.solid_lobes import solid_lobes
 
@@ -96,28 +94,29 @@ def _of_holed(flexspline: PartModel, asked: LoadCase) -> Stiffness:
     return answered_within(enclosure, solve, tolerance)
 
 
-def _of_case(
-    flexspline: PartModel, case: RimCase, make: Callable[[Meridian, Deadline], Stiffness]
-) -> Stiffness:
-    return by_harmonics(flexspline, figure_of(case), CASES[case].title, make)
+def _by_itself(
+    case: RimCase, title: str, solve: RimSolve, solid: Callable[..., Stiffness] | None = None
+) -> LoadCase:
+    """A case that `solve` answers on a meridian without another case's answer."""
+
+    def of_part(flexspline: PartModel) -> Stiffness:
+        own, tolerance = flexspline.material, flexspline.tolerance
+        return by_harmonics(
+            flexspline,
+            figure_of(case),
+            title,
+            lambda outline, deadline: Refining(solve(outline, own, tolerance, deadline)).last(),
+        )
+
+    return LoadCase(title, of_part, solid, lambda part, tolerance: rim(part, solve, tolerance))
 
 
-def _revolved_lobes(flexspline: PartModel, supported: bool) -> Stiffness:
-    own, tolerance = flexspline.material, flexspline.tolerance
-    return _of_case(
+def _resting(flexspline: PartModel) -> Stiffness:
+    own, held = flexspline.material, CASES["lobes"].revolved(flexspline)
+    return by_harmonics(
         flexspline,
-        "lobes" if supported else "lobes_unsupported",
-        lambda outline, deadline: revolved_lobe_stiffness(
-            outline, own, supported, tolerance, deadline
-        ),
-    )
-
-
-def _revolved_contact(flexspline: PartModel) -> Stiffness:
-    own, held = flexspline.material, _revolved_lobes(flexspline, True)
-    return _of_case(
-        flexspline,
-        "lobes_contact",
+        figure_of("lobes_contact"),
+        CASES["lobes_contact"].title,
         lambda outline, deadline: contact_stiffness(
             outline, own, held, deadline, flexspline.tolerance
         ),
@@ -125,18 +124,13 @@ def _revolved_contact(flexspline: PartModel) -> Stiffness:
 
 
 CASES: Mapping[RimCase, LoadCase] = {
-    "lobes": LoadCase(
-        "lobes",
-        partial(_revolved_lobes, supported=True),
-        partial(solid_lobes, supported=True),
-        lambda part, tolerance: lobes(part, True, tolerance),
-    ),
-    "lobes_contact": LoadCase("lobes, rim resting on the seat", _revolved_contact, None, contact),
-    "lobes_unsupported": LoadCase(
+    "lobes": _by_itself("lobes", "lobes", held_rim, partial(solid_lobes, supported=True)),
+    "lobes_contact": LoadCase("lobes, rim resting on the seat", _resting, None, contact),
+    "lobes_unsupported": _by_itself(
+        "lobes_unsupported",
         "lobes, rim unsupported",
-        partial(_revolved_lobes, supported=False),
+        free_rim,
         partial(solid_lobes, supported=False),
-        lambda part, tolerance: lobes(part, False, tolerance),
     ),
 }
 """Lift-off breaks the symmetry that makes the solid model small."""

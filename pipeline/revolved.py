@@ -9,17 +9,19 @@ is relative, of K. Stress: `pipeline.revolved_stress`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 
 from flexspline.fea.axisymmetric.contact import contact_stiffness
 from flexspline.fea.axisymmetric.lobes import lobe_stiffnesses
 from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.deadline import NO_DEADLINE, Deadline
 from flexspline.fea.types import Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.keys import without_holes
 from flexspline.geometry.material import Material
+from flexspline.geometry.outline import Meridian
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.cache import Cache
@@ -36,6 +38,22 @@ KEPT_PARTS = 512
 
 BEGUN = 2
 """Of them those that may be refined on: both bodies of the newest part, for they hold their meshes."""
+RimSolve = Callable[[Meridian, Elastic, float, Deadline], Iterator[Stiffness]]
+"""K_b of a body of revolution in a load case of its rim, by each mesh until the tolerance is met."""
+
+
+def held_rim(
+    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+) -> Iterator[Stiffness]:
+    """The lobe load, the seat held radially."""
+    return lobe_stiffnesses(outline, material, True, tolerance, deadline)
+
+
+def free_rim(
+    outline: Meridian, material: Elastic, tolerance: float, deadline: Deadline
+) -> Iterator[Stiffness]:
+    """The lobe load, the seat free."""
+    return lobe_stiffnesses(outline, material, False, tolerance, deadline)
 
 
 def revolved(design: Design) -> Design:
@@ -85,12 +103,17 @@ def torsion(part: Part, tolerance: float) -> Stiffness:
 
 def lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
     """K_b under the lobe load; `supported`: the seat may not move radially. Errors as `torsion`."""
-    return _of_holed(part, lambda body: _lobes(body, supported, tolerance))
+    return rim(part, held_rim if supported else free_rim, tolerance)
 
 
-def first_lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
-    """`lobes` on one mesh of each body; to be asked for before it, lest the work is done twice."""
-    return _of_holed(part, lambda body: _begun_lobes(body, supported, tolerance).newest)
+def rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+    """K_b of a load case of the rim. Errors as `torsion`."""
+    return _of_holed(part, lambda body: _rim(body, solve, tolerance))
+
+
+def first_rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+    """`rim` on one mesh of each body; to be asked for before it, lest the work is done twice."""
+    return _of_holed(part, lambda body: _begun(body, solve, tolerance).newest)
 
 
 def contact(part: Part, tolerance: float) -> Stiffness:
@@ -125,15 +148,15 @@ def _torsion(part: Part, tolerance: float) -> Stiffness:
 
 
 @lru_cache(maxsize=KEPT_PARTS)
-def _lobes(part: Part, supported: bool, tolerance: float) -> Stiffness:
-    return _begun_lobes(part, supported, tolerance).last()
+def _rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
+    return _begun(part, solve, tolerance).last()
 
 
 @lru_cache(maxsize=BEGUN)
-def _begun_lobes(part: Part, supported: bool, tolerance: float) -> Refining[Stiffness]:
-    return Refining(lobe_stiffnesses(part.meridian, _elastic(part), supported, tolerance))
+def _begun(part: Part, solve: RimSolve, tolerance: float) -> Refining[Stiffness]:
+    return Refining(solve(part.meridian, _elastic(part), tolerance, NO_DEADLINE))
 
 
 @lru_cache(maxsize=KEPT_PARTS)
 def _contact(part: Part, tolerance: float) -> Stiffness:
-    return contact_stiffness(part.meridian, _elastic(part), _lobes(part, True, tolerance))
+    return contact_stiffness(part.meridian, _elastic(part), _rim(part, held_rim, tolerance))

@@ -15,6 +15,10 @@ REPORT = "report"
 CURVE, LOADS = "gear_torque_angle", "gear_loads"
 """Pictures of the whole gear."""
 ELLIPSE = "wave_generator"
+RENDERED = (*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torque")), ELLIPSE)
+"""Pictures of a run that VTK draws."""
+CHARTS = ("backlash_budget", "torque_angle", "convergence", CURVE, LOADS)
+"""Pictures of a run that matplotlib draws; "convergence" where there is any."""
 GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
 """The folder may hold the result.json of a run of the same design."""
 DIAGNOSIS = "diagnosis"
@@ -34,11 +38,7 @@ def _reports(name: str) -> tuple[str, ...]:
 
 
 ONE_RECORD = (RESULT, PREVIOUS)
-RUN = (
-    *ONE_RECORD, *_reports(REPORT),
-    *_pictures(*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torque")), ELLIPSE),
-    *_pictures("backlash_budget", "torque_angle", "convergence", CURVE, LOADS),
-)  # fmt: skip
+RUN = (*ONE_RECORD, *_reports(REPORT), *_pictures(*RENDERED, *CHARTS))
 GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
 STUDY = (
     "study.db", "study.csv", "study.parquet", BEST_DESIGN, BEST_STRESS, *_reports(REPORT),

@@ -16,6 +16,7 @@ from opengl import why_no_pictures
 from flexspline.geometry.load import load_design
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.schema import json_schema
+from flexspline.results.file_names import CHARTS, RENDERED
 
 ROOT = Path(__file__).parents[1]
 MODULES = sorted(
@@ -24,10 +25,6 @@ MODULES = sorted(
     for p in (ROOT / room).rglob("*.py")
     if ">>>" in p.read_text(encoding="utf-8")
 )
-PICTURES = {
-    "flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator",
-    "backlash_budget", "torque_angle", "gear_torque_angle", "gear_loads",
-}  # fmt: skip
 DESIGNS = sorted((EXAMPLES).glob("*.toml"))
 MARKS = {
     "keyed-shaft": pytest.mark.cad,  # its keyway is cut by the CAD kernel
@@ -110,5 +107,8 @@ def test_example_runs(path: Path, suite_folder: Path, suite_cache: Path) -> None
     )
     assert (run.folder / "report.pdf").stat().st_size > 10_000
     missing = set(result.get("pictures_missing", {}))
-    assert {p.stem for p in run.folder.glob("*.png")} - {"convergence"} == PICTURES - missing
+    drawn = {p.stem for p in run.folder.glob("*.png")}
+    listed = {*RENDERED, *CHARTS}
+    assert drawn | missing | {"convergence"} == listed, "results/file_names.py lists all pictures"
+    assert not drawn & missing
     assert not missing or why_no_pictures()

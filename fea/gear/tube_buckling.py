@@ -13,7 +13,7 @@ from math import pi, sqrt
 from typing import Literal
 
 from flexspline.fea.types import NMM_PER_NM, Elastic
-from flexspline.geometry.shapes import Cup, Hat
+from flexspline.geometry.shapes import Flexspline
 
 LOWER_EDGE_OF_TESTS = 0.67
 """Measured over theory: γ^(3/4) of NASA SP-8007, cylinders in torsion."""
@@ -35,7 +35,7 @@ class Tube:
     material: Elastic
 
     @classmethod
-    def between(cls, flexspline: Cup | Hat, material: Elastic) -> Tube | None:
+    def between(cls, flexspline: Flexspline, material: Elastic) -> Tube | None:
         """Diaphragm and the ring's shoulder; None where they meet."""
         length = flexspline.shoulder_start - flexspline.diaphragm_thickness_mm
         wall = flexspline.wall_thickness_mm

@@ -93,7 +93,7 @@ def _places(design: Design, window: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     """Lower left corners (z, r) of both details: the closed end's corner, the ring's beginning."""
     f = design.flexspline
     inner = f.inner_diameter_mm / 2
-    if f.kind == "cup":
+    if f.inward:
         low = inner + f.ring_thickness_mm - 0.88 * window[1]
     else:
         low = inner - 0.12 * window[1]

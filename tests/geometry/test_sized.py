@@ -11,12 +11,13 @@ from typer.testing import CliRunner
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sanity import warnings
+from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.sized import sized_template, sized_values
 from flexspline.geometry.template import template
 from flexspline.results.cli import app
 
 
-@pytest.mark.parametrize("kind", ["cup", "hat"])
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("size", "ratio"), [(8, 30), (14, 50), (25, 100), (58, 160), (100, 320)])
 def test_every_size_loads_without_a_warning(kind: str, size: float, ratio: int) -> None:
     text = sized_template(kind, size, ratio)

@@ -12,9 +12,9 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.load import design_from
 from flexspline.geometry.sanity import warnings
 from flexspline.geometry.schema import json_schema, resolved
+from flexspline.geometry.shapes import KINDS
 from flexspline.geometry.template import design_text, template
 
-KINDS = ("cup", "hat")
 UNIT = re.compile(r"_(mm|um|GPa|MPa|Nm|deg|pct)$")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+import sys
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -20,6 +21,7 @@ from flexspline.fea.solid.model import Model
 from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import DesignError
 from flexspline.results.cli import app
+from flexspline.results.export import ENDINGS
 from flexspline.results.mesh_files import WRITERS, PatchedMesh, chosen_formats, write_mesh
 
 VOLUME = pi * (OUTER**2 - INNER**2) * LENGTH
@@ -64,10 +66,12 @@ def triangles(found: meshio.Mesh, suffix: str, folder: Path) -> dict[str, np.nda
     elif suffix == "med":
         number = {name: tag for tag, (name,) in found.cell_tags.items()}
         tags = found.cell_data_dict["cell_tags"]["triangle6"]
-    else:
+    elif suffix == "bdf":
         text = (folder / "flexspline.bdf").read_text(encoding="ascii")
         number = {name: int(tag) for tag, name in re.findall(r"property (\d+): (\w+)", text)}
         tags = found.cell_data_dict["nastran:ref"]["triangle6"]
+    else:
+        pytest.fail(f"say in {Path(__file__).name} how {suffix} names the patches")
     return {name: cells[tags == number[name]] for name in AREAS}
 
 
@@ -164,6 +168,35 @@ def test_patches_come_back(suffix: str, whole: PatchedMesh, tmp_path: Path) -> N
 def test_the_body_is_a_group(suffix: str, whole: PatchedMesh, tmp_path: Path) -> None:
     number, tags = body_number(read(whole, suffix, tmp_path), suffix)
     assert (tags == number).all()
+
+
+HALF_WRITTEN = """
+import os, resource, sys
+from pathlib import Path
+from hand_made_tube import tube
+from flexspline.results.mesh_files import PatchedMesh, write_mesh
+
+mesh, path = PatchedMesh.of("flexspline", tube(30.0, 2)), Path(sys.argv[1])
+write_mesh(mesh, path)
+resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size // 2,) * 2)
+try:
+    write_mesh(mesh, path)
+except OSError:
+    os._exit(3)  # HDF5, once it failed, crashes where Python ends
+os._exit(0)
+"""
+
+
+@pytest.mark.parametrize("suffix", EVERY)
+def test_a_disk_full_halfway_is_an_error_or_seen_by_the_end_of_the_file(
+    suffix: str, tmp_path: Path
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", HALF_WRITTEN, str(tmp_path / f"flexspline.{suffix}")],
+        capture_output=True, text=True, check=False, cwd=Path(__file__).parents[1] / "helpers",
+    )  # fmt: skip
+    said = done.returncode == 3
+    assert said or f".{suffix}" in ENDINGS, "ENDINGS of results/export.py: how a whole file ends"
 
 
 @pytest.mark.parametrize("scale", [1e-3, 0.98765432101, 123.456789012])

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from flexspline.geometry.load import design_from
+from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.results.numbers import THIN, beyond, grouped
 from flexspline.results.quantities import QUANTITIES, quantity
 
@@ -37,6 +38,13 @@ def test_every_key_of_the_page_stands_in_the_table_once():
     keys = [q.key for q in QUANTITIES]
     assert len(keys) == len(set(keys))
     assert set(flat(RECORD)) <= set(keys)
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_every_stiffness_has_its_words_in_the_table(figure: str):
+    """A load case without them would be solved, and neither printed nor reported."""
+    assert quantity(f"{figure}_Nm_per_rad").name
+    assert quantity(f"{figure}_bounds_Nm_per_rad").name
 
 
 def test_columns_are_distinct_and_carry_their_unit():

@@ -14,10 +14,9 @@ from page_text import letters, pdf_letters, read_page
 from typer.testing import CliRunner
 
 from flexspline.results.cli import app
+from flexspline.results.file_names import CHARTS, RENDERED
 
 CUP = EXAMPLES / "xb1-40.toml"
-RENDERED = {"flexspline_mesh", "shaft_mesh", "flexspline_torque", "shaft_torque", "wave_generator"}
-CHARTS = {"backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads"}
 SAID = "apt-get install libegl1 libgl1"
 Run = subprocess.CompletedProcess[str]
 
@@ -56,8 +55,8 @@ def test_the_answer_charts_and_reports_come_with_status_0(bare) -> None:
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     assert result == json.loads(done.stdout)
     assert result["K_b_Nm_per_rad"] > 0
-    assert set(result["pictures_missing"]) == RENDERED
-    assert {p.stem for p in folder.glob("*.png")} == CHARTS  # nor an earlier run's pictures
+    assert set(result["pictures_missing"]) == set(RENDERED)
+    assert {p.stem for p in folder.glob("*.png")} == set(CHARTS)  # nor an earlier run's pictures
     assert {"report.pdf", "report.html"} <= {p.name for p in folder.iterdir()}
 
 
@@ -90,7 +89,7 @@ def test_a_missing_picture_is_not_remembered(bare, tmp_path: Path, monkeypatch) 
     assert again.exit_code == 0, again.stderr
     assert "mesh of" not in again.stderr
     assert "pictures_missing" not in json.loads(again.stdout)
-    assert {p.stem for p in tmp_path.glob("*.png")} == RENDERED | CHARTS
+    assert {p.stem for p in tmp_path.glob("*.png")} == {*RENDERED, *CHARTS}
 
 
 def test_the_answer_is_on_disk_before_anything_is_drawn(bare, tmp_path, monkeypatch) -> None:

@@ -116,10 +116,10 @@ def policy_of(attributes):
 
 
 def test_tables_and_pictures_can_be_heard(tmp_path):
-    text = page(content(pictures=blank_pictures(tmp_path)))
-    _, tags, attributes = read_page(text)
+    pictures = blank_pictures(tmp_path)
+    _, tags, attributes = read_page(page(content(pictures=pictures)))
     alts = [v for t, n, v in attributes if t == "img" and n == "alt"]
-    assert len(alts) == tags.count("img") == 10
+    assert len(alts) == tags.count("img") == len(pictures)
     assert all(len(a) > 10 for a in alts)
     assert tags.count("caption") == 5
     assert {v for t, n, v in attributes if (t, n) == ("th", "scope")} == {"col", "row"}
