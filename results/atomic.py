@@ -42,7 +42,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     made: dict[Path, Path] = {}
     try:
         for name, data in files.items():
-            with _named(folder / name):
+            with named(folder / name):
                 made[folder / name] = unfinished(folder, data)
             # mkstemp's 0600 would hide it from the user's colleagues
             os.chmod(made[folder / name], 0o666 & ~UMASK)
@@ -50,7 +50,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
             refuse_fixed(path)
         with held_signals():
             for path, part in made.items():
-                with _named(path):
+                with named(path):
                     os.replace(part, path)
     finally:
         for part in made.values():
@@ -59,7 +59,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
 
 
 @contextmanager
-def _named(path: Path) -> Iterator[None]:
+def named(path: Path) -> Iterator[None]:
     """Faults name the file of the answer; those of a full disk name none, others an unfinished one."""
     try:
         yield

@@ -19,7 +19,7 @@ from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
-from flexspline.results.atomic import write_bytes
+from flexspline.results.atomic import named, write_bytes
 from flexspline.results.mesh_files import PatchedMesh, write_mesh
 
 STL_CHORD_ERROR_MM = 0.01
@@ -103,11 +103,12 @@ def _whole(path: Path, write: Callable[[Path], object]) -> Path:
 
     Raises
     ------
-    ExportError : it is not.
+    ExportError : it is not. OSError : with the scratch file's name.
     """
     with tempfile.TemporaryDirectory(prefix="flexspline-export-") as folder:
         made = Path(folder) / path.name
-        write(made)
+        with named(made):
+            write(made)
         data = made.read_bytes() if made.exists() else b""
         if not _is_whole(data, path.suffix):
             raise ExportError(f"{path.name} was not written whole; is the disk of {folder} full?")

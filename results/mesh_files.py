@@ -130,13 +130,12 @@ def _med(mesh: PatchedMesh, path: Path) -> None:
     MED turns a tetrahedron the other way (Salome, SMESH, "Nodal connectivity of elements"): corners 1 and
     2 exchanged, the middles of the edges with them.
     """
-    import h5py
-
     made = mesh.numbered("cell_tags", sign=-1)  # families of elements have negative numbers
     made.cells[0].data = mesh.tetrahedra[:, MIRRORED_CELL]
     made.cell_tags = {-i: [name] for i, name in mesh.groups}
-    made.write(path, file_format="med")
-    h5py.File(path, "r").close()  # says so where the disk was full
+    whole = io.BytesIO()  # HDF5 crashes where it meets a full disk itself
+    made.write(whole, file_format="med")
+    path.write_bytes(whole.getvalue())
 
 
 def _nastran(mesh: PatchedMesh, path: Path) -> None:
