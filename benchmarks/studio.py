@@ -47,7 +47,7 @@ FIGURES = (
 MEASURES = {
     "first": "K_b, K_e, backlash",
     "all": "K_b at the lobes and wave-generator stress too",
-    "exact": "and that stress to the command line's tolerance",
+    "exact": "and both to the command line's tolerance",
 }
 HARD = next(iter(SLIDERS))
 Times = dict[str, dict[str, list[float]]]
