@@ -12,7 +12,7 @@ from typing import Protocol
 
 from flexspline.fea.types import StressPeak
 
-FARTHER, NEARER = 1.2, 0.5
+FARTHER, NEARER, TWICE = 1.2, 0.5, 2.0
 """Of the distance left out. Solid meshes have edges of about that distance at the edges, and show no rise
 before half of it."""
 FALL_SHARE = 0.015
@@ -48,5 +48,5 @@ def judged(
         " where the linear solution is singular",
         exclusion_mm,
         falls and rises,
-        largest(2 * exclusion_mm),
+        largest(TWICE * exclusion_mm),
     )

@@ -22,7 +22,7 @@ from flexspline.pipeline.packing import packed, unpacked
 from flexspline.pipeline.temporary_files import discard, unfinished
 
 T = TypeVar("T")
-FORMAT = 23
+FORMAT = 24
 """Raise when what a stage means changes, so that old entries are not read."""
 
 
