@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Generic, TypeVar
 
 from flexspline.geometry.errors import ComputationError
@@ -23,14 +23,26 @@ class Refining(Generic[T]):
         self._fault: ComputationError | None = None
         self.newest = next(answers)
 
+    def until(self, enough: Callable[[T], bool]) -> T:
+        """The newest one, refined until it is enough or the last; a fault as of `last`."""
+        while not enough(self.newest) and self._next():
+            pass
+        return self.newest
+
     def last(self) -> T:
         """The one within the tolerance; the fault that ended the refinement is raised each time."""
+        return self.until(lambda answer: False)
+
+    def _next(self) -> bool:
+        """Whether there was one more."""
         if self._fault is not None:
             raise self._fault
         try:
-            for better in self._answers:
-                self.newest = better
+            better = next(self._answers, None)
         except ComputationError as fault:
             self._fault = fault
             raise
-        return self.newest
+        if better is None:
+            return False
+        self.newest = better
+        return True

@@ -38,6 +38,9 @@ KEPT_PARTS = 512
 
 BEGUN = 2
 """Of them those that may be refined on: both bodies of the newest part, for they hold their meshes."""
+FIRST_HALF_WIDTH = 0.03
+"""Of a first answer's bounds, relative. On one mesh those of 6 of 207 extreme designs did not hold, of 5.8 %
+and more; so far, one mesh is enough for 136 of them, all hold, and K is within 1.8 %."""
 RimSolve = Callable[[Meridian, Elastic, float, Deadline], Iterator[Stiffness]]
 """K_b of a body of revolution in a load case of its rim, by each mesh until the tolerance is met."""
 
@@ -112,8 +115,12 @@ def rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
 
 
 def first_rim(part: Part, solve: RimSolve, tolerance: float) -> Stiffness:
-    """`rim` on one mesh of each body; to be asked for before it, lest the work is done twice."""
-    return _of_holed(part, lambda body: _begun(body, solve, tolerance).newest)
+    """`rim` on the first mesh of each body that gives K to FIRST_HALF_WIDTH; to be asked for before it."""
+
+    def enough(found: Stiffness) -> bool:
+        return found.half_width <= FIRST_HALF_WIDTH
+
+    return _of_holed(part, lambda body: _begun(body, solve, tolerance).until(enough))
 
 
 def contact(part: Part, tolerance: float) -> Stiffness:
