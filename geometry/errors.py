@@ -45,7 +45,7 @@ class DesignError(FlexsplineError, ValueError):
         self, key: str, value: object, reason: str, others: Sequence[DesignError] = ()
     ) -> None:
         self.key, self.value, self.reason, self.others = key, value, reason, tuple(others)
-        also = f" (and {len(others)} more)" if others else ""
+        also = f" (and {len(others)} more faults)" if others else ""
         if len(others) == 1:
             also = f"; and {others[0]}"
         super().__init__(f"{self.alone}{also}")

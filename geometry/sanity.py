@@ -143,7 +143,10 @@ def _bolts(design: Design) -> Iterator[str]:
     for key in ("bolt_count", "bolt_circle_diameter_mm", "bolt_hole_diameter_mm"):
         ours, theirs = getattr(f, key), getattr(s, key)
         if f.bolt_count and s.bolt_count and ours != theirs:
-            yield f"flexspline.{key} = {ours:g}, but shaft.{key} = {theirs:g}: they bolt together"
+            yield (
+                f"flexspline.{key} = {ours:g}, but shaft.{key} = {theirs:g}: the two are bolted to each "
+                "other, so make them equal"
+            )
 
 
 def _play_edge(design: Design) -> Iterator[str]:

@@ -136,7 +136,10 @@ def _left_over(outcome: DiagnosisOutcome) -> str:
     if most.rms < STANDS_OUT * outcome.gain.noise_floor:
         return ""
     channel = channel_words(most.channel)
-    return f" Without a name: {structure_words(most)} in {channel}, {most.rms:.2g} {most.unit} rms."
+    rms = f"{most.rms:.2g} {most.unit} rms"
+    return (
+        f" No known cause explains what is left over the {channel}: {structure_words(most)}, {rms}."
+    )
 
 
 def left_out(causes: Sequence[NamedCause]) -> str:

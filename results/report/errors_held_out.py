@@ -28,7 +28,7 @@ def errors_held_out(outcome: DiagnosisOutcome) -> Iterable[Block]:
     if found and share > 0:
         yield Paragraph(
             f"The causes found explain {_percent(share)}\N{NO-BREAK SPACE}% of the mean square error above "
-            "the noise, the least that any model can reach."
+            "the noise; no model can do better than the noise."
         )
 
 

@@ -38,8 +38,8 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
         yield from (f"design {slot}: {line}" for line in lines)
     if others := [str(slot) for slot, lines in said[1:] if lines]:
         yield (
-            f"there are warnings of design {', '.join(others)} too: flexspline run says them, of a design "
-            "file with that row's values of study.csv"
+            f"design {', '.join(others)}: warnings too; to read them, put that row's values of "
+            "study.csv into a design file, and run flexspline run on it"
         )
 
 

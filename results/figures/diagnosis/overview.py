@@ -40,7 +40,7 @@ def write_overview(path: Path, shown: SweepPictureData) -> None:
             first = sign > 0
             above.fill_between(
                 t, line - spread, line + spread, color=PALETTE[0], alpha=0.13, lw=0,
-                label="its stated uncertainty, 1σ" if first and spread.any() else None,
+                label="simulation's stated uncertainty, 1σ" if first and spread.any() else None,
             )  # fmt: skip
             above.plot(t, line, color=PALETTE[0], lw=1.6, label="simulation" if first else None)
             below.fill_between(t, -spread, spread, color=PALETTE[0], alpha=0.13, lw=0)

@@ -73,7 +73,7 @@ def test_a_ring_whose_teeth_do_not_fit_is_said_of_the_best() -> None:
     tooth, others = best_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
     assert tooth.startswith("design 1: tooth-root radius")
     assert "others" not in tooth
-    assert others.startswith("there are warnings of design 2 too: ")
+    assert others.startswith("design 2: warnings too; ")
     assert not list(best_warnings(result_of((0.55, 400.0))))
 
 
