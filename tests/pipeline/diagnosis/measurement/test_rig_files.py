@@ -242,6 +242,17 @@ REFUSED = {
     "spaces": ("torque_Nm angle_arcsec\n1 2\n", "separated by commas, semicolons or tabs"),
     "a number with its unit": ("torque_Nm;angle_arcsec\n" + "1 Nm;2\n" * 9, '"1 Nm" is not a finite number'),
     "a quoted line break": ('torque_Nm,angle_arcsec,remark\n1,2,"a\nb"\n', ":2: a quoted field goes on"),
+    "a quotation mark that never closes":
+        ('torque_Nm,angle_arcsec\n' + '"1",2\n# pause\n' * 9 + '1,"2\n' + "1,2\n" * 9,
+         ":20: a quotation mark opens here and never closes"),
+    "the same in the last line":
+        ('torque_Nm,angle_arcsec\n1,2\n"1,2\n', ":3: a quotation mark opens here and never closes"),
+    "the same in a long file":
+        ('torque_Nm,angle_arcsec\n1,"2\n' + "1,2\n" * 50_000, ":2: a quotation mark opens here and never"),
+    "a quotation mark that the next one closes":
+        ('torque_Nm,angle_arcsec\n1,2\n"1,2\n1,2\n"1",2\n', ":3: a quoted field goes on in the next line"),
+    "letters after a quotation":
+        ('torque_Nm,angle_arcsec\n1,2\n"1"2,2\n', ":3: ',' expected after"),
     "no column known": ("Kraft [N];Weg [mm]\n1;2\n", "the header in line 1 has: Kraft [N], Weg [mm]"),
     "Arabic figures": ("torque_Nm,angle_arcsec\n١,٢\n", "is not a finite number"),
 }  # fmt: skip
