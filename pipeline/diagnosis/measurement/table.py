@@ -20,9 +20,10 @@ from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
 from flexspline.pipeline.diagnosis.measurement.number_text import Mark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
+from flexspline.pipeline.diagnosis.measurement.units import symbol
 
 LARGEST_NUMBER = 1e12
-"""Beyond this no rig reads; a slipped column or exponent does."""
+"""Beyond this no rig reads, in our unit; a slipped column or exponent does."""
 OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
 """Columns that may be empty in every row: nothing was recorded then."""
 
@@ -158,10 +159,7 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) ->
             way = "take the column out" if column.name in OPTIONAL else "leave these rows out"
             what += f" (so are {many} of {len(texts)} rows; fill them, or {way})"
         raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
-    large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
-    if len(large):
-        found = f"{column.head} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
-        raise MeasurementError(grid.path, grid.line[large[0]], found)
+    _refuse_outside(grid, column, values)
     largest = np.abs(values).max()
     if 0 < largest < SMALLEST_NUMBER:
         reason = (
@@ -170,3 +168,15 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) ->
         raise MeasurementError(grid.path, None, reason)
     values = values * column.factor + column.shift
     return np.where(np.abs(values) < SMALLEST_NUMBER, 0.0, values)
+
+
+def _refuse_outside(grid: CellGrid, column: ReadColumn, values: np.ndarray) -> None:
+    """Refuse values that no rig reads; the limit is ours, put into the file's unit."""
+    high = LARGEST_NUMBER / column.factor
+    outside = np.flatnonzero(np.abs(values) > high)
+    if not len(outside):
+        return
+    what = f" is beyond ±{high:g} {symbol(column.unit)}".rstrip()
+    many = f" (the first of {len(outside)} such rows)" if len(outside) > 1 else ""
+    reason = f"{column.head} = {values[outside[0]]:.9g}{many}{what}"
+    raise MeasurementError(grid.path, grid.line[outside[0]], reason)

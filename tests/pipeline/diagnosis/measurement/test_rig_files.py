@@ -149,6 +149,20 @@ def test_kelvin(tmp_path: Path) -> None:
     assert read(tmp_path, data.encode()).history.temperature_C == pytest.approx(21.5, abs=1e-9)
 
 
+@pytest.mark.parametrize(("unit", "per_second"), [("s", 1), ("ms", 1000), ("us", 1_000_000)])
+def test_a_time_since_1970_is_read_in_any_unit(unit: str, per_second: int, tmp_path: Path) -> None:
+    since = 1_700_000_000 * per_second
+    rows = "".join(f"{since + round(t * per_second)},{m},{a}\n" for m, a, t in ROWS if t % 1 == 0)
+    data = f"Timestamp [{unit}],torque_Nm,angle_arcsec\n{rows}"
+    time = read(tmp_path, data.encode()).history.time_s
+    assert time == pytest.approx([1.7e9 + t for t in TIME if t % 1 == 0], rel=1e-15)
+    too_large = f"Timestamp [{unit}],torque_Nm,angle_arcsec\n{1.1e12 * per_second:.0f},1,2\n"
+    with pytest.raises(
+        MeasurementError, match=rf"is beyond ±1e\+{len(str(per_second)) + 11} {unit}$"
+    ):
+        read(tmp_path, too_large.encode())
+
+
 def test_encoder_counts_want_their_number_in_a_turn(tmp_path: Path) -> None:
     rows = "".join(f"{t},{round(10 * a)}\n" for t, a in zip(TORQUE, ANGLE, strict=True))
     data = ("Torque [Nm],Encoder [counts]\n" + rows).encode()
