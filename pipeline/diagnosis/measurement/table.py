@@ -11,7 +11,7 @@ import numpy as np
 
 from flexspline.geometry.errors import DesignFileError
 from flexspline.geometry.load import read_toml
-from flexspline.geometry.ranges import SMALLEST_NUMBER
+from flexspline.geometry.ranges import SMALLEST_NUMBER, TEMPERATURE_C, Range
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
@@ -24,6 +24,8 @@ from flexspline.pipeline.diagnosis.measurement.units import symbol
 
 LARGEST_NUMBER = 1e12
 """Beyond this no rig reads, in our unit; a slipped column or exponent does."""
+LIMITS = {"temperature_C": TEMPERATURE_C}
+"""Of columns, in our unit, where physics knows closer ones."""
 OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
 """Columns that may be empty in every row: nothing was recorded then."""
 
@@ -171,12 +173,17 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) ->
 
 
 def _refuse_outside(grid: CellGrid, column: ReadColumn, values: np.ndarray) -> None:
-    """Refuse values that no rig reads; the limit is ours, put into the file's unit."""
-    high = LARGEST_NUMBER / column.factor
-    outside = np.flatnonzero(np.abs(values) > high)
+    """Refuse values that no rig reads; the limits are ours, put into the file's unit."""
+    limits = LIMITS.get(column.name, Range(-LARGEST_NUMBER, LARGEST_NUMBER))
+    low, high = ((end - column.shift) / column.factor for end in limits)
+    outside = np.flatnonzero((values < low) | (values > high))
     if not len(outside):
         return
-    what = f" is beyond ±{high:g} {symbol(column.unit)}".rstrip()
+    unit = symbol(column.unit)
+    if column.name in LIMITS:
+        what = f": must be {Range(low, high)} {unit}; leave such rows or the column out"
+    else:
+        what = f" is beyond ±{high:g} {unit}".rstrip()
     many = f" (the first of {len(outside)} such rows)" if len(outside) > 1 else ""
     reason = f"{column.head} = {values[outside[0]]:.9g}{many}{what}"
     raise MeasurementError(grid.path, grid.line[outside[0]], reason)

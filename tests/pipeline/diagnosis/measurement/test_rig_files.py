@@ -149,6 +149,23 @@ def test_kelvin(tmp_path: Path) -> None:
     assert read(tmp_path, data.encode()).history.temperature_C == pytest.approx(21.5, abs=1e-9)
 
 
+@pytest.mark.parametrize("unit", ["°C", "K"])
+@pytest.mark.parametrize("celsius", [-273.15, 1000.0])
+def test_a_temperature_s_limits_are_in_the_file_s_unit(
+    unit: str, celsius: float, tmp_path: Path
+) -> None:
+    off = 273.15 if unit == "K" else 0.0
+    low, high = ("0", "1273.15") if unit == "K" else ("-273.15", "1000")
+    head = f"torque_Nm,angle_arcsec,time_s,Temperature [{unit}]\n"
+    at_limit = read(tmp_path, (head + body(end=f",{celsius + off:.2f}\n")).encode())
+    assert at_limit.history.temperature_C == pytest.approx(celsius)
+    beyond = celsius + off + math.copysign(0.01, celsius)
+    with pytest.raises(MeasurementError) as refusal:
+        read(tmp_path, (head + body(end=f",{beyond:.2f}\n")).encode())
+    said = f":2: Temperature [{unit}] = {beyond:.9g} (the first of {len(ROWS)} such rows): must be "
+    assert said + f"from {low} to {high} {unit};" in str(refusal.value)
+
+
 @pytest.mark.parametrize(("unit", "per_second"), [("s", 1), ("ms", 1000), ("us", 1_000_000)])
 def test_a_time_since_1970_is_read_in_any_unit(unit: str, per_second: int, tmp_path: Path) -> None:
     since = 1_700_000_000 * per_second
