@@ -50,6 +50,8 @@ EDGE_mm = Range(1e-3, 1000)
 """As lengths; no part of 10 m is meshed with fewer than ten elements."""
 STIFFNESS_Nm_per_rad = Range(1e-12, 1e15)
 """A cup of 1 mm in soft rubber has some 1e-12, a solid shaft of 10 m in steel 1e14."""
+TEMPERATURE_C = Range(-273.15, 1000)
+"""Absolute zero; far beyond where grease chars and hardened steel turns soft. Broken sensors read more."""
 COUNTS_PER_TURN = Range(1, 1e12)
 """Of an encoder: one mark; absolute ones reach 2³² with a count of 3e-4 arcsec."""
 SMALLEST_ANGLE_arcsec = 1e-6

@@ -21,6 +21,10 @@ LARGEST_BYTES = 200_000_000
 LARGEST_ROWS = 2_000_000
 """Ten readings a second fill them in two days and a half; a fit takes minutes and GB on them."""
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
+GOES_ON = "a quoted field goes on in the next line; close its quotation mark"
+OPEN = "a quotation mark opens here and never closes"
+NEVER_ENDS = "unexpected end of data"
+"""Python's words for the same, at the end of the file."""
 SHEET = "cells of a sheet"
 
 
@@ -164,11 +168,15 @@ def _parsed(path: Path, lines: list[str], numbers: list[int], separator: str) ->
         for row in reader:
             rows.append(row)
             if reader.line_num != len(rows):
-                reason = "a quoted field goes on in the next line; close its quotation mark"
-                raise MeasurementError(path, numbers[len(rows) - 1], reason)
+                raise MeasurementError(path, numbers[len(rows) - 1], GOES_ON)
     except csv.Error as error:
-        at = min(reader.line_num, len(lines)) - 1
-        raise MeasurementError(path, numbers[at], str(error)) from None
+        at = len(rows)  # until here each row is one line
+        reason, goes_on = str(error), reader.line_num > at + 1
+        if reason == NEVER_ENDS or (goes_on and not any('"' in t for t in lines[at + 1 :])):
+            reason = OPEN
+        elif goes_on:
+            reason = GOES_ON
+        raise MeasurementError(path, numbers[at], reason) from None
     return rows
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexspline.geometry.errors import DesignFileError
 from flexspline.geometry.load import read_toml
-from flexspline.geometry.ranges import SMALLEST_NUMBER
+from flexspline.geometry.ranges import SMALLEST_NUMBER, TEMPERATURE_C, Range
 from flexspline.pipeline.diagnosis.measurement.column_names import LABELS
 from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn, columns_of
 from flexspline.pipeline.diagnosis.measurement.decimal_mark import SHOWN, decimal_mark
@@ -20,9 +20,12 @@ from flexspline.pipeline.diagnosis.measurement.grid import CellGrid, read_grid
 from flexspline.pipeline.diagnosis.measurement.number_text import Mark, numbers_of
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.stamped import seconds_from
+from flexspline.pipeline.diagnosis.measurement.units import symbol
 
 LARGEST_NUMBER = 1e12
-"""Beyond this no rig reads; a slipped column or exponent does."""
+"""Beyond this no rig reads, in our unit; a slipped column or exponent does."""
+LIMITS = {"temperature_C": TEMPERATURE_C}
+"""Of columns, in our unit, where physics knows closer ones."""
 OPTIONAL = ("cycle", "time_s", "temperature_C", "input_angle_deg", "stiffness_std_Nm_per_rad")
 """Columns that may be empty in every row: nothing was recorded then."""
 
@@ -158,10 +161,7 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) ->
             way = "take the column out" if column.name in OPTIONAL else "leave these rows out"
             what += f" (so are {many} of {len(texts)} rows; fill them, or {way})"
         raise MeasurementError(grid.path, grid.line[bad], f"{column.head} {what}")
-    large = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
-    if len(large):
-        found = f"{column.head} = {values[large[0]]:g} is beyond ±{LARGEST_NUMBER:g}"
-        raise MeasurementError(grid.path, grid.line[large[0]], found)
+    _refuse_outside(grid, column, values)
     largest = np.abs(values).max()
     if 0 < largest < SMALLEST_NUMBER:
         reason = (
@@ -170,3 +170,20 @@ def _values(grid: CellGrid, column: ReadColumn, texts: list[str], mark: Mark) ->
         raise MeasurementError(grid.path, None, reason)
     values = values * column.factor + column.shift
     return np.where(np.abs(values) < SMALLEST_NUMBER, 0.0, values)
+
+
+def _refuse_outside(grid: CellGrid, column: ReadColumn, values: np.ndarray) -> None:
+    """Refuse values that no rig reads; the limits are ours, put into the file's unit."""
+    limits = LIMITS.get(column.name, Range(-LARGEST_NUMBER, LARGEST_NUMBER))
+    low, high = ((end - column.shift) / column.factor for end in limits)
+    outside = np.flatnonzero((values < low) | (values > high))
+    if not len(outside):
+        return
+    unit = symbol(column.unit)
+    if column.name in LIMITS:
+        what = f": must be {Range(low, high)} {unit}; leave such rows or the column out"
+    else:
+        what = f" is beyond ±{high:g} {unit}".rstrip()
+    many = f" (the first of {len(outside)} such rows)" if len(outside) > 1 else ""
+    reason = f"{column.head} = {values[outside[0]]:.9g}{many}{what}"
+    raise MeasurementError(grid.path, grid.line[outside[0]], reason)

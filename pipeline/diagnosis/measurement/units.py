@@ -154,5 +154,5 @@ def unit_named(name: str, written: str) -> str | None:
 
 
 def symbol(unit: str) -> str:
-    """A unit as it is printed: in·lbf, Nm/rad."""
-    return unit.replace("_per_", "/").replace("_", "·")
+    """A unit as it is printed: in·lbf, Nm/rad, °C."""
+    return "°C" if unit == "C" else unit.replace("_per_", "/").replace("_", "·")

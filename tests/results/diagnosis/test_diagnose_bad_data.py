@@ -37,6 +37,11 @@ BAD = {
     "a number beyond doubles": (rows("torque_Nm,angle_arcsec", *GOOD, "1e999,3"), '"1e999"'),
     "a number beyond any rig": (rows("torque_Nm,angle_arcsec", *GOOD, "1,1e300"), "angle_arcsec = 1e+300"),
     "a cycle beyond any rig": (sweep_of("cycle", [10**9]), ":2: cycle = 1e+09 is beyond"),
+    "a temperature beyond any gear":
+        (sweep_of("temperature_C", [20, 20, 1e8, 20]),
+         ":4: temperature_C = 100000000 (the first of 10 such rows): must be from -273.15 to 1000 °C"),
+    "a sensor's sign of a fault":
+        (sweep_of("temperature_C", [21.5] * 39 + [-999]), ":41: temperature_C = -999: must be from -273.15"),
     "an underscore": (rows("torque_Nm,angle_arcsec", *GOOD, "1_0,3"), '"1_0"'),
     "an empty field": (rows("torque_Nm,angle_arcsec", *GOOD, ",3"), "torque_Nm is empty"),
     "one row": (rows("torque_Nm,angle_arcsec", "0.5,3"), "1 data rows"),

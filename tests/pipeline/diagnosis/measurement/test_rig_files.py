@@ -149,6 +149,37 @@ def test_kelvin(tmp_path: Path) -> None:
     assert read(tmp_path, data.encode()).history.temperature_C == pytest.approx(21.5, abs=1e-9)
 
 
+@pytest.mark.parametrize("unit", ["°C", "K"])
+@pytest.mark.parametrize("celsius", [-273.15, 1000.0])
+def test_a_temperature_s_limits_are_in_the_file_s_unit(
+    unit: str, celsius: float, tmp_path: Path
+) -> None:
+    off = 273.15 if unit == "K" else 0.0
+    low, high = ("0", "1273.15") if unit == "K" else ("-273.15", "1000")
+    head = f"torque_Nm,angle_arcsec,time_s,Temperature [{unit}]\n"
+    at_limit = read(tmp_path, (head + body(end=f",{celsius + off:.2f}\n")).encode())
+    assert at_limit.history.temperature_C == pytest.approx(celsius)
+    beyond = celsius + off + math.copysign(0.01, celsius)
+    with pytest.raises(MeasurementError) as refusal:
+        read(tmp_path, (head + body(end=f",{beyond:.2f}\n")).encode())
+    said = f":2: Temperature [{unit}] = {beyond:.9g} (the first of {len(ROWS)} such rows): must be "
+    assert said + f"from {low} to {high} {unit};" in str(refusal.value)
+
+
+@pytest.mark.parametrize(("unit", "per_second"), [("s", 1), ("ms", 1000), ("us", 1_000_000)])
+def test_a_time_since_1970_is_read_in_any_unit(unit: str, per_second: int, tmp_path: Path) -> None:
+    since = 1_700_000_000 * per_second
+    rows = "".join(f"{since + round(t * per_second)},{m},{a}\n" for m, a, t in ROWS if t % 1 == 0)
+    data = f"Timestamp [{unit}],torque_Nm,angle_arcsec\n{rows}"
+    time = read(tmp_path, data.encode()).history.time_s
+    assert time == pytest.approx([1.7e9 + t for t in TIME if t % 1 == 0], rel=1e-15)
+    too_large = f"Timestamp [{unit}],torque_Nm,angle_arcsec\n{1.1e12 * per_second:.0f},1,2\n"
+    with pytest.raises(
+        MeasurementError, match=rf"is beyond ±1e\+{len(str(per_second)) + 11} {unit}$"
+    ):
+        read(tmp_path, too_large.encode())
+
+
 def test_encoder_counts_want_their_number_in_a_turn(tmp_path: Path) -> None:
     rows = "".join(f"{t},{round(10 * a)}\n" for t, a in zip(TORQUE, ANGLE, strict=True))
     data = ("Torque [Nm],Encoder [counts]\n" + rows).encode()
@@ -242,6 +273,17 @@ REFUSED = {
     "spaces": ("torque_Nm angle_arcsec\n1 2\n", "separated by commas, semicolons or tabs"),
     "a number with its unit": ("torque_Nm;angle_arcsec\n" + "1 Nm;2\n" * 9, '"1 Nm" is not a finite number'),
     "a quoted line break": ('torque_Nm,angle_arcsec,remark\n1,2,"a\nb"\n', ":2: a quoted field goes on"),
+    "a quotation mark that never closes":
+        ('torque_Nm,angle_arcsec\n' + '"1",2\n# pause\n' * 9 + '1,"2\n' + "1,2\n" * 9,
+         ":20: a quotation mark opens here and never closes"),
+    "the same in the last line":
+        ('torque_Nm,angle_arcsec\n1,2\n"1,2\n', ":3: a quotation mark opens here and never closes"),
+    "the same in a long file":
+        ('torque_Nm,angle_arcsec\n1,"2\n' + "1,2\n" * 50_000, ":2: a quotation mark opens here and never"),
+    "a quotation mark that the next one closes":
+        ('torque_Nm,angle_arcsec\n1,2\n"1,2\n1,2\n"1",2\n', ":3: a quoted field goes on in the next line"),
+    "letters after a quotation":
+        ('torque_Nm,angle_arcsec\n1,2\n"1"2,2\n', ":3: ',' expected after"),
     "no column known": ("Kraft [N];Weg [mm]\n1;2\n", "the header in line 1 has: Kraft [N], Weg [mm]"),
     "Arabic figures": ("torque_Nm,angle_arcsec\n١,٢\n", "is not a finite number"),
 }  # fmt: skip
