@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import Tried
+from flexspline.pipeline.diagnosis.sweep.crossing_likelihood import LEAST_WIDTH
 from flexspline.pipeline.diagnosis.sweep.offset_race import SPIKE_NATS
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.step_place import (
@@ -21,7 +22,6 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     looped_functions,
     weighted_fit,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import LEAST_WIDTH
 
 QUADRATURE = ((-3.0, 0.06), (-1.5, 0.24), (0.0, 0.4), (1.5, 0.24), (3.0, 0.06))
 """Standard deviations of the torque's noise, and weights: about a normal of 1.5 deviations, as a width of the
