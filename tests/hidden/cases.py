@@ -175,7 +175,7 @@ def _together(
 def _beside(one: Hidden, others: list[Hidden], bench: Bench) -> Hidden:
     """An effect with the magnitude that docs/contract.md gives it beside the others."""
     for other in others:
-        one = diluted(widened(one, other, bench), other, bench)
+        one = beside_a_spring(diluted(widened(one, other, bench), other, bench), other, bench)
     return one
 
 
@@ -200,6 +200,17 @@ def diluted(share: Hidden, other: Hidden, bench: Bench) -> Hidden:
     gear = bench.gears[0]
     extra = float(other.angle(replace(bench.program, torque=np.ones(1)), gear)[0])
     return replace(share, magnitude=share.magnitude * gear.compliance / (gear.compliance + extra))
+
+
+def beside_a_spring(hardening: Hidden, other: Hidden, bench: Bench) -> Hidden:
+    """The ratio of chord stiffness that a gear shows with a spring in series, which does not harden."""
+    if (hardening.cause, other.cause) != ("stiffness_hardening", "series_compliance"):
+        return hardening
+    gear, peak = bench.gears[0], bench.program.peak
+    ends = replace(bench.program, torque=peak * np.array([0.05, 0.2, 0.8, 1.0]))
+    twist = gear.compliance * ends.torque + hardening.angle(ends, gear) + other.angle(ends, gear)
+    ratio = (0.2 / (twist[3] - twist[2])) / (0.15 / (twist[1] - twist[0]))
+    return replace(hardening, magnitude=float(ratio))
 
 
 def _foreign(rng: np.random.Generator, seed: tuple[int, int], cause: str) -> Case | None:

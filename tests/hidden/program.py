@@ -21,7 +21,7 @@ class Program:
     time : s. torque : N·m, true. progress : cycles done, fractional. cycle : whole number, from 1.
     temperature : °C, of the air. position : deg, where the wave generator is locked.
     rows : indices of the grid that are recorded; the grid may begin before them, at times below 0.
-    hold : s, the shortest hold; 0 where there is none.
+    hold, typical_hold : s, the shortest and the median hold; 0 where there is none.
     quickest : s, the shortest cycle.
     columns : optional columns that the file has.
     """
@@ -34,6 +34,7 @@ class Program:
     position: np.ndarray
     rows: np.ndarray
     hold: float
+    typical_hold: float
     quickest: float
     columns: tuple[str, ...]
     said: str
@@ -123,6 +124,7 @@ def draw_program(plan: Plan, peak: float, rng: np.random.Generator) -> Program:
         position=input_positions(place, n, rng)[cycle],
         rows=np.searchsorted(time, samples),
         hold=float(flats.min()) if len(flats) else 0.0,
+        typical_hold=float(np.median(flats)) if len(flats) else 0.0,
         quickest=float(periods.min()),
         columns=columns,
         said=said,

@@ -23,6 +23,7 @@ def draw_creep(s: Setting, rng: np.random.Generator) -> Hidden:
     percent = s.size(0.7, 1.8, 4.5, rng)
     kernel, law = KERNELS[int(rng.integers(len(KERNELS)))](s.program, rng)
     scale = percent / per_decade(kernel, s.program.hold)
+    percent = scale * per_decade(kernel, s.program.typical_hold)  # docs/contract.md
     taus = np.geomspace(s.program.quickest / 1000, s.program.time[-1] * 3, 22)
     weights = kelvin_chain(kernel, taus, s.program.time[-1])
 

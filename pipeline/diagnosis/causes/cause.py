@@ -147,6 +147,18 @@ class Cause(ABC):
         """Whether refining may go as far as this shape."""
         return True
 
+    def law(self, shape: Shape) -> tuple[float | str, ...]:
+        """What refining a shape leaves as it is: its fixed parameters, and the names of those refined."""
+        fixed = (v for k, v in sorted(shape.items()) if k not in self.tunable)
+        return (*fixed, *(k for k in self.tunable if shape.get(k, 0.0) > 0))
+
+    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
+        """Shapes that differ from this one by twist in proportion to torque alone.
+
+        Beside a spring they fit a record equally, and make it another size.
+        """
+        return []
+
     @abstractmethod
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         """(n, k) angle [arcsec] for one unit of each of the k amplitudes."""

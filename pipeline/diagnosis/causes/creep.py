@@ -82,10 +82,18 @@ class Creep(Cause):
                 found.append({"shortest_s": tau, "longest_s": tau, "exponent": 0.0, "hold_s": hold})
         return found
 
+    def law(self, shape: Shape) -> tuple[float | str, ...]:
+        return (*super().law(shape), "alone" if self._is_alone(shape) else "spread")
+
+    @staticmethod
+    def _is_alone(shape: Shape) -> bool:
+        """Whether it is one Kelvin element; much shorter than a hold that is a lag."""
+        return shape["longest_s"] < ALIKE * shape["shortest_s"]
+
     def possible(self, shape: Shape) -> bool:
         low, high = shape["shortest_s"], shape["longest_s"]
-        alone = high < ALIKE * low  # one Kelvin element; much shorter than a hold it is a lag
-        long_enough = high > (SHORTEST_ALONE if alone else SHORTEST_SPREAD) * shape["hold_s"]
+        least = SHORTEST_ALONE if self._is_alone(shape) else SHORTEST_SPREAD
+        long_enough = high > least * shape["hold_s"]
         return low <= high and long_enough and shape["exponent"] <= STEEPEST
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:

@@ -120,6 +120,11 @@ class FrictionHysteresis(Cause):
             and (shape["loaded"] != GROWING or LEAST_GROWTH <= shape["growth"] <= MOST_GROWTH)
         )
 
+    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
+        if AHEAD in shape or shape.get("loaded", ALIKE) != ALIKE:
+            return []
+        return [{**shape, "held": 1 - shape["held"]}]
+
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return self.columns_of_all([shape], history)[0]
 

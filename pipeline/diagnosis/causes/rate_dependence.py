@@ -84,16 +84,29 @@ class RateDependence(Cause):
         )
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        tau, n = shape["lag_s"], shape["exponent"]
-        torque = steadied(less_jitter(history), shape["deadband_Nm"])
-        rate = (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
+        n, rate = shape["exponent"], self._rate(shape, history)
         if n != 1.0:
             unit = shape["rate_Nm_per_s"]
             rate = unit * np.sign(rate) * np.abs(rate / unit) ** n
         return -rate[:, None]
 
+    @staticmethod
+    def _rate(shape: Shape, history: History) -> np.ndarray:
+        """(n,) of the torque [N·m/s], seen through the lag."""
+        tau = shape["lag_s"]
+        torque = steadied(less_jitter(history), shape["deadband_Nm"])
+        return (torque - lags(torque, history, np.array([tau]))[:, 0]) / tau
+
     def spread(self, shape: Shape, rig: Rig) -> float:
         return self.spread_share * rig.scale_arcsec / shape["rate_Nm_per_s"]
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        return sum(e.amplitudes[0] for e in elements)
+        """By least squares over the rates that the record ran at."""
+        return sum(e.amplitudes[0] * self._per_rate(e.shape, rig.history) for e in elements)
+
+    def _per_rate(self, shape: Shape, history: History) -> float:
+        """Twist per rate of one unit of amplitude."""
+        rate = self._rate(shape, history)
+        if shape["exponent"] == 1.0 or not rate.any():
+            return 1.0
+        return float(-self.columns(shape, history)[:, 0] @ rate / (rate @ rate))

@@ -11,13 +11,15 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 
 DRIFT = "sensor_drift"
 """This cause's id."""
-SATURATION = (0.2, 0.5)
+SATURATION = (0.2, 0.5, 1.2)
 """Settling times as shares of the record, refined."""
 EXPONENTS = (1.0, 0.5, 1.6)
 """Of time: steady, slowing as √t, quickening; refined."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.35, 2.0
 """Of time, when refined: below, half of the drift is over in the first seventh of the record, as after a jump
 at its start; above, half of it comes in the last third, as before a jump at its end."""
+LEAST_SETTLING = 0.2
+"""Of the record, when refined: half of the drift is over in its first seventh, as at the least exponent."""
 SECONDS_PER_HOUR = 3600.0
 """The magnitude is per hour, time is in s."""
 
@@ -52,7 +54,9 @@ class SensorDrift(Cause):
         return found
 
     def possible(self, shape: Shape) -> bool:
-        return LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT and shape["settling_s"] >= 0.0
+        settling = shape["settling_s"] / shape["duration_s"]
+        slow_enough = settling == 0.0 or settling >= LEAST_SETTLING
+        return LEAST_EXPONENT <= shape["exponent"] <= MOST_EXPONENT and slow_enough
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         if history.time_s is None:

@@ -28,6 +28,8 @@ CUBIC_SHARES = (1.0, 5.0)
 twist; refined within LIMITS."""
 SHARES = (0.35, 0.65)
 """Of the soft twist that ends at the first of two knees: the lesser and the greater part; refined."""
+HELD, AT_ZERO = (0, 1, 2), 2
+"""Where the stiffness is as simulated: at the largest torque, on the chord, or at zero."""
 LIMITS = {
     0: (0.1, 0.78),
     1: (0.1, 0.7),
@@ -77,8 +79,8 @@ class StiffnessHardening(Cause):
         found: list[Shape] = [
             {"law": LAWS[law], "parameter": p, "held": held, "largest_torque_Nm": rig.torque_Nm}
             for law, p in laws
-            for held in (0, 1, 2)
-            if not (law == "power" and held == 2)  # infinitely soft at zero
+            for held in HELD
+            if not (law == "power" and held == AT_ZERO)  # infinitely soft at zero
         ]
         found += [
             {
@@ -87,9 +89,14 @@ class StiffnessHardening(Cause):
             }
             for p, q in TWO_KNEES
             for share in SHARES
-            for held in (0, 1, 2)
+            for held in HELD
         ]  # fmt: skip
         return found
+
+    def but_for_a_spring(self, shape: Shape) -> list[Shape]:
+        power = int(shape["law"]) == LAWS["power"]  # infinitely soft at zero
+        others = [h for h in HELD if h != shape["held"] and not (power and h == AT_ZERO)]
+        return [{**shape, "held": held} for held in others]
 
     def possible(self, shape: Shape) -> bool:
         """A law so near to linear, or so steep at zero, that it is another cause, is none of this one."""

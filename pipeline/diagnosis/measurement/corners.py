@@ -102,7 +102,15 @@ def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
     ways = slice(i - way, i), slice(i + 1, i + way + 1)
     if any(np.ptp(t[rows]) == 0 for rows in ways):
         return float(time_s[i])
-    (a, b), (c, d) = (np.polyfit(t[rows], torque_Nm[rows], 1) for rows in ways)
+    (a, b), (c, d) = (_line(t[rows], torque_Nm[rows]) for rows in ways)
     if a == c:
         return float(time_s[i])
     return float(time_s[i] + np.clip((d - b) / (a - c), t[i - 1], t[i + 1]))
+
+
+def _line(t: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """Slope and value at 0 of the nearest straight line (`np.polyfit` takes ten times as long)."""
+    middle, mean = float(t.sum()) / len(t), float(values.sum()) / len(t)
+    off = t - middle
+    slope = float(off @ values) / float(off @ off)
+    return slope, mean - slope * middle

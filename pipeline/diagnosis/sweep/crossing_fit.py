@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import Tried
+from flexspline.pipeline.diagnosis.sweep.crossing_likelihood import LEAST_WIDTH
 from flexspline.pipeline.diagnosis.sweep.offset_race import SPIKE_NATS
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.step_place import (
@@ -21,13 +22,13 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     looped_functions,
     weighted_fit,
 )
-from flexspline.pipeline.diagnosis.sweep.torque_offset import LEAST_WIDTH
 
 QUADRATURE = ((-3.0, 0.06), (-1.5, 0.24), (0.0, 0.4), (1.5, 0.24), (3.0, 0.06))
 """Standard deviations of the torque's noise, and weights: about a normal of 1.5 deviations, as a width of the
 crossing is better taken too large than too small."""
 WEIGHINGS = 3
-"""Fits, each with the weights (Huber's) of the last one's residual."""
+"""Fits, each with weights by the last one's residual: a row pulls the less the farther off it is, as beyond a
+spike it costs no more. Rows on the wrong side of the gap would else bend all that is fitted beside it."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class CrossedRecord:
         for _ in range(WEIGHINGS):
             found = weighted_fit(basis, angle, weight)
             off = np.abs(angle - basis @ found) / deviation
-            weight = 1 / deviation / np.sqrt(np.maximum(1, off / ROBUST_DEVIATIONS))
+            weight = 1 / deviation / np.maximum(1, off / ROBUST_DEVIATIONS)
         if found[0] < LEAST_STEP * self.gap_arcsec:
             return CrossingFit(tried, -np.inf, np.inf)
         # a row that lies anywhere costs what a spike does

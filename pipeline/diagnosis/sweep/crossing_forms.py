@@ -69,7 +69,8 @@ def behind_friction(
 def of_time(history: History, kind: str) -> Iterator[Tried]:
     """Forms of one kind that a time tells: of a late angle, a late torque, or of the twist alone.
 
-    Of "twist" the step is where it should be; the torque reading of "torque" is late.
+    Of "twist" (a first-order lag) and "delayed twist" the step is where it should be; the torque reading
+    of "torque" is late.
     """
     ramp = ramp_s(history)
     times = ramp * np.geomspace(SHORTEST_SHARE, LONGEST_SHARE, TIMES) if ramp > 0 else np.empty(0)
@@ -80,9 +81,9 @@ def late(history: History, kind: str, time_s: float) -> Tried:
     """The form of one kind and time."""
     torque = history.torque_Nm
     lagging = lags(torque, history, np.array([time_s]))[:, 0]
-    if kind == DELAY:
+    if kind in (DELAY, "delayed twist"):
         delayed = torque_read_at(history, -time_s)
-        return Tried(kind, time_s, _sharp(delayed), delayed)
+        return Tried(kind, time_s, _sharp(delayed if kind == DELAY else torque), delayed)
     if kind == FILTER:
         return Tried(kind, time_s, _spread(history, torque, time_s), lagging)
     if kind == BOTH:  # what a filter made of a ramp is the ramp, later by its time

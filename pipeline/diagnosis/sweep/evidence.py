@@ -105,11 +105,11 @@ def with_shapes(
     old: GaussianEvidence, shapes: Sequence[tuple[Regressor, Shape]]
 ) -> GaussianEvidence:
     """The race with further shapes, each beside a term of the same cause; known ones are skipped."""
-    known = {_shape_key(t.owner, t.shape) for t in old.terms}
+    known = {shape_key(t.owner, t.shape) for t in old.terms}
     columns, terms, blocks = old.columns, list(old.terms), []
     width = columns.all.shape[1]
     for like, shape in shapes:
-        key = _shape_key(like.owner, shape)
+        key = shape_key(like.owner, shape)
         if like.cause is None or key in known:
             continue
         known.add(key)
@@ -144,7 +144,8 @@ def with_shapes(
     )
 
 
-def _shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
+def shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
+    """By which two shapes are one, but for rounding."""
     return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
 
 

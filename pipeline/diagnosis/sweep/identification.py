@@ -80,11 +80,16 @@ def identify(search: Search, beside: bool = False) -> Identification:
     held = best.named(evidence) | ahead
     largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
     doubt = SizeDoubt.of(fit)
+
+    def is_sure(cause: str) -> bool:  # of one shape: that it is there is sure where its size is not
+        return known_causes()[cause].exact and nats[cause] >= SECOND_NATS
+
     named = sorted(
         (
             c
             for c in held
-            if c in ahead or (rms[c] >= MINOR_SHARE * largest and doubt.is_significant(c))
+            if c in ahead
+            or (rms[c] >= MINOR_SHARE * largest and (doubt.is_significant(c) or is_sure(c)))
         ),
         key=lambda c: -rms[c],
     )

@@ -49,7 +49,7 @@ IMITATED = (
     "?direction", "?torque_rate", "?torque_Nm", "?angle_arcsec", "?time_s",
 )  # fmt: skip
 """Owners of terms that bend the curve near the gap or open a loop, as a late angle does."""
-OTHERS = ("torque", "twist")
+OTHERS = ("torque", "twist", "delayed twist")
 """Forms of time that are no late angle: a late torque, and a twist that lags while the gap does not."""
 
 

@@ -13,8 +13,8 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, crossing_of
 
 PARTS = 3
 """Of a unit's rows: the place of the crossing in the first is held against that in the last."""
-MOVED_SIGMAS = 5.0
-"""Deviations by which it must differ: each place is known to 2.3 of its own (`torque_offset.UNSURE`)."""
+MOVED_SIGMAS = 4.0
+"""Deviations by which it must differ: chance alone does it once in 16 000 records."""
 MADE_SHARE = 0.5
 """Of the drift between the two parts, what the twist of the moved zero must make."""
 

@@ -15,26 +15,16 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
-from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, loop_tells
 
-SHAPE_NATS = 3.0
-"""Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
-the gear's."""
-FEWEST_WEIGHT_LOGS = 6.0
-"""Sets that count by less than e^−6 = 0.25 % are left out."""
 SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
-NEAR_ZERO = 0.15
-"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
-MOST_SHAPES = 24
-"""Of these sets at most, the likeliest: each is fitted anew for its deviation."""
 
 
 def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
@@ -125,55 +115,3 @@ def _ahead_Nm(explained: ExplainedSweep, cause: str) -> float:
     """Torque that friction takes ahead of the teeth; 0 of other causes."""
     ahead = explained.prepared.ahead if explained.ahead and cause == FRICTION else None
     return ahead.amplitudes[0] if ahead else 0.0
-
-
-def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
-    """Magnitude of each named cause and its standard deviation, doubt of the shapes included."""
-    evidence = identified.search.evidence
-    names = identified.best.named(evidence)
-    alike = sorted(
-        {
-            c.terms: c
-            for c in (*identified.search.tried, identified.best)
-            if c.named(evidence) == names
-            and c.score <= identified.best.score  # others were refused
-        }.values(),
-        key=lambda c: -c.score,
-    )[:MOST_SHAPES]
-    nats = _shape_nats(identified)
-    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
-    weight = np.exp([(c.score - identified.best.score) / nats for c in alike])
-    weight /= weight.sum()
-    each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
-    doubt = identified.size_doubt
-    best = doubt.magnitude
-    std = {}
-    for cause in identified.named:
-        values = np.array([m[cause] for m in each])
-        # their mean distance: one set far off does not make it as wide
-        spread = float(weight @ np.abs(values - best[cause]))
-        std[cause] = hypot(doubt.std[cause], spread)
-    # a loop in proportion to load has no width at T = 0 by its shape alone
-    if FRICTION in std:
-        std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
-    return best, std
-
-
-def _width_std_arcsec(evidence: GaussianEvidence) -> float:
-    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
-    history = evidence.columns.rig.history
-    near = np.abs(history.torque_Nm) < NEAR_ZERO * np.abs(history.torque_Nm).max()
-    rows = max(1, int((near & evidence.kept).sum()))
-    return 2 * evidence.noise.std_arcsec / rows**0.5
-
-
-def _shape_nats(identified: Identification) -> float:
-    """Nats by which one set of shapes is better than another, though neither is the gear's.
-
-    What a law leaves of its best shape, a share s of its length L in the noise's deviations, is worth
-    (s·L)²/2.
-    """
-    doubts = [
-        known_causes()[c].shape_doubt * effect_size(identified.fit, c) for c in identified.named
-    ]
-    return max(SHAPE_NATS, float(np.square(doubts).sum()) / 2)

@@ -7,16 +7,18 @@ under which the best set leaves less again was the misfit of that set: the round
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import log
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -41,6 +43,8 @@ TUNINGS, TUNED_KINDS = 3, 3
 """Rounds of shape tuning; kinds of shapes of a cause that are tuned."""
 
 
+TUNED_LAWS = 2
+"""Sets of the same causes by other laws that are tuned beside the best one."""
 NOISE_ROUNDS = 4
 """At most; records in which noise is found anew more than once are few."""
 NOISE_ALIKE = 0.2
@@ -153,8 +157,8 @@ def with_tuned_shapes(
     named = Search(now, allowed)
     best = named.run()
     for _ in range(TUNINGS):
-        sets = [best.terms, *_alone(named, best)]
-        shapes = [pair for terms in sets if terms for pair in tuned(now, terms).shapes]
+        sets = [best.terms, *_by_other_laws(named, best), *_alone(named, best)]
+        shapes = [pair for terms in sets if terms for pair in _refined(now, terms)]
         wider = with_shapes(now, shapes)
         if wider is now:
             break
@@ -189,6 +193,37 @@ def _alone(search: Search, best: Candidate) -> list[tuple[int, ...]]:
             mine.setdefault(kind, c)
     found |= {c.terms for mine in kinds.values() for c in mine.values()}
     return sorted(found - {best.terms})
+
+
+def _refined(evidence: GaussianEvidence, terms: Sequence[int]) -> list[tuple[Regressor, Shape]]:
+    """The shapes of a set, tuned; where a spring is in it, those too that leave it another size."""
+    found = list(tuned(evidence, terms).shapes)
+    if SERIES in {evidence.terms[i].owner for i in terms}:
+        for term, shape in list(found):
+            if term.cause is not None:
+                found += [(term, other) for other in term.cause.but_for_a_spring(shape)]
+    return found
+
+
+def _by_other_laws(search: Search, best: Candidate) -> list[tuple[int, ...]]:
+    """The best sets of the same causes with another law of one of them or more.
+
+    Which law is best may change once each is tuned, and sizes are as doubtful as other laws make them.
+    """
+    terms = search.evidence.terms
+
+    def laws(c: Candidate) -> set[tuple[object, ...]]:
+        return {terms[i].law for i in c.terms}
+
+    owners, known = best.owners(search.evidence), [laws(best)]
+    found: list[tuple[int, ...]] = []
+    for c in sorted(search.tried, key=lambda c: -c.score):
+        if len(found) == TUNED_LAWS:
+            break
+        if c.owners(search.evidence) == owners and laws(c) not in known:
+            known.append(laws(c))
+            found.append(c.terms)
+    return found
 
 
 def _evidence(prepared: PreparedSweep) -> GaussianEvidence:

@@ -42,6 +42,11 @@ class Regressor:
         return self.cause.id if self.cause else f"?{self.channel}"
 
     @property
+    def law(self) -> tuple[object, ...]:
+        """What refining its shape leaves as it is."""
+        return (self.owner, *(self.cause.law(self.shape) if self.cause else ()))
+
+    @property
     def width(self) -> int:
         """How many columns it has."""
         return int(self.at.stop - self.at.start)

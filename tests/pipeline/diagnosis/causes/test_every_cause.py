@@ -227,3 +227,30 @@ def test_torque_offset_is_the_reading_s() -> None:
     assert offset.magnitude(elements, RIG) == pytest.approx(0.05)
     true = offset.corrected(elements, RIG.history)
     np.testing.assert_allclose(true.torque_Nm, RIG.history.torque_Nm - 0.05)
+
+
+@each_cause
+def test_shapes_that_differ_but_for_a_spring_do(cause: Cause) -> None:
+    """What two of them differ by is in proportion to the torque."""
+    torque = RIG.history.torque_Nm
+    for shape in shapes(cause):
+        own = cause.columns(shape, RIG.history)[:, 0]
+        for other in cause.but_for_a_spring(shape):
+            apart = cause.columns(other, RIG.history)[:, 0] - own
+            slope = apart @ torque / (torque @ torque)
+            assert apart == pytest.approx(slope * torque, abs=1e-9)
+            assert abs(slope) > 1e-3
+
+
+def test_a_steepening_twist_s_rate_dependence_is_that_of_the_record_s_rates() -> None:
+    """Of 3·(q/0.2)² at rates q of 0.2 and 0.4 N·m/s, as many rows each: Σ q³/Σ q² = 0.36 times 3/0.2²."""
+    rate = known_causes()["rate_dependence"]
+    history = sweep(cycles=2, rows=400, hold=0)
+    assert history.time_s is not None
+    steps = np.where(history.cycle == 0, LARGEST / 100 / 0.2, LARGEST / 100 / 0.4)
+    history = replace(history, time_s=np.cumsum(steps))
+    shape = shape_of("rate_dependence", history, exponent=2.0, lag_s=0.01, rate_Nm_per_s=0.2)
+    found = rate.magnitude((Element(shape, (15.0,)),), Rig(PREDICTION, history))
+    assert found == pytest.approx(
+        3 / 0.2**2 * 0.36, rel=0.02
+    )  # corners of the torque are 2 % of the rows

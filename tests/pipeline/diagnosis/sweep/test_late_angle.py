@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hidden.adapter import diagnose
+from hidden.cases import draw_case
 from histories import LARGEST, PREDICTION, triangle
 from read_sweep import as_read
 
@@ -171,3 +173,9 @@ def test_a_filtered_sign_is_exact_between_rows() -> None:
     none = np.zeros(len(time), int)
     found = filtered_side(History(torque, none, none, time), torque, 0.8)
     assert found == pytest.approx(np.interp(time, fine, exact), abs=2e-4)
+
+
+def test_friction_of_a_form_that_no_element_has_is_no_late_reading() -> None:
+    """A staircase; a few rows on the wrong side of the gap bent what stood beside the step to a delay."""
+    found = diagnose(draw_case(1500001, 152))
+    assert [c["id"] for c in found["causes"]] == ["friction_hysteresis"]

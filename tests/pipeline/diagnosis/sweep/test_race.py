@@ -139,7 +139,8 @@ def test_a_crossing_between_rows_is_known_to_no_better_than_they_stand() -> None
         left = 30.0 * np.sign(torque - offset)
         seen = crossing(torque, left, 60.0, 1.0, 0.001)
         assert seen is not None
-        assert seen.std_Nm >= 0.2 / np.sqrt(12) * 0.99
+        # less twice the noise of 0.001 N·m at either row: eight readings there are not all wrong
+        assert seen.std_Nm >= (0.2 - 8 * 0.001) / np.sqrt(12) * 0.99
         assert abs(seen.offset_Nm - offset) < 2 * seen.std_Nm
 
 

@@ -1,0 +1,133 @@
+"""How likely the rows about a crossing of the gap are, if it is crossed at some torque.
+
+A row's true torque is its reading less the place of the crossing and less the reading's noise, and that
+alone says on which side of the gap it lies. So a row's angle is one side's or the other's, each with its
+probability, and not a mean of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import erf, ndtr
+
+from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
+
+MISFIT_RATIO = 1.5
+"""Times the scatter beside the gap: noise is at least this, where the model misses more than noise."""
+IN_GAP = 0.1
+"""Of the rows at the place itself, those in the gap, anywhere in it: a rig rests there before and after its
+cycles, and a record has 10 to 20 rows within the torque's noise of the place."""
+OUTLIER_SHARE = 0.01
+"""Rows that the crossing's model does not claim."""
+SPIKE_REACH = 6.0
+"""Times the noise, beside twice the gap, over which such a row may lie: three deviations either way."""
+LEAST_WIDTH = 1e-4
+"""Of the largest torque: a crossing without torque noise has this width, below any torque cell's digits."""
+FAR_SIDE = 5.0
+"""Widths from the place, beyond which a row's side is sure to one in three million."""
+_nodes, _weights = np.polynomial.hermite_e.hermegauss(15)
+"""Of a normal deviate: no farther apart than one of its deviations, the narrowest crossing."""
+_weights /= _weights.sum()
+
+
+@dataclass(frozen=True)
+class Blur:
+    """What blurs a crossing, in deviations of the torque's noise: the reading, and soft ends of the gap."""
+
+    reading: float
+    ends: float = 0.0
+
+    @property
+    def reach(self) -> float:
+        """Beyond which the side of a row is sure."""
+        return FAR_SIDE * (self.reading + self.ends)
+
+
+BLURS = (Blur(0.5), Blur(1.0), Blur(2.0), Blur(1.0, 1.0), Blur(1.0, 2.0), Blur(1.0, 4.0))
+"""A noise half and twice as large as estimated, and soft ends; all are as likely before the rows are seen."""
+WIDEST = (Blur(2.0), Blur(1.0, 4.0))
+"""Of these, those that see a crossing from farthest: enough to look where it lies."""
+
+
+@dataclass(frozen=True)
+class CrossingRows:
+    """Rows in order of their torque.
+
+    Attributes
+    ----------
+    torque_Nm, left_arcsec : (n,) readings; angle less everything but the gap.
+    noise_arcsec : of the angle. width_Nm : of the torque reading's noise.
+    """
+
+    torque_Nm: np.ndarray
+    left_arcsec: np.ndarray
+    gap_arcsec: float
+    noise_arcsec: float
+    width_Nm: float
+
+    @classmethod
+    def of(
+        cls,
+        torque_Nm: np.ndarray,
+        left_arcsec: np.ndarray,
+        gap_arcsec: float,
+        noise_arcsec: float,
+        width_Nm: float,
+    ) -> CrossingRows:
+        """What the model misses near zero is not evidence of a place: the noise is at least that."""
+        order = np.argsort(torque_Nm)
+        beside = np.abs(np.abs(left_arcsec) - gap_arcsec / 2)
+        noise = max(noise_arcsec, MISFIT_RATIO * SIGMA_PER_MAD * float(np.median(beside)))
+        return cls(torque_Nm[order], left_arcsec[order], gap_arcsec, noise, width_Nm)
+
+    def log_likelihood(self, places_Nm: np.ndarray, blurs: tuple[Blur, ...]) -> np.ndarray:
+        """(p,) of the gap crossed at each place, whichever of the blurs is there."""
+        each = np.array([self._blurred(places_Nm, b) for b in blurs])
+        return np.asarray(np.logaddexp.reduce(each, axis=0) - np.log(len(blurs)))
+
+    def _blurred(self, places_Nm: np.ndarray, blur: Blur) -> np.ndarray:
+        """(p,) with one blur. Rows beyond its reach of every place are summed once, not place by place."""
+        below, above = (
+            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * self.gap_arcsec / 2)))])
+            for side in (-1, 1)
+        )
+        reach = blur.reach * self.width_Nm
+        first = np.searchsorted(self.torque_Nm, places_Nm - reach)
+        last = np.searchsorted(self.torque_Nm, places_Nm + reach)
+        widest = int((last - first).max())
+        at = first[:, None] + np.arange(widest)
+        inside = at < last[:, None]
+        at = np.minimum(at, len(self.torque_Nm) - 1)
+        own = self._own(self.torque_Nm[at] - places_Nm[:, None], self.left_arcsec[at], blur)
+        return np.asarray(
+            below[first]
+            + above[-1]
+            - above[last]
+            + np.where(inside, self._log(own), 0.0).sum(axis=1)
+        )
+
+    def _own(self, beyond_Nm: np.ndarray, left: np.ndarray, blur: Blur) -> np.ndarray:
+        """Density of rows so far beyond the place."""
+        half, beyond = self.gap_arcsec / 2, beyond_Nm / self.width_Nm
+        if blur.ends:
+            true = (beyond[..., None] - blur.reading * _nodes) / blur.ends
+            return self._near(half * erf(true / np.sqrt(2)), left[..., None]) @ _weights
+        z = beyond / blur.reading
+        up, in_gap = ndtr(z), IN_GAP * np.exp(-(z**2) / 2)
+        either = up * self._near(half, left) + (1 - up) * self._near(-half, left)
+        noise = self.noise_arcsec
+        anywhere = (ndtr((left + half) / noise) - ndtr((left - half) / noise)) / self.gap_arcsec
+        return np.asarray((1 - in_gap) * either + in_gap * anywhere)
+
+    def _near(self, mean: np.ndarray | float, left: np.ndarray | None = None) -> np.ndarray:
+        """Normal density of the angles (by default of all rows) about a mean."""
+        off = (self.left_arcsec if left is None else left) - mean
+        noise = self.noise_arcsec
+        return np.asarray(np.exp(-((off / noise) ** 2) / 2) / (np.sqrt(2 * np.pi) * noise))
+
+    def _log(self, own: np.ndarray) -> np.ndarray:
+        """A row that the model does not claim lies anywhere over twice the gap."""
+        other = OUTLIER_SHARE / (2 * self.gap_arcsec + SPIKE_REACH * self.noise_arcsec)
+        return np.asarray(np.log((1 - OUTLIER_SHARE) * own + other))

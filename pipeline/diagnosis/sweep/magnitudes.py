@@ -1,0 +1,105 @@
+"""Magnitudes of what is named, and how far each may be off: all sets that explain the record count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
+from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.search import Candidate
+
+SHAPE_NATS = 3.0
+"""Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
+the gear's."""
+FEWEST_WEIGHT_LOGS = 6.0
+"""Sets that count by less than e^−6 = 0.25 % are left out."""
+NEAR_ZERO = 0.15
+"""Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
+MOST_SHAPES = 24
+"""Of these sets at most, the likeliest: each is fitted anew for its deviation."""
+
+
+def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
+    """Magnitude of each named cause and its standard deviation, doubt of the shapes included."""
+    evidence = identified.search.evidence
+    names = identified.best.named(evidence)
+    alike = sorted(
+        {
+            c.terms: c
+            for c in (*identified.search.tried, identified.best)
+            if c.named(evidence) == names
+            and c.score <= identified.best.score  # others were refused
+        }.values(),
+        key=lambda c: -c.score,
+    )[:MOST_SHAPES]
+    nats = _shape_nats(identified)
+    alike = [c for c in alike if c.score > identified.best.score - FEWEST_WEIGHT_LOGS * nats]
+    weight = np.exp([(c.score - identified.best.score) / nats for c in alike])
+    weight /= weight.sum()
+    each = [fit_regressors(evidence, c.terms).magnitudes() for c in alike]
+    doubt = identified.size_doubt
+    best = doubt.magnitude
+    std = {}
+    for cause in identified.named:
+        values = np.array([m[cause] for m in each])
+        # their mean distance: one set far off does not make it as wide
+        spread = float(weight @ np.abs(values - best[cause]))
+        std[cause] = hypot(doubt.std[cause], spread)
+    if SERIES in std:
+        std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
+    # a loop in proportion to load has no width at T = 0 by its shape alone
+    if FRICTION in std:
+        std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
+    return best, std
+
+
+def _spring_std(identified: Identification, magnitude: float) -> float:
+    """Of a spring's size, by laws of other causes that fit as well and leave it another one.
+
+    Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
+    says.
+    """
+    evidence, best = identified.search.evidence, identified.best
+    found = [identified.search.candidate(t) for t in _but_for_a_spring(evidence, best)]
+    weight = np.exp([min(c.score - best.score, 0.0) for c in found])
+    other = np.array([fit_regressors(evidence, c.terms).magnitudes()[SERIES] for c in found])
+    return float(np.sqrt(weight @ (other - magnitude) ** 2 / (1 + weight.sum())))
+
+
+def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:
+    """Sets with a term's shape replaced by one that leaves the spring another size."""
+    at = {shape_key(t.owner, t.shape): i for i, t in enumerate(evidence.terms)}
+    for place, i in enumerate(best.terms):
+        term = evidence.terms[i]
+        for shape in term.cause.but_for_a_spring(term.shape) if term.cause else ():
+            other = at.get(shape_key(term.owner, shape))
+            if other is not None:
+                yield (*best.terms[:place], other, *best.terms[place + 1 :])
+
+
+def _width_std_arcsec(evidence: GaussianEvidence) -> float:
+    """Of a loop's width at T = 0, as the rows next to it show: a difference of means of half of them each."""
+    history = evidence.columns.rig.history
+    near = np.abs(history.torque_Nm) < NEAR_ZERO * np.abs(history.torque_Nm).max()
+    rows = max(1, int((near & evidence.kept).sum()))
+    return 2 * evidence.noise.std_arcsec / rows**0.5
+
+
+def _shape_nats(identified: Identification) -> float:
+    """Nats by which one set of shapes is better than another, though neither is the gear's.
+
+    What a law leaves of its best shape, a share s of its length L in the noise's deviations, is worth
+    (s·L)²/2.
+    """
+    doubts = [
+        known_causes()[c].shape_doubt * effect_size(identified.fit, c) for c in identified.named
+    ]
+    return max(SHAPE_NATS, float(np.square(doubts).sum()) / 2)
