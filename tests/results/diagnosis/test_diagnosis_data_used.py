@@ -17,6 +17,7 @@ from flexspline.results.cli import app
 
 CUP = EXAMPLES / "xb1-40.toml"
 END_POINTS = EXAMPLES / "measured" / "size-40-end-points.csv"
+SWEEP = EXAMPLES / "measured" / "xb1-40-sweep.csv"
 COMPLIANCE, GAP = 11.343, 72.2
 """arcsec per N·m and arcsec, of the example with the stiffnesses below."""
 SOFTER, WIDER = 0.015, 8.0
@@ -146,3 +147,34 @@ def test_end_points_give_the_gap_common_to_all_units(tmp_path: Path) -> None:
     assert found["gap_std_arcsec"] == pytest.approx(std, abs=0.06)
     assert f"gap {found['gap_arcsec']:.1f} ± " in text_of(tmp_path)
     assert "rows" not in said
+
+
+def sizes(said: dict) -> dict[str, float]:
+    return {cause["id"]: cause["magnitude"] for cause in said["causes"]}
+
+
+@pytest.fixture(scope="module")
+def right(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
+    """Of the sweep as it is."""
+    said = json.loads(diagnosed(SWEEP, tmp_path_factory.mktemp("right"), "--json"))
+    assert said["verdict"] == "named"
+    return sizes(said)
+
+
+@pytest.mark.parametrize("reading", [250.0, 1000.0, -3000.0, 1e6])
+@pytest.mark.parametrize("rows", [(2,), (300,), (300, 301), (575,)])
+def test_wrong_readings_of_any_size_change_no_verdict(
+    rows: tuple[int, ...], reading: float, right: dict[str, float], tmp_path: Path
+) -> None:
+    """One or two of 576: the sizes move by less than 2 %, a deviation of either."""
+    lines = SWEEP.read_text(encoding="utf-8").splitlines()
+    header = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+    for row in rows:
+        words = lines[header + 1 + row].split(",")
+        lines[header + 1 + row] = ",".join([*words[:-1], f"{reading}"])
+    path = tmp_path / "wrong.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    said = json.loads(diagnosed(path, tmp_path / "out", "--json"))
+    assert said["verdict"] == "named"
+    assert sizes(said) == pytest.approx(right, rel=0.02)
+    assert said["rows"]["left_out"].get("outlier", 0) >= len(rows) - 1  # a turn may take one
