@@ -42,7 +42,7 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     made: dict[Path, Path] = {}
     try:
         for name, data in files.items():
-            with named(folder / name):
+            with named(folder / name), held_signals():  # or nobody would know of the file
                 made[folder / name] = unfinished(folder, data)
             # mkstemp's 0600 would hide it from the user's colleagues
             os.chmod(made[folder / name], 0o666 & ~UMASK)

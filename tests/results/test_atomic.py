@@ -2,6 +2,7 @@
 
 import os
 import signal
+import tempfile
 
 import pytest
 
@@ -62,3 +63,17 @@ def test_a_request_to_end_waits_until_all_files_are_in_place(tmp_path, monkeypat
     finally:
         signal.signal(number, before)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["one", "two"]
+
+
+def test_interrupt_while_a_file_is_created_leaves_nothing(tmp_path, monkeypatch):
+    create = tempfile.mkstemp
+
+    def interrupted(*args, **kwargs):
+        made = create(*args, **kwargs)
+        signal.raise_signal(signal.SIGINT)
+        return made
+
+    monkeypatch.setattr(tempfile, "mkstemp", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_together(tmp_path, {"one": b"1", "two": b"2"})
+    assert not list(tmp_path.iterdir())
