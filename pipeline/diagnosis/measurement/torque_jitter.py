@@ -25,6 +25,17 @@ FEWEST_STRAIGHT_ROWS = 4
 """Rows of a straight way: a parabola leaves nothing of three."""
 
 
+READING = ("reading", 0.0)
+"""Key of the reading whose noise a history's torque has."""
+
+
+def behind(reading: History, carried_Nm: np.ndarray) -> History:
+    """The history with the torque that is left behind friction: its noise is the reading's, row by row."""
+    found = replace(reading, torque_Nm=reading.torque_Nm - carried_Nm)
+    found.memo[READING] = reading
+    return found
+
+
 def jitter(history: History, width: int) -> np.ndarray:
     """(n,) torque less a parabola through `width` rows on either side: its noise, and little else.
 
@@ -32,6 +43,9 @@ def jitter(history: History, width: int) -> np.ndarray:
     one, and at the record's ends, as many rows lie on one side. Of a hold between corners it is the torque
     less its mean.
     """
+    reading: History | None = history.memo.get(READING)
+    if reading is not None:
+        return jitter(reading, width)
     key = ("jitter", float(width))
     if key not in history.memo:
         out, corners = np.zeros(len(history)), corners_of(history)

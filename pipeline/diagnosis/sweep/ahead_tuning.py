@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import AHEAD, FRICTION
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import behind
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_history
@@ -118,7 +119,9 @@ class _Trial:
     def columns(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Whitened columns (r, b + k), their prior's precision, and the whitened target (r,)."""
         p, sweep = self.prepared, self.prepared.sweep
-        history = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
+        teeth = known_causes()[FRICTION].at_teeth((self.element(point),), self.true)
+        # found anew from each friction, the noise would take most of the time
+        history = behind(self.true, self.true.torque_Nm - teeth.torque_Nm)
         rig = Rig(p.prediction, history)
         base, prior = base_columns(rig, self.evidence.columns.base[:, -NOISE_COLUMNS:])
         blocks = [base]

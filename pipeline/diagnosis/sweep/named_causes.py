@@ -9,6 +9,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
@@ -20,7 +21,7 @@ from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, loop_tells
+from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
 
 SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
@@ -67,6 +68,8 @@ def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool
     if cause in LOOPS and not told and not (cause == FRICTION and timed and explained.ahead):
         yield LOOPS[cause]
     if cause == FRICTION and SERIES not in identified.named and _stands_for_springs(identified):
+        if at_one_rate_on_ramps(explained.prepared.rig.history):
+            yield RATE  # so does a lag as long as a ramp
         yield SERIES
     if cause == DRIFT and zero_moves(explained):
         yield OFFSET

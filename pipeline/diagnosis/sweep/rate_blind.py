@@ -50,13 +50,23 @@ def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool
     if not timed:
         return False
     history = evidence.columns.rig.history
-    if cycle_rates(history) is not None or len(holds(history)) >= len(history.cycle_slices):
+    if _rates_or_holds(history):
         return True
     owners = best.owners(evidence)
     rubs = FRICTION in owners or evidence.columns.ahead is not None
     if RATE in owners and rates_apart_within(history) < RATES_WITHIN:
         return False
     return not (rubs and RATE in owners) and owners.isdisjoint(UNNAMED_LOOPS)
+
+
+def at_one_rate_on_ramps(history: History) -> bool:
+    """Whether cycles run at one rate, straight and without holds: no row then parts friction from a lag."""
+    return not _rates_or_holds(history) and rates_apart_within(history) < RATES_WITHIN
+
+
+def _rates_or_holds(history: History) -> bool:
+    """Whether cycles differ in rate, or hold the torque, over which a lag goes on and friction does not."""
+    return cycle_rates(history) is not None or len(holds(history)) >= len(history.cycle_slices)
 
 
 def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
