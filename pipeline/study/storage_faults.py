@@ -7,15 +7,18 @@ from contextlib import contextmanager
 
 from flexspline.geometry.errors import ComputationError, one_line
 
+DAMAGED = ("disk image is malformed", "file is not a database")
+"""SQLite's words for a file that no second attempt reads."""
+
 
 class TrialStoreError(ComputationError):
     """The storage of a study does not work: a full disk, a damaged file, a database gone."""
 
     def __init__(self, reason: str) -> None:
-        super().__init__(
-            f"the study's storage does not work: {reason}; what is stored is kept: run the same "
-            "command again to resume"
-        )
+        helps = "what is stored is kept: run the same command again to resume"
+        if any(words in reason for words in DAMAGED):
+            helps = "the file is damaged: move it away, or name another folder with --out"
+        super().__init__(f"the study's storage does not work: {reason}; {helps}")
 
 
 @contextmanager
