@@ -54,7 +54,7 @@ def rim(design: Design, case: RimCase) -> Stiffness:
 
 
 def first_lobes(design: Design) -> Stiffness:
-    """`rim` of "lobes" on the first mesh of each body that gives K to 3 %: mostly one, in half the time."""
+    """`rim` of "lobes" on the first mesh of each body that gives K to 4 %: mostly one, in half the time."""
     part = with_equivalent_ring(design).part("flexspline")
     return first_rim(part, held_rim, design.solver.tolerance)
 

@@ -144,13 +144,13 @@ def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
 
 def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
     wall = CUP.wall_thickness_mm
-    on_ellipse = ellipse_stress(OUTLINE, STEEL, 0.2, wall, 1e-6, clock.deadline(3 * SECONDS_A_MESH))
+    # the second mesh, fine at the borders, has up to six times the triangles: 6^1.5 = 15
+    limit_s = 20 * SECONDS_A_MESH
+    on_ellipse = ellipse_stress(OUTLINE, STEEL, 0.2, wall, 1e-6, clock.deadline(limit_s))
     clock.seconds = 0.0
-    twisted = torsion_stress(
-        OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, clock.deadline(3 * SECONDS_A_MESH)
-    )
+    twisted = torsion_stress(OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, clock.deadline(limit_s))
     for found in (on_ellipse, twisted):
-        assert len(found.levels) == 2
+        assert 2 <= len(found.levels) <= 20
         assert found.peak.mises_MPa == found.levels[-1].mises_MPa
         assert found.peak.shortfall.of_the_machine
 
