@@ -143,14 +143,14 @@ def test_contact_says_what_its_own_held_seat_missed(clock, exact) -> None:
 
 
 def test_peaks_of_the_meshes_until_then(clock: Clock) -> None:
-    wall = CUP.wall_thickness_mm
-    # the second mesh, fine at the borders, has up to six times the triangles: 6^1.5 = 15
-    limit_s = 20 * SECONDS_A_MESH
-    on_ellipse = ellipse_stress(OUTLINE, STEEL, 0.2, wall, 1e-6, clock.deadline(limit_s))
+    away = 3 * CUP.wall_thickness_mm
+    # the second mesh, fine at the borders, has up to 2.3 times the triangles: 2.3^1.5 = 3.5
+    limit_s = 5 * SECONDS_A_MESH
+    on_ellipse = ellipse_stress(OUTLINE, STEEL, 0.2, away, 1e-6, clock.deadline(limit_s))
     clock.seconds = 0.0
-    twisted = torsion_stress(OUTLINE, STEEL, "mesh", 0.5, wall, 1e-6, clock.deadline(limit_s))
+    twisted = torsion_stress(OUTLINE, STEEL, "mesh", 0.5, away, 1e-6, clock.deadline(limit_s))
     for found in (on_ellipse, twisted):
-        assert 2 <= len(found.levels) <= 20
+        assert 2 <= len(found.levels) <= 5
         assert found.peak.mises_MPa == found.levels[-1].mises_MPa
         assert found.peak.shortfall.of_the_machine
 
