@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
+import secrets
 import shutil
 import tempfile
 import time
@@ -29,24 +30,34 @@ def mark() -> str:
     return f"{MARK}{this_process()}-"
 
 
-def unfinished(folder: Path, data: bytes) -> Path:
-    """A new file in `folder`, flushed to the disk, to be moved into place by `os.replace`.
+def unfinished(folder: Path) -> Path:
+    """A name in `folder` for a new file, which is to be moved into place by `os.replace`.
+
+    Who knows the name before the file is there can remove it whenever a signal comes.
+    """
+    clear(folder)
+    return folder / f"{mark()}{secrets.token_hex(8)}.part"
+
+
+def write_unfinished(path: Path, data: bytes) -> None:
+    """Make an `unfinished` file, to be read by this user alone, and flush it to the disk.
 
     Raises
     ------
     OSError : nothing is left behind.
     """
-    clear(folder)
-    handle, name = tempfile.mkstemp(dir=folder, prefix=mark(), suffix=".part")
     try:
-        with os.fdopen(handle, "wb") as out:
+        with open(path, "xb", opener=_private) as out:
             out.write(data)
             out.flush()
             os.fsync(out.fileno())  # a full disk may say so only now
     except BaseException:
-        Path(name).unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
         raise
-    return Path(name)
+
+
+def _private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 @contextmanager

@@ -22,6 +22,7 @@ from flexspline.pipeline.temporary_files import (
     mark,
     scratch_folder,
     unfinished,
+    write_unfinished,
 )
 from flexspline.results.atomic import write_bytes
 from flexspline.results.output_folder import folder_of
@@ -111,7 +112,7 @@ def test_a_write_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        unfinished(tmp_path, b"data")
+        write_unfinished(unfinished(tmp_path), b"data")
     assert list(tmp_path.iterdir()) == []
 
 
