@@ -23,6 +23,12 @@ from flexspline.pipeline.process_id import parsed, this_process
 MARK = ".flexspline-"
 FORGOTTEN_S = 10 * 86_400.0
 """After ten days without a change nobody waits for a file: systemd clears /tmp by the same measure."""
+NO_ROOM = {
+    errno.ENOSPC: "is full",
+    errno.EDQUOT: "is full",
+    errno.EFBIG: "takes no file of this size",
+}
+"""What is wrong with a folder that a file does not fit into."""
 
 
 def mark() -> str:
@@ -62,24 +68,28 @@ def _private(path: str, flags: int) -> int:
 
 @contextmanager
 def scratch_folder(prefix: str) -> Iterator[Path]:
-    """A folder for temporary files that goes in the end. To write there alone, not answers: a full disk is
-    said to be that of the folder for temporary files.
+    """A folder for temporary files that goes in the end. To write there alone, not answers: a full disk, or
+    a limit on the size of files, is said to be that of the folder for temporary files.
 
     Raises
     ------
-    OSError : with that folder's name where the disk is full; a copy's own fault would name its source.
+    OSError : with that folder's name in these cases; a copy's own fault would name its source.
     """
     try:
         with tempfile.TemporaryDirectory(prefix=prefix) as folder:
             yield Path(folder)
     except OSError as fault:
-        above = Path(tempfile.gettempdir())
-        if above.name.startswith(MARK):  # this process's own, which the user does not know
-            above = above.parent
-        if fault.errno not in (errno.ENOSPC, errno.EDQUOT) or fault.filename == str(above):
-            raise  # not full, or said by one within
-        reason = f"{fault.strerror}: the folder for temporary files (TMPDIR) is full"
+        above = temporary_folder()
+        if fault.errno not in NO_ROOM or fault.filename == str(above):
+            raise  # there is room, or said by one within
+        reason = f"{fault.strerror}: the folder for temporary files (TMPDIR) {NO_ROOM[fault.errno]}"
         raise OSError(fault.errno, reason, str(above)) from fault
+
+
+def temporary_folder() -> Path:
+    """The user's folder for temporary files; not this process's own in it, which goes with the process."""
+    folder = Path(tempfile.gettempdir())
+    return folder.parent if folder.name.startswith(MARK) else folder
 
 
 def clear(folder: Path) -> list[Path]:

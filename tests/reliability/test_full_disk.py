@@ -195,6 +195,33 @@ def test_export_and_run(full: Path, plain: Path, tmp_path: Path) -> None:
             assert made.read_bytes().rstrip().endswith(b"END-ISO-10303-21;")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
+@pytest.mark.parametrize("largest", [100, 3_000_000], ids=["of CAD", "of a mesh"])
+def test_a_limit_on_the_size_of_files(largest: int, tmp_path: Path) -> None:
+    """Of CAD's writers, which say nothing of it, and of ours."""
+    import resource
+
+    from flexspline.results.export import ExportError, _whole
+
+    def write(made: Path) -> None:
+        try:
+            made.write_bytes(b"x" * 4_000_000)
+        except OSError:
+            if largest == 100:
+                return
+            raise
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, before[1]))
+    try:
+        with pytest.raises((ExportError, OSError), match=r"\(TMPDIR\)") as said:
+            _whole(tmp_path / "flexspline.stl", write)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert "export-" not in str(said.value)  # a folder that has gone
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.long
 def test_a_full_scratch_disk(full: Path, plain: Path, tmp_path: Path) -> None:
     done = run("export", plain, "--out", tmp_path / "out", cache=tmp_path / "cache", scratch=full)

@@ -91,6 +91,19 @@ def test_a_full_folder_for_temporary_files_is_named(
         raise FileNotFoundError(errno.ENOENT, "No such file or directory", "mesh.png")
 
 
+def test_a_limit_on_the_size_of_files_is_not_said_of_a_hidden_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with (
+        own_scratch(),
+        pytest.raises(OSError, match=r"TMPDIR\) takes no file of this size") as large,
+        scratch_folder("export-") as folder,
+    ):
+        raise OSError(errno.EFBIG, "File too large", str(folder / "flexspline.med"))
+    assert large.value.filename == str(tmp_path)
+
+
 def test_living_processes_and_other_machines_keep_theirs(tmp_path: Path) -> None:
     kept = [
         tmp_path / f"{mark()}mine.part",
