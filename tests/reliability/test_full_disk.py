@@ -21,6 +21,8 @@ from in_process import Ended, flexspline
 from shell import run
 
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.study.load import load_study
+from flexspline.pipeline.study.run import trial_store_of
 
 FREE_BYTES = 24_000
 """Room for result.json and one small picture, not for more."""
@@ -160,6 +162,25 @@ def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> N
     file.write_text(bases.study(tmp_path), encoding="utf-8")
     ended = flexspline("study", file, "--out", there / "out", folder=there)
     failed(ended, "full for a database" if disk == "full" else disk)
+
+
+@pytest.mark.parametrize("bytes_left", [9000, 40_000, "another file"])
+def test_a_study_s_damaged_database(bytes_left: int | str, tmp_path: Path) -> None:
+    """To run the command again would not help, so that is not said."""
+    file = tmp_path / "study.toml"
+    file.write_text(bases.study(tmp_path), encoding="utf-8")
+    own = tmp_path / "out" / "study.db"
+    trial_store_of(load_study(file), own.parent)
+    if isinstance(bytes_left, int):
+        os.truncate(own, bytes_left)
+    else:
+        own.write_bytes(b"not a database\n" * 1000)
+    ended = flexspline("study", file, "--out", own.parent, folder=tmp_path)
+    assert ended.status == 1, ended
+    (line,) = ended.said
+    assert "damaged: move it away, or choose another --out" in line
+    assert "resume" not in line
+    assert str(own) in line
 
 
 @pytest.mark.parametrize("disk", ["full", "read_only"])
