@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.packing import packed, unpacked
-from flexspline.pipeline.temporary_files import discard, unfinished
+from flexspline.pipeline.temporary_files import discard, unfinished, write_unfinished
 
 T = TypeVar("T")
 FORMAT = 24
@@ -136,8 +136,9 @@ class Cache:
         data = packed({"key": key, "value": value})
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            made = unfinished(path.parent, data)
+            made = unfinished(path.parent)
             try:
+                write_unfinished(made, data)
                 os.replace(made, path)
             finally:
                 made.unlink(missing_ok=True)

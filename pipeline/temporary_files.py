@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
+import secrets
 import shutil
 import tempfile
 import time
@@ -22,6 +23,12 @@ from flexspline.pipeline.process_id import parsed, this_process
 MARK = ".flexspline-"
 FORGOTTEN_S = 10 * 86_400.0
 """After ten days without a change nobody waits for a file: systemd clears /tmp by the same measure."""
+NO_ROOM = {
+    errno.ENOSPC: "is full",
+    errno.EDQUOT: "is full",
+    errno.EFBIG: "takes no file of this size",
+}
+"""What is wrong with a folder that a file does not fit into."""
 
 
 def mark() -> str:
@@ -29,46 +36,60 @@ def mark() -> str:
     return f"{MARK}{this_process()}-"
 
 
-def unfinished(folder: Path, data: bytes) -> Path:
-    """A new file in `folder`, flushed to the disk, to be moved into place by `os.replace`.
+def unfinished(folder: Path) -> Path:
+    """A name in `folder` for a new file, which is to be moved into place by `os.replace`.
+
+    Who knows the name before the file is there can remove it whenever a signal comes.
+    """
+    clear(folder)
+    return folder / f"{mark()}{secrets.token_hex(8)}.part"
+
+
+def write_unfinished(path: Path, data: bytes) -> None:
+    """Make an `unfinished` file, to be read by this user alone, and flush it to the disk.
 
     Raises
     ------
     OSError : nothing is left behind.
     """
-    clear(folder)
-    handle, name = tempfile.mkstemp(dir=folder, prefix=mark(), suffix=".part")
     try:
-        with os.fdopen(handle, "wb") as out:
+        with open(path, "xb", opener=_private) as out:
             out.write(data)
             out.flush()
             os.fsync(out.fileno())  # a full disk may say so only now
     except BaseException:
-        Path(name).unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
         raise
-    return Path(name)
+
+
+def _private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 @contextmanager
 def scratch_folder(prefix: str) -> Iterator[Path]:
-    """A folder for temporary files that goes in the end. To write there alone, not answers: a full disk is
-    said to be that of the folder for temporary files.
+    """A folder for temporary files that goes in the end. To write there alone, not answers: a full disk, or
+    a limit on the size of files, is said to be that of the folder for temporary files.
 
     Raises
     ------
-    OSError : with that folder's name where the disk is full; a copy's own fault would name its source.
+    OSError : with that folder's name in these cases; a copy's own fault would name its source.
     """
     try:
         with tempfile.TemporaryDirectory(prefix=prefix) as folder:
             yield Path(folder)
     except OSError as fault:
-        above = Path(tempfile.gettempdir())
-        if above.name.startswith(MARK):  # this process's own, which the user does not know
-            above = above.parent
-        if fault.errno not in (errno.ENOSPC, errno.EDQUOT) or fault.filename == str(above):
-            raise  # not full, or said by one within
-        reason = f"{fault.strerror}: the folder for temporary files (TMPDIR) is full"
+        above = temporary_folder()
+        if fault.errno not in NO_ROOM or fault.filename == str(above):
+            raise  # there is room, or said by one within
+        reason = f"{fault.strerror}: the folder for temporary files (TMPDIR) {NO_ROOM[fault.errno]}"
         raise OSError(fault.errno, reason, str(above)) from fault
+
+
+def temporary_folder() -> Path:
+    """The user's folder for temporary files; not this process's own in it, which goes with the process."""
+    folder = Path(tempfile.gettempdir())
+    return folder.parent if folder.name.startswith(MARK) else folder
 
 
 def clear(folder: Path) -> list[Path]:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from flexspline.geometry.signals import held_signals
-from flexspline.pipeline.temporary_files import unfinished
+from flexspline.pipeline.temporary_files import unfinished, write_unfinished
 
 UMASK = os.umask(0o077)
 """What the user keeps from others; it can be read only by setting it."""
@@ -42,10 +42,11 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     made: dict[Path, Path] = {}
     try:
         for name, data in files.items():
-            with named(folder / name), held_signals():  # or nobody would know of the file
-                made[folder / name] = unfinished(folder, data)
-            # mkstemp's 0600 would hide it from the user's colleagues
-            os.chmod(made[folder / name], 0o666 & ~UMASK)
+            part = made[folder / name] = unfinished(folder)
+            with named(folder / name):
+                write_unfinished(part, data)
+            # its 0600 would hide it from the user's colleagues
+            os.chmod(part, 0o666 & ~UMASK)
         for path in made:  # before the first is moved: an answer is not half replaced
             refuse_fixed(path)
         with held_signals():
@@ -53,8 +54,9 @@ def write_together(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
                 with named(path):
                     os.replace(part, path)
     finally:
-        for part in made.values():
-            part.unlink(missing_ok=True)
+        with held_signals():
+            for part in made.values():
+                part.unlink(missing_ok=True)
     return list(made)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -19,6 +18,7 @@ from flexspline.pipeline.ellipse_peak import ellipse_field
 from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.temporary_files import scratch_folder, temporary_folder
 from flexspline.results.atomic import named, write_bytes
 from flexspline.results.mesh_files import PatchedMesh, write_mesh
 
@@ -103,16 +103,19 @@ def _whole(path: Path, write: Callable[[Path], object]) -> Path:
 
     Raises
     ------
-    ExportError : it is not. OSError : with the scratch file's name.
+    ExportError : it is not. OSError : with the path's name, or that of the folder for temporary files.
     """
-    with tempfile.TemporaryDirectory(prefix="flexspline-export-") as folder:
-        made = Path(folder) / path.name
-        with named(made):
+    with scratch_folder("flexspline-export-") as folder:
+        made = folder / path.name
+        with named(path):
             write(made)
         data = made.read_bytes() if made.exists() else b""
-        if not _is_whole(data, path.suffix):
-            raise ExportError(f"{path.name} was not written whole; is the disk of {folder} full?")
-        write_bytes(path, data)
+    if not _is_whole(data, path.suffix):
+        raise ExportError(
+            f"{path.name} was not written whole; is the folder for temporary files (TMPDIR), "
+            f"{temporary_folder()}, full, or the size of files limited (ulimit -f)?"
+        )
+    write_bytes(path, data)
     return path
 
 

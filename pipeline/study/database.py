@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import DesignError
 from flexspline.pipeline.process_id import this_process
-from flexspline.pipeline.study.storage_faults import said
+from flexspline.pipeline.study.storage_faults import is_damaged, said
 from flexspline.pipeline.study.store import TrialStore
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ def open_trial_store(
         except (SQLAlchemyError, StorageInternalError, ImportError, RuntimeError, OSError) as fault:
             # two processes that make the tables at once: the second finds them on its next try
             again = isinstance(fault, SQLAlchemyError) and not isinstance(fault, ArgumentError)
+            again = again and not is_damaged(fault)
             if attempt == OPENINGS - 1 or not again:
                 raise StorageError(url, said(fault)) from fault
             time.sleep(0.5 * (attempt + 1))

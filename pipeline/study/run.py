@@ -20,7 +20,7 @@ from flexspline.pipeline.study.samplers import sampler_of
 from flexspline.pipeline.study.scatter import ScatterError, scatter_of
 from flexspline.pipeline.study.source import Planned, Sampled, solves_of, study_name
 from flexspline.pipeline.study.start import start_outcome
-from flexspline.pipeline.study.storage_faults import TrialStoreError
+from flexspline.pipeline.study.storage_faults import TrialStoreError, helps
 from flexspline.pipeline.study.store import TrialStore
 from flexspline.pipeline.study.study import Study
 from flexspline.pipeline.study.tolerance import Scattered, scattered
@@ -78,7 +78,7 @@ def trial_store_of(study: Study, folder: Path) -> TrialStore:
     except StorageError as fault:
         if url:
             raise
-        raise TrialStoreError(f"{own}: {fault.cause}") from fault
+        raise TrialStoreError(f"{own}: {fault.cause}", helps(fault)) from fault
 
 
 def whole_study(

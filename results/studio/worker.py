@@ -29,8 +29,13 @@ class Fault:
     message: str
 
 
+ENDED = Fault("", "the process of the fast model ended; move a slider to try again")
+
+
 class Worker:
     """One process; questions queue in the order in which they are asked.
+
+    A question amid which it was killed, as by a system without memory left, is asked once more.
 
     `niceness` lowers its priority, so that a slow question does not slow the quick ones.
     """
@@ -80,6 +85,19 @@ class Worker:
         return await asyncio.shield(asked)
 
     async def _answered(self, question: str, tables: Mapping[str, Any]) -> Any:
+        found = await self._answered_once(question, tables)
+        if found is ENDED and self._was_killed():  # nobody would ask for this figure again
+            return await self._answered_once(question, tables)
+        return found
+
+    def _was_killed(self) -> bool:
+        """Whether the process has ended, but not by `stop`."""
+        if self._process is None:
+            return False
+        self._process.join(1.0)  # its pipe closes a moment before
+        return not self._process.is_alive()
+
+    async def _answered_once(self, question: str, tables: Mapping[str, Any]) -> Any:
         if self._process is None or not self._process.is_alive():
             self.start()
         assert self._pipe is not None
@@ -104,7 +122,7 @@ def _exchange(pipe: Connection, question: str, tables: Mapping[str, Any]) -> Any
         pipe.send((question, tables))
         return pipe.recv()
     except (EOFError, OSError):
-        return Fault("", "the process of the fast model ended; move a slider to try again")
+        return ENDED
 
 
 def serve(pipe: Connection, niceness: int) -> None:

@@ -21,6 +21,8 @@ from in_process import Ended, flexspline
 from shell import run
 
 from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.study.load import load_study
+from flexspline.pipeline.study.run import trial_store_of
 
 FREE_BYTES = 24_000
 """Room for result.json and one small picture, not for more."""
@@ -162,6 +164,25 @@ def test_a_study(disk: str, tmp_path: Path, request: pytest.FixtureRequest) -> N
     failed(ended, "full for a database" if disk == "full" else disk)
 
 
+@pytest.mark.parametrize("bytes_left", [9000, 40_000, "another file"])
+def test_a_study_s_damaged_database(bytes_left: int | str, tmp_path: Path) -> None:
+    """To run the command again would not help, so that is not said."""
+    file = tmp_path / "study.toml"
+    file.write_text(bases.study(tmp_path), encoding="utf-8")
+    own = tmp_path / "out" / "study.db"
+    trial_store_of(load_study(file), own.parent)
+    if isinstance(bytes_left, int):
+        os.truncate(own, bytes_left)
+    else:
+        own.write_bytes(b"not a database\n" * 1000)
+    ended = flexspline("study", file, "--out", own.parent, folder=tmp_path)
+    assert ended.status == 1, ended
+    (line,) = ended.said
+    assert "damaged: move it away, or choose another --out" in line
+    assert "resume" not in line
+    assert str(own) in line
+
+
 @pytest.mark.parametrize("disk", ["full", "read_only"])
 def test_a_cache_without_room_is_no_reason_to_stop(
     disk: str, plain: Path, tmp_path: Path, request: pytest.FixtureRequest
@@ -193,6 +214,33 @@ def test_export_and_run(full: Path, plain: Path, tmp_path: Path) -> None:
         assert [p.name for p in full.rglob("*") if p.name.startswith(".")] == []
         for made in full.rglob("*.step"):
             assert made.read_bytes().rstrip().endswith(b"END-ISO-10303-21;")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
+@pytest.mark.parametrize("largest", [100, 3_000_000], ids=["of CAD", "of a mesh"])
+def test_a_limit_on_the_size_of_files(largest: int, tmp_path: Path) -> None:
+    """Of CAD's writers, which say nothing of it, and of ours."""
+    import resource
+
+    from flexspline.results.export import ExportError, _whole
+
+    def write(made: Path) -> None:
+        try:
+            made.write_bytes(b"x" * 4_000_000)
+        except OSError:
+            if largest == 100:
+                return
+            raise
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, before[1]))
+    try:
+        with pytest.raises((ExportError, OSError), match=r"\(TMPDIR\)") as said:
+            _whole(tmp_path / "flexspline.stl", write)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert "export-" not in str(said.value)  # a folder that has gone
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.long

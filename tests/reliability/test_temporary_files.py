@@ -22,6 +22,7 @@ from flexspline.pipeline.temporary_files import (
     mark,
     scratch_folder,
     unfinished,
+    write_unfinished,
 )
 from flexspline.results.atomic import write_bytes
 from flexspline.results.output_folder import folder_of
@@ -90,6 +91,19 @@ def test_a_full_folder_for_temporary_files_is_named(
         raise FileNotFoundError(errno.ENOENT, "No such file or directory", "mesh.png")
 
 
+def test_a_limit_on_the_size_of_files_is_not_said_of_a_hidden_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with (
+        own_scratch(),
+        pytest.raises(OSError, match=r"TMPDIR\) takes no file of this size") as large,
+        scratch_folder("export-") as folder,
+    ):
+        raise OSError(errno.EFBIG, "File too large", str(folder / "flexspline.med"))
+    assert large.value.filename == str(tmp_path)
+
+
 def test_living_processes_and_other_machines_keep_theirs(tmp_path: Path) -> None:
     kept = [
         tmp_path / f"{mark()}mine.part",
@@ -111,7 +125,7 @@ def test_a_write_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        unfinished(tmp_path, b"data")
+        write_unfinished(unfinished(tmp_path), b"data")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -2,10 +2,10 @@
 
 import os
 import signal
-import tempfile
 
 import pytest
 
+from flexspline.pipeline.cache import Cache
 from flexspline.results.atomic import write_bytes, write_together
 
 
@@ -65,15 +65,52 @@ def test_a_request_to_end_waits_until_all_files_are_in_place(tmp_path, monkeypat
     assert sorted(p.name for p in tmp_path.iterdir()) == ["one", "two"]
 
 
-def test_interrupt_while_a_file_is_created_leaves_nothing(tmp_path, monkeypatch):
-    create = tempfile.mkstemp
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda folder: write_together(folder, {"one": b"1", "two": b"2"}),
+        lambda folder: Cache(folder).get("stage", {}, lambda: 1),
+    ],
+    ids=["answer", "cache"],
+)
+def test_a_request_to_end_as_soon_as_a_file_is_made_leaves_none(
+    tmp_path, monkeypatch, write, number
+):
+    """Before whoever asked for the file has its handle."""
 
-    def interrupted(*args, **kwargs):
-        made = create(*args, **kwargs)
+    def ends(_number, _frame):
+        raise KeyboardInterrupt
+
+    make, before = os.open, signal.signal(number, ends)
+    made = []
+
+    def opened(path, *how, **more):
+        handle = make(path, *how, **more)
+        if str(path).endswith(".part"):
+            made.append(path)
+            os.close(handle)
+            signal.raise_signal(number)
+        return handle
+
+    monkeypatch.setattr(os, "open", opened)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            write(tmp_path)
+    finally:
+        signal.signal(number, before)
+    assert len(made) == 1
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+
+
+def test_a_request_to_end_as_soon_as_a_file_is_written_leaves_none(tmp_path, monkeypatch):
+    """Between its writing and whatever comes next."""
+
+    def written(path, data):
+        path.write_bytes(data)
         signal.raise_signal(signal.SIGINT)
-        return made
 
-    monkeypatch.setattr(tempfile, "mkstemp", interrupted)
+    monkeypatch.setattr("flexspline.results.atomic.write_unfinished", written)
     with pytest.raises(KeyboardInterrupt):
         write_together(tmp_path, {"one": b"1", "two": b"2"})
-    assert not list(tmp_path.iterdir())
+    assert list(tmp_path.iterdir()) == []

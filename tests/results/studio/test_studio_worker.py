@@ -61,6 +61,43 @@ def test_a_worker_that_ended_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
     assert after == before
 
 
+@pytest.mark.parametrize("kills", [1, 2])
+def test_a_question_amid_which_the_worker_was_killed_is_asked_once_more(kills: int) -> None:
+    async def run() -> list[Any]:
+        worker = Worker("tested")
+        try:
+            await worker.ask("torsion", tables(0.4))  # loaded
+            asked = asyncio.create_task(worker.ask("torsion", tables(0.42)))
+            for _ in range(5):  # it has begun
+                await asyncio.sleep(0)
+            killed: set[int] = set()
+            while len(killed) < kills:
+                process = worker._process
+                if process is not None and process.pid is not None and process.pid not in killed:
+                    killed.add(process.pid)
+                    process.kill()
+                await asyncio.sleep(0.001)
+            return [await asked, await worker.ask("torsion", tables(0.42))]
+        finally:
+            worker.stop()
+
+    amid, after = asyncio.run(run())
+    assert amid == (after if kills == 1 else rules.ENDED)
+    assert "K_b_Nm_per_rad" in after
+
+
+def test_a_worker_that_was_stopped_amid_a_question_stays_so() -> None:
+    async def run() -> tuple[Any, Any]:
+        worker = Worker("tested")
+        asked = asyncio.create_task(worker.ask("torsion", tables(0.4)))
+        while worker._process is None:
+            await asyncio.sleep(0.001)
+        worker.stop()
+        return await asked, worker._process
+
+    assert asyncio.run(run()) == (rules.ENDED, None)
+
+
 def test_impossible_designs_come_back_as_faults() -> None:
     from flexspline.results.studio.questions import answer
 
