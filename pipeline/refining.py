@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from threading import Lock
 from typing import Generic, TypeVar
 
 from flexspline.geometry.errors import ComputationError
@@ -11,7 +12,7 @@ T = TypeVar("T")
 
 
 class Refining(Generic[T]):
-    """The answers of finer and finer meshes.
+    """The answers of finer and finer meshes; a thread that asks while another refines waits for it.
 
     Attributes
     ----------
@@ -21,13 +22,15 @@ class Refining(Generic[T]):
     def __init__(self, answers: Iterator[T]) -> None:
         self._answers = answers
         self._fault: ComputationError | None = None
+        self._refines = Lock()
         self.newest = next(answers)
 
     def until(self, enough: Callable[[T], bool]) -> T:
         """The newest one, refined until it is enough or the last; a fault as of `last`."""
-        while not enough(self.newest) and self._next():
-            pass
-        return self.newest
+        with self._refines:
+            while not enough(self.newest) and self._next():
+                pass
+            return self.newest
 
     def last(self) -> T:
         """The one within the tolerance; the fault that ended the refinement is raised each time."""

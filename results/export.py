@@ -42,9 +42,9 @@ def write_exports(
     for part in context.design.parts:
         with context.progress.stage(f"CAD of the whole {part.name}"):
             solid = build_solid(part)
-            done.append(_whole(folder / f"{part.name}.step", partial(write_step, solid)))
+            done.append(write_whole(folder / f"{part.name}.step", partial(write_step, solid)))
             stl = partial(write_stl, solid, chord_error=STL_CHORD_ERROR_MM)
-            done.append(_whole(folder / f"{part.name}.stl", stl))
+            done.append(write_whole(folder / f"{part.name}.stl", stl))
     for model in models:
         done += _write_meshes(model, folder, formats)
         done += [_write_deck(model, folder)] if deck else []
@@ -60,7 +60,7 @@ def write_step_files(design: Design, folder: Path, progress: Progress) -> list[P
     for part in design.parts:
         with progress.stage(f"CAD of the whole {part.name}"):
             step = partial(write_step, build_solid(part))
-            done.append(_whole(folder / f"{part.name}.step", step))
+            done.append(write_whole(folder / f"{part.name}.step", step))
     return done
 
 
@@ -71,7 +71,7 @@ def _write_meshes(part: PartModel, folder: Path, formats: Sequence[str]) -> list
     done = []
     for suffix in formats:
         with part.context.progress.stage(f"{suffix} of the {part.name}"):
-            done.append(_whole(folder / f"{part.name}.{suffix}", partial(write_mesh, mesh)))
+            done.append(write_whole(folder / f"{part.name}.{suffix}", partial(write_mesh, mesh)))
     return done
 
 
@@ -98,7 +98,7 @@ class ExportError(ComputationError):
     """A file that its writer did not finish."""
 
 
-def _whole(path: Path, write: Callable[[Path], object]) -> Path:
+def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
     """Write among the scratch files under the same name, see that it is whole, move it into place.
 
     Raises
@@ -136,4 +136,4 @@ def _write_field(
     with part.context.progress.stage(f"VTU {path.stem}"):
         whole = whole_part(field.mesh, field.displacement, field.mises, parity)
         data = {"displacement_mm": whole.displacement, "von_mises_MPa": whole.mises}
-        return _whole(path, meshio.Mesh(whole.nodes, [("tetra10", whole.cells)], data).write)
+        return write_whole(path, meshio.Mesh(whole.nodes, [("tetra10", whole.cells)], data).write)

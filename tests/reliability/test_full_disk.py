@@ -222,7 +222,7 @@ def test_a_limit_on_the_size_of_files(largest: int, tmp_path: Path) -> None:
     """Of CAD's writers, which say nothing of it, and of ours."""
     import resource
 
-    from flexspline.results.export import ExportError, _whole
+    from flexspline.results.export import ExportError, write_whole
 
     def write(made: Path) -> None:
         try:
@@ -236,7 +236,7 @@ def test_a_limit_on_the_size_of_files(largest: int, tmp_path: Path) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (largest, before[1]))
     try:
         with pytest.raises((ExportError, OSError), match=r"\(TMPDIR\)") as said:
-            _whole(tmp_path / "flexspline.stl", write)
+            write_whole(tmp_path / "flexspline.stl", write)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert "export-" not in str(said.value)  # a folder that has gone
