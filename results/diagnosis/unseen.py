@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.sweep.rate_blind import at_one_rate_on_ramps
 from flexspline.results.diagnosis.channels import channel_words
 
 BOTH_WAYS = 0.05
@@ -19,7 +20,7 @@ WITHOUT = {
 
 
 def unseen_notes(history: History, band_Nm: float) -> list[str]:
-    """Sides, directions and channels that the record lacks; `band_Nm` is the gap's crossing."""
+    """Sides, directions, rates and channels that the record lacks; `band_Nm` is the gap's crossing."""
     found = []
     torque = history.torque_Nm
     if min(np.mean(torque > band_Nm), np.mean(torque < -band_Nm)) < BOTH_WAYS:
@@ -31,6 +32,10 @@ def unseen_notes(history: History, band_Nm: float) -> list[str]:
     if min(np.mean(direction > 0), np.mean(direction < 0)) < BOTH_WAYS:
         found.append(
             "torque never returns: the record does not show friction; sweep back to zero as well"
+        )
+    elif history.time_s is not None and at_one_rate_on_ramps(history):
+        found.append(
+            "all cycles run at one rate: a lag makes the same loop as friction; repeat one ten times slower"
         )
     found += [
         f"{channel_words(channel)} was not recorded: {leaves_open}"

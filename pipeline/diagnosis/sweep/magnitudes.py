@@ -14,7 +14,6 @@ from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
-from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
 
 SHAPE_NATS = 3.0
@@ -26,9 +25,6 @@ NEAR_ZERO = 0.15
 """Of the largest torque: rows within show how wide a loop is at T = 0, whatever shape was found."""
 MOST_SHAPES = 24
 """Of these sets at most, the likeliest: each is fitted anew for its deviation."""
-SHARED_LOOP = 0.41
-"""Of a loop whose rate was never changed, the deviation of a cause's part: with even odds the other cause has
-one, and any part is as likely, √(½·⅓)."""
 
 
 def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, float]]:
@@ -57,9 +53,6 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         # their mean distance: one set far off does not make it as wide
         spread = float(weight @ np.abs(values - best[cause]))
         std[cause] = hypot(doubt.std[cause], spread)
-    if not evidence.columns.ahead and at_one_rate_on_ramps(evidence.columns.rig.history):
-        for loop in std.keys() & LOOPS.keys():
-            std[loop] = hypot(std[loop], SHARED_LOOP * best[loop])
     if SERIES in std:
         std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
     # a loop in proportion to load has no width at T = 0 by its shape alone

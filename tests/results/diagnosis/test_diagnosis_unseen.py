@@ -28,6 +28,15 @@ def test_a_single_ramp_shows_no_friction() -> None:
     assert said(ramp).startswith("torque never returns")
 
 
+def test_ramps_at_one_rate_do_not_tell_friction_from_a_lag() -> None:
+    ramps = sweep(cycles=4, rows=120, hold=0)
+    assert "one rate" in said(ramps)
+    assert ramps.time_s is not None
+    quicker = np.where(ramps.cycle < 2, 1.0, 2.0)
+    steps = np.diff(ramps.time_s, prepend=ramps.time_s[0])
+    assert said(replace(ramps, time_s=np.cumsum(steps / quicker))) == ""
+
+
 def test_channels_that_were_not_recorded_are_named() -> None:
     bare = replace(WHOLE, time_s=None, temperature_C=None, input_angle_deg=None)
     for name in ("time", "temperature", "wave generator angle"):

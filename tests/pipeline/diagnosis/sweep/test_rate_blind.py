@@ -183,22 +183,3 @@ def test_a_loop_that_no_element_of_friction_has_is_no_lag() -> None:
     """Bristles ahead of the teeth, at nine rates: once friction and rate dependence, beyond doubt."""
     found = diagnose(draw_case(980113, 2, "pair", "friction_ahead"))
     assert {c["id"] for c in found["causes"]} == {"friction_hysteresis", "kinematic_error"}
-
-
-@pytest.mark.parametrize("factors", [(1.0,) * 5, (0.4, 2.5, 1.0, 0.4, 2.5)])
-def test_friction_s_size_is_as_doubtful_as_a_lag_s_part_in_its_loop(
-    factors: tuple[float, ...],
-) -> None:
-    """A loop of 3 arcsec of friction and 1.7 of a quick lag: at one rate one of 4.7, once said ± 0.04."""
-    history = at_rates(RAMPS, factors)
-    assert history.time_s is not None
-    rate = np.gradient(history.torque_Nm, history.time_s)
-    usual = 4 * LARGEST / 2000.0  # a cycle of RAMPS takes 2000 s
-    angle = PREDICTION.angle_arcsec(history) + rubbing(history) - 0.85 * rate / usual
-    angle += np.random.default_rng(5).normal(0, NOISE, len(angle))
-    causes = {c.id: c for c in diagnose_sweep(as_read(history, angle), PREDICTION)[0].causes}
-    friction = causes["friction_hysteresis"]
-    assert abs(friction.magnitude - 3.0) < 2 * friction.magnitude_std
-    assert (
-        (friction.magnitude_std < 0.3) == ("rate_dependence" in causes) == (len(set(factors)) > 1)
-    )
