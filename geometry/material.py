@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from flexspline.geometry import ranges
 from flexspline.geometry.fields import DesignTable, within
@@ -43,6 +43,14 @@ class Material(ElasticMaterial):
     def density_stated(self) -> bool:
         """Whether the file gives the density; else it is taken for steel's."""
         return "density_kg_per_m3" in self.model_fields_set
+
+    @model_serializer(mode="wrap")
+    def as_stated(self, dumped: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """A density that the file does not give is not stated by what is made of it either."""
+        tables = dict(dumped(self))
+        if not self.density_stated:
+            del tables["density_kg_per_m3"]
+        return tables
 
 
 BEARING_STEEL = ElasticMaterial(name="100Cr6", youngs_modulus_GPa=208.0, poissons_ratio=0.3)

@@ -1,7 +1,7 @@
 """The fast model of a design: the command line's axisymmetric answers, piece by piece, for the live page.
 
-K_b of a flexspline with bolt holes is enclosed; everything else leaves holes and keyway out (`left_out` says
-so). Every body of revolution is solved exactly as `flexspline stiffness` does, to the design's own tolerance.
+K_b of a flexspline with bolt holes is enclosed; everything else leaves holes and keyway out. Every body of
+revolution is solved exactly as `flexspline stiffness` does, to the design's own tolerance.
 """
 
 from __future__ import annotations
@@ -20,18 +20,6 @@ from flexspline.pipeline.revolved import first_rim, held_rim, stiffness, with_eq
 from flexspline.pipeline.revolved_stress import ellipse_field, first_ellipse_field, torque_field
 from flexspline.pipeline.rim_case import RimCase
 from flexspline.pipeline.stress_limits import StressCase
-
-
-def left_out(design: Design) -> tuple[str, ...]:
-    """What the fast model does not see, in words; empty for bodies of revolution."""
-    found = []
-    for part in design.parts:
-        if part.bolts:
-            known = " (K_b's bounds hold with them)" if part.name == "flexspline" else ""
-            found.append(f"{part.bolts.count} bolt holes of the {part.name}{known}")
-    if design.part("shaft").keyway is not None:
-        found.append("the keyway")
-    return tuple(found)
 
 
 def torsion(design: Design) -> tuple[Stiffness, Stiffness]:

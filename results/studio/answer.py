@@ -15,7 +15,6 @@ from flexspline.pipeline.backlash import (
     backlash,
     series_stiffness,
 )
-from flexspline.pipeline.fast_model import left_out
 from flexspline.pipeline.linear_limit import linear_limit
 from flexspline.pipeline.stiffnesses import FIGURES
 from flexspline.pipeline.stress_limits import PART_OF, limits_passed, share_of_limit
@@ -69,6 +68,18 @@ def message(design: Design, found: Found) -> Message:
         "w0_mm": design.w0_mm,
         **shown,
     }
+
+
+def left_out(design: Design) -> tuple[str, ...]:
+    """What the fast model does not see, in words; empty for bodies of revolution."""
+    found = []
+    for part in design.parts:
+        if part.bolts:
+            known = " (K_b's bounds hold with them)" if part.name == "flexspline" else ""
+            found.append(f"{part.bolts.count} bolt holes of the {part.name}{known}")
+    if design.part("shaft").keyway is not None:
+        found.append("the keyway")
+    return tuple(found)
 
 
 def agreement(design: Design) -> str:

@@ -19,7 +19,6 @@ from typing import Literal
 
 from flexspline.geometry.design import Design
 from flexspline.geometry.template import design_text
-from flexspline.pipeline.fast_model import left_out
 
 Kind = Literal["solid", "report", "step", "diagnose"]
 SERVED = {".pdf": "application/pdf", ".html": "text/html", ".step": "model/step",
@@ -57,7 +56,7 @@ class StudioJob:
         """
         self.folder = tempfile.TemporaryDirectory(prefix="flexspline-studio-")
         at = Path(self.folder.name)
-        if self.kind == "solid" and not left_out(design):
+        if self.kind == "solid" and all(part.is_revolved for part in design.parts):
             # "auto" would solve it as a body of revolution again
             solid = design.solver.model_copy(update={"model": "solid"})
             design = design.model_copy(update={"solver": solid})

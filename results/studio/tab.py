@@ -16,9 +16,8 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.sanity import warnings
 from flexspline.pipeline.bearing_play import BearingPlayDomainError
-from flexspline.pipeline.fast_model import left_out
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
-from flexspline.results.studio.answer import agreement, message
+from flexspline.results.studio.answer import agreement, left_out, message
 from flexspline.results.studio.fields import received
 from flexspline.results.studio.questions import FIRST_LOBES, FIRST_STRESS, GEAR, RIM
 from flexspline.results.studio.worker import Fault, Worker

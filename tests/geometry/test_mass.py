@@ -38,6 +38,8 @@ def test_a_density_that_is_not_stated_is_steels_and_says_so() -> None:
     plain = load_design(EXAMPLES / "xb1-40.toml")
     assert [part.material.density_kg_per_m3 for part in plain.parts] == [7850.0, 7850.0]
     assert not any(part.material.density_stated for part in plain.parts)
+    longer = plain.changed({"flexspline.length_mm": 35.0})
+    assert not any(part.material.density_stated for part in longer.parts)
     # the shaft's material is the flexspline's where it has none of its own, density included
     light = plain.changed({"material.flexspline.density_kg_per_m3": 4430.0})
     assert masses(light).shaft_g == pytest.approx(masses(plain).shaft_g * 4430 / 7850, rel=1e-12)
