@@ -49,7 +49,7 @@ class Material(ElasticMaterial):
         """A density that the file does not give is not stated by what is made of it either."""
         tables = dict(dumped(self))
         if not self.density_stated:
-            del tables["density_kg_per_m3"]
+            tables.pop("density_kg_per_m3", None)  # may be excluded
         return tables
 
 

@@ -43,10 +43,11 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
     sweep, gap = prepared.sweep, prepared.prediction.gap_arcsec
     guess = first_offset(sweep.history, sweep.angle_arcsec, gap, prepared.band_Nm)
     if abs(guess) >= prepared.band_Nm / 2:
-        # the last, or the first, where a few rows are on the wrong side of the place that was found from it
-        for shifted in reversed(_raced_with(prepared, guess)):
-            if gained(shifted, plain) > NAMED_COST:
-                return shifted
+        raced = _raced_with(prepared, guess)
+        if any(gained(shifted, plain) > NAMED_COST for shifted in raced):
+            first, last = raced[0], raced[-1]
+            # a place that was found from the first may leave a few rows on the wrong side of the gap
+            return first if gained(first, last) > NAMED_COST else last
     if seen is not None and _counts(seen, prepared):
         return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
     return plain

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hidden.adapter import diagnose
 from hidden.cases import draw_case
 from hidden.mark import mark
@@ -11,3 +12,11 @@ def test_the_first_place_serves_where_the_last_puts_rows_on_the_wrong_side() -> 
     """A staircase, read 0.316 N·m too low; the place found from its first race, 0.268, passes some rows."""
     found = mark(draw_case(1600001, 55), diagnose)
     assert (found.verdict, found.found) == ("named", ("torque_offset",))
+
+
+@pytest.mark.parametrize(("number", "kind"), [(69, "single"), (497, "single"), (212, "pair")])
+def test_the_last_place_serves_where_no_row_tells_it_from_the_first(number: int, kind: str) -> None:
+    """The first was taken, 35 to 44 % too large: far from zero, more rows tell it from no offset."""
+    found = mark(draw_case(4100001, number, kind), diagnose)
+    (size,) = (s for s in found.sizes if s.cause == "torque_offset")
+    assert size.deviations < 2
