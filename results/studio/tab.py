@@ -1,7 +1,8 @@
 """One browser tab: its newest design, what is known of it, and what is asked next.
 
 Three lanes run side by side, each with a worker of its own: the stiffnesses that follow a slider, the
-picture, and what takes longer. A lane drops what a newer design has made stale, so the newest wins.
+picture, and what takes longer. A lane drops what a newer design has made stale, so the newest wins. No
+stress is refined before the first figures are there: three lanes at work slow each other on two cores.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ Send = Callable[[dict[str, Any] | bytes], Awaitable[None]]
 STILL_S = 0.35
 """The slow questions wait until no slider has moved for so long: they would only delay the others."""
 QUICK = ("torsion", FIRST_LOBES, "K_b_lobes")
+REFINED = frozenset(f"field {view}" for view in STRESS_CASES)
 ROUGH = f"{PEAK_OF['wave_generator']}_rough"
 
 
@@ -52,13 +54,17 @@ class Workers:
 
 @dataclass
 class Wanted:
-    """A design as the tab sent it; `number` grows with each."""
+    """A design as the tab sent it; `number` grows with each.
+
+    `begun` is set when its first figures are there, or a newer design is.
+    """
 
     number: int
     design: Design
     tables: Mapping[str, Any]
     view: str
     found: dict[str, Any] = field(default_factory=dict)
+    begun: asyncio.Event = field(default_factory=asyncio.Event)
 
 
 class Tab:
@@ -111,6 +117,8 @@ class Tab:
             self._set(replace(self._wanted, view=view))
 
     def _set(self, wanted: Wanted) -> None:
+        if self._wanted is not None:
+            self._wanted.begun.set()
         self._wanted = wanted
         for event in self._news:
             event.set()
@@ -135,8 +143,14 @@ class Tab:
                 except TimeoutError:
                     pass
             for question in plan(wanted.view):
+                if question in REFINED:
+                    await wanted.begun.wait()
+                    if self._wanted is not wanted:
+                        break
                 found = await worker.ask(question, wanted.tables)
                 late = self._wanted is not wanted
+                if question == FIRST_LOBES:
+                    wanted.begun.set()
                 if late and (isinstance(found, Fault) or question.startswith("profile")):
                     break
                 # the exact one may be there

@@ -9,6 +9,8 @@ from typing import Any
 import aiohttp.test_utils
 from studio_client import TABLES, heard, want, with_client
 
+from flexspline.results.studio.questions import FIRST_LOBES, FIRST_STRESS
+from flexspline.results.studio.tab import REFINED, STILL_S
 from flexspline.results.studio.worker import Fault, Worker
 
 TABS = 200
@@ -56,5 +58,52 @@ def test_closed_tabs_take_no_turn() -> None:
             worker.free.set()
             assert (await heard(socket))["is"] == "failed"
         assert set(worker.evaluated[begun:]) == {"next"}
+
+    with_client(check, worker=worker)
+
+
+class Asked:
+    """Answers all but what is held, and notes what it was asked, of which design."""
+
+    def __init__(self, *held: str) -> None:
+        self.held = set(held)
+        self.noted: list[tuple[str, str]] = []
+        self.free = asyncio.Event()
+
+    def start(self) -> None: ...
+
+    def stop(self) -> None: ...
+
+    async def ask(self, question: str, tables: Mapping[str, Any]) -> Any:
+        self.noted.append((tables["name"], question))
+        if question in self.held:
+            await self.free.wait()
+        return Fault("", "no figures here")
+
+    async def until(self, name: str, question: str) -> None:
+        async with asyncio.timeout(30):
+            while (name, question) not in self.noted:
+                await asyncio.sleep(0.01)
+
+
+def test_no_stress_is_refined_before_the_first_figures_are_there() -> None:
+    worker = Asked(FIRST_LOBES)
+
+    async def check(client: aiohttp.test_utils.TestClient) -> None:
+        async with client.ws_connect("/live") as socket:
+            await heard(socket)
+            await socket.send_str(want(1, {**TABLES, "name": "one"}))
+            await worker.until("one", FIRST_LOBES)
+            await worker.until("one", FIRST_STRESS)
+            await asyncio.sleep(2 * STILL_S)
+            refined = {("one", question) for question in REFINED}
+            assert refined.isdisjoint(worker.noted)
+            # a newer design: nothing more of the one before is asked
+            await socket.send_str(want(2, {**TABLES, "name": "two"}))
+            await worker.until("two", FIRST_STRESS)
+            worker.free.set()
+            await worker.until("two", "field wave_generator")
+            await worker.until("two", "field shaft_torque")
+            assert refined.isdisjoint(worker.noted)
 
     with_client(check, worker=worker)
