@@ -52,7 +52,7 @@ MEASURES = {
 HARD = next(iter(SLIDERS))
 Times = dict[str, dict[str, list[float]]]
 """Milliseconds by group of sliders and by what was waited for."""
-DEMAND_MS = 300
+DEMAND_MS = 150
 BUSY = "The load is other work on the machine: a quiet one answers sooner. To be measured again."
 MARKS = "<!-- measured: benchmarks/studio.py --write -->", "<!-- end of measured -->"
 
@@ -135,12 +135,12 @@ def page(found: dict[str, Times], version: str) -> str:
             lines.append(f"| {name} | {group} | {len(times['all'])} | {cells} |")
     whole = statistics.median(ms for g in found.values() for t in g.values() for ms in t["all"])
     hardest = max(statistics.median(groups[HARD]["all"]) for groups in found.values())
-    met = "met" if whole <= DEMAND_MS else "not met"
+    met = "met" if hardest <= DEMAND_MS else "not met"
     load = os.getloadavg()[0]
     return "\n".join([
         "Milliseconds from the move to the figures, median (90 of 100 within):", "", *lines, "",
-        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress and backlash included: {met} over all moves",
-        f"({whole:.0f} ms), {hardest:.0f} ms where it is hardest. {cpu()}, {os.cpu_count()} cores,",
+        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress and backlash included: {met} where it is hardest",
+        f"({hardest:.0f} ms); {whole:.0f} ms over all moves. {cpu()}, {os.cpu_count()} cores,",
         f"load average {load:.1f};",
         f"headless Chromium {version}, which draws on the same cores for want of a graphics card.",
         *([BUSY] if load > (os.cpu_count() or 1) else []),
