@@ -139,8 +139,8 @@ def page(found: dict[str, Times], version: str) -> str:
     load = os.getloadavg()[0]
     return "\n".join([
         "Milliseconds from the move to the figures, median (90 of 100 within):", "", *lines, "",
-        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress, backlash included: {met} where it is hardest",
-        f"({hardest:.0f} ms); {whole:.0f} ms over all moves. {cpu()}, {os.cpu_count()} cores,",
+        f"Demanded: {DEMAND_MS} ms at the median, lobes, stress, backlash included: {met}, hardest:",
+        f"{hardest:.0f} ms; over all moves {whole:.0f} ms. {cpu()}, {os.cpu_count()} cores,",
         f"load average {load:.1f};",
         f"headless Chromium {version}, which draws on the same cores for want of a graphics card.",
         *([BUSY] if load > (os.cpu_count() or 1) else []),
