@@ -1,10 +1,10 @@
 """How long `flexspline stiffness` takes on random designs.
 
-    python benchmarks/stiffness_at_random.py [first [count]]
+    python benchmarks/stiffness_at_random.py [first [count [at once]]]
 
 The designs of the reliability tests (`tests/helpers/random_designs.py`), those that load, from number
-`first` on; one after the other, each with an empty cache. A line of JSON each, then how many kept within
-the demands.
+`first` on, so many `at once` (one without it), each with an empty cache. A line of JSON each, then how
+many kept within the demands.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import count, islice
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ from flexspline.geometry.load import design_from
 sys.path.insert(0, str(ROOT / "tests" / "helpers"))
 from random_designs import design_of, toml  # type: ignore[import-not-found]
 
-FIRST, COUNT = 800_000, 100
+FIRST, COUNT, AT_ONCE = 800_000, 100, 1
 """Beyond the numbers that the tests use."""
 USUAL_S, LONGEST_S, MOST_MB = 15.0, 90.0, 2048
 """What is demanded of 95 in 100, and of all."""
@@ -69,11 +70,12 @@ def timed(number: int, text: str, design: Design) -> dict[str, Any]:
 
 def main() -> None:
     given = [int(word) for word in sys.argv[1:]]
-    first, number = [*given, *(FIRST, COUNT)[len(given) :]]
+    first, number, at_once = [*given, *(FIRST, COUNT, AT_ONCE)[len(given) :]]
     rows = []
-    for drawn in islice(designs(first), number):
-        rows.append(timed(*drawn))
-        print(json.dumps(rows[-1]), flush=True)
+    with ThreadPoolExecutor(at_once) as pool:
+        for row in pool.map(lambda drawn: timed(*drawn), islice(designs(first), number)):
+            rows.append(row)
+            print(json.dumps(row), flush=True)
     usual = sum(r["wall_s"] <= USUAL_S for r in rows)
     late = sum(r["wall_s"] > LONGEST_S for r in rows)
     large = sum(r["peak_MB"] > MOST_MB for r in rows)
