@@ -10,6 +10,8 @@ from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
+from flexspline.pipeline.diagnosis.measurement.units import symbol
+from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
@@ -45,12 +47,34 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     else:
         inputs = ()
     return (
+        *_wrong_readings(diagnosis),
         *_ratios(diagnosis.causes),
         *reading_notes(diagnosis.measurement.read_as),
         *against,
         *inputs,
         *_of_kind(diagnosis),
     )
+
+
+def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
+    """Readings taken as wrong: column, numbers and lines in the file."""
+    measured = diagnosis.measurement
+    if not isinstance(measured, Sweep):
+        return []
+    return [_wrong_words(wrong) for wrong in measured.wrong]
+
+
+def _wrong_words(wrong: WrongReadings) -> str:
+    s = "s" * (len(wrong.lines) > 1)
+    numbers = listed((f"{v:.9g}" for v in dict.fromkeys(wrong.values)), "numbers")
+    where = f"line{s} {listed(wrong.lines, 'lines')}"
+    what = f"{heads([wrong.head])} = {numbers} {symbol(wrong.unit)}".rstrip()
+    after = (
+        f"the row{s} {'are' if s else 'is'} left out"
+        if wrong.rows_left_out
+        else "a straight line between the readings before and after is taken instead"
+    )
+    return f"{what} in {where}, far from all other readings, is taken as a fault of the sensor: {after}"
 
 
 def _ratios(causes: Iterable[NamedCause]) -> list[str]:
