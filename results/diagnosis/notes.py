@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
@@ -16,6 +17,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
@@ -121,10 +123,28 @@ def _sweep_notes(explained: ExplainedSweep) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
+    found += _lag_notes(explained)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
+
+
+def _lag_notes(explained: ExplainedSweep) -> list[str]:
+    """That the gap follows the temperature late, where the model has it so."""
+    lag = thermal_lag(explained.identified)
+    if lag is None:
+        return []
+    times = " and ".join(f"{s:.3g}" for s in lag.lags_s)
+    said = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
+    if lag.stages > 1:
+        said += ", twice in a row"
+    if lag.warmer_K:
+        way = "warmer" if lag.warmer_K > 0 else "colder"
+        said += f", and began {abs(lag.warmer_K):.2g} K {way} than the reading"
+    if not lag.shown:
+        said += "; without a lag this record is explained nearly as well"
+    return [said]
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:

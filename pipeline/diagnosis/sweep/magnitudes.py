@@ -10,12 +10,14 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
+from flexspline.pipeline.diagnosis.sweep.thermal_lag import lag_std
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
@@ -60,6 +62,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if not evidence.columns.ahead and at_one_rate_on_ramps(evidence.columns.rig.history):
         for loop in std.keys() & LOOPS.keys():
             std[loop] = hypot(std[loop], SHARED_LOOP * best[loop])
+    if THERMAL in std:
+        std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
         std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
     # a loop in proportion to load has no width at T = 0 by its shape alone
