@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.geometry.listed import listed
-from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
-from flexspline.pipeline.diagnosis.measurement.units import symbol
-from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
-from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
-from flexspline.results.diagnosis.reading import heads, reading_notes
+from flexspline.results.diagnosis.reading import heads, reading_notes, wrong_notes
+from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
 from flexspline.results.numbers import grouped
@@ -63,20 +60,7 @@ def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
     measured = diagnosis.measurement
     if not isinstance(measured, Sweep):
         return []
-    return [_wrong_words(wrong) for wrong in measured.wrong]
-
-
-def _wrong_words(wrong: WrongReadings) -> str:
-    s = "s" * (len(wrong.lines) > 1)
-    numbers = listed((f"{v:.9g}" for v in dict.fromkeys(wrong.values)), "numbers")
-    where = f"line{s} {listed(wrong.lines, 'lines')}"
-    what = f"{heads([wrong.head])} = {numbers} {symbol(wrong.unit)}".rstrip()
-    after = (
-        f"the row{s} {'are' if s else 'is'} left out"
-        if wrong.rows_left_out
-        else "a straight line between the readings before and after is taken instead"
-    )
-    return f"{what} in {where}, far from all other readings, is taken as a fault of the sensor: {after}"
+    return wrong_notes(measured.wrong)
 
 
 def _ratios(causes: Iterable[NamedCause]) -> list[str]:
@@ -92,7 +76,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
         measured = diagnosis.measurement
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
-        return (*_sweep_notes(diagnosis.sweep.explained), *of_record)
+        return (*_sweep_notes(diagnosis.sweep.explained, diagnosis.causes), *of_record)
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
         of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
         return (*end_point_notes(diagnosis.end_points), *of_race)
@@ -119,32 +103,16 @@ def record_notes(sweep: Sweep) -> list[str]:
     return found
 
 
-def _sweep_notes(explained: ExplainedSweep) -> list[str]:
+def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
-    found += _lag_notes(explained)
+    found += lag_notes(explained.identified)
+    found += drift_notes(causes)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
-
-
-def _lag_notes(explained: ExplainedSweep) -> list[str]:
-    """That the gap follows the temperature late, where the model has it so."""
-    lag = thermal_lag(explained.identified)
-    if lag is None:
-        return []
-    times = " and ".join(f"{s:.3g}" for s in lag.lags_s)
-    said = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
-    if lag.stages > 1:
-        said += ", twice in a row"
-    if lag.warmer_K:
-        way = "warmer" if lag.warmer_K > 0 else "colder"
-        said += f", and began {abs(lag.warmer_K):.2g} K {way} than the reading"
-    if not lag.shown:
-        said += "; without a lag this record is explained nearly as well"
-    return [said]
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:
