@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
@@ -36,7 +37,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
         "compared with the simulated curve of the whole gear, which leaves its chord by up to "
-        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec",
+        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction),
     )  # fmt: skip
     found = diagnosis.gear_inputs
     if found is not None:
@@ -53,6 +54,14 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
         *inputs,
         *_of_kind(diagnosis),
     )
+
+
+def _scaled(prediction: Prediction) -> str:
+    """That the curve of the record bends less or more, as its slope is; "" where it bends as simulated."""
+    if prediction.bend is None or prediction.measured_bend is None:
+        return ""
+    most = max(map(abs, prediction.measured_bend.angle_arcsec))
+    return f"; this record's by {most:.3g} arcsec, by the same factor as its slope"
 
 
 def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
