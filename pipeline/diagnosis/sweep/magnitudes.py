@@ -10,9 +10,11 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps
@@ -62,6 +64,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     if not evidence.columns.ahead and at_one_rate_on_ramps(evidence.columns.rig.history):
         for loop in std.keys() & LOOPS.keys():
             std[loop] = hypot(std[loop], SHARED_LOOP * best[loop])
+    if HARDENING in std:
+        std[HARDENING] = hypot(std[HARDENING], hardening_std(identified.fit))
     if THERMAL in std:
         std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
