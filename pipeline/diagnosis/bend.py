@@ -18,6 +18,10 @@ class Bend:
     torque_Nm: tuple[float, ...]
     angle_arcsec: tuple[float, ...]
 
+    def scaled(self, factor: float) -> Bend:
+        """The bend of a gear that is so many times softer all over."""
+        return Bend(self.torque_Nm, tuple(factor * a for a in self.angle_arcsec))
+
     def at(self, torque_Nm: np.ndarray) -> np.ndarray:
         """(n,) arcsec."""
         known, angle = np.array(self.torque_Nm), np.array(self.angle_arcsec)

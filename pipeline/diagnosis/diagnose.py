@@ -126,8 +126,9 @@ def diagnose_measurement(
         largest = float(np.abs(measurement.history.torque_Nm).max())
         if largest > 0:
             from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
+            from flexspline.pipeline.diagnosis.whole_gear.scaled_bend import with_scaled_bend
 
-            prediction = against_gear(prediction, chain, largest)
+            prediction = with_scaled_bend(against_gear(prediction, chain, largest), measurement)
     refuse_absurd(measurement, prediction, K_b, K_e, given)
     if isinstance(measurement, Sweep):
         outcome, behind = diagnose_sweep(measurement, prediction)

@@ -40,6 +40,8 @@ class NamedCause:
     """Of friction: the torque that it takes ahead of the teeth, so that gap and elasticity see the rest."""
     widest_arcsec: float | None = None
     """Of friction: the closed loop's width where it is widest; the magnitude is that at T = 0."""
+    or_temperature: bool = False
+    """Of a drift: the zero may as well follow the temperature, which no cause has the name of."""
     none: float | None = None
     """The magnitude of no effect, of causes that only specimens show; of others their class states it."""
 
@@ -123,6 +125,7 @@ DoingKind = Literal[
     "other_ends",
     "closed_sweep",
     "closed_sweeps",
+    "temperatures_in_other_order",
 ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
@@ -25,6 +25,8 @@ class Prediction:
     compliance, compliance_std : [arcsec per N·m], 1/K_e + 1/K_b.
     gap_arcsec, gap_std_arcsec : the whole angular gap at 20 °C.
     bend : how the curve leaves the line, where the whole gear is computed; None: it is straight.
+    measured_bend : how a record's curve leaves its own line, where it is the simulated bend scaled as its
+        slope is (`whole_gear/scaled_bend.py`); None: as simulated.
     """
 
     compliance: float
@@ -32,11 +34,19 @@ class Prediction:
     gap_arcsec: float
     gap_std_arcsec: float
     bend: Bend | None = None
+    measured_bend: Bend | None = None
 
     def angle_arcsec(self, history: History) -> np.ndarray:
         """(n,) predicted angle, with zero θ0."""
         angle = history.torque_Nm * self.compliance + history.sign * self.gap_arcsec / 2
         return angle if self.bend is None else angle + self.bend.at(history.torque_Nm)
+
+    @property
+    def for_race(self) -> Prediction:
+        """What a race begins with: the line as simulated, the bend as measured."""
+        if self.measured_bend is None:
+            return self
+        return replace(self, bend=self.measured_bend, measured_bend=None)
 
     def scale_arcsec(self, torque_Nm: float) -> float:
         """Size of the predicted angle at a torque: a natural unit for effects of unknown size."""

@@ -26,13 +26,16 @@ COMPARE = (
     "compare the filters of the torque and the angle channel, and whether both are read at one instant; then "
     "repeat the sweep ten times slower: "
 )
+OTHER_ORDER = (
+    "repeat the sweep at the same temperatures in another order, soaked, wave generator untouched: what "
+    "comes with time does not follow the temperature"
+)
 SHOWS_STRUCTURE = {
     "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; what "
     "repeats belongs to the gear, and how it grows with the amplitude says what it may be",
     "torque_amplitude": "sweep to a quarter, half and all of the largest torque, each twice",
     "torque_rate": "repeat the sweep ten times slower and ten times faster",
-    "temperature_C": "repeat the sweep at the same temperatures in another order, soaked, wave generator "
-    "untouched: what comes with time does not follow the temperature",
+    "temperature_C": OTHER_ORDER,
     "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
@@ -67,6 +70,7 @@ DOING: Mapping[DoingKind, str] = {
     "closed_sweep": "a closed torque sweep 0 → +T → 0 → −T → 0, twice, at T = {torques} N·m",
     "closed_sweeps": "closed torque sweeps 0 → +T → 0 → −T → 0, loading and unloading recorded, at T = "
     "{torques} N·m",
+    "temperatures_in_other_order": OTHER_ORDER,
 }
 """What a rig is to do."""
 

@@ -43,7 +43,9 @@ def data_record(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def _rows(prepared: PreparedSweep) -> dict[str, Any]:
     counts, averaging = prepared.row_counts, prepared.sweep.averaging
-    record: dict[str, Any] = {"read": counts.total if averaging is None else averaging.rows_read}
+    wrong = sum(w.rows_left_out for w in prepared.sweep.wrong)
+    measured = counts.total if averaging is None else averaging.rows_read
+    record: dict[str, Any] = {"read": measured + wrong}
     if averaging is not None:
         record |= {"averaged": averaging.rows_averaged, "means": counts.total}
     return record | {
@@ -52,7 +54,7 @@ def _rows(prepared: PreparedSweep) -> dict[str, Any]:
             "backlash_crossing": counts.crossing,
             "torque_reversal": counts.turning,
             "before_first_reversal": counts.settling,
-            "outlier": counts.outliers,
+            "outlier": counts.outliers + wrong,
         },
     }
 

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from flexspline.geometry.errors import ComputationError, why_of
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.with_stiffness import diagnose_with_stiffness
 from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.files import write_diagnosis
 from flexspline.results.diagnosis.record import diagnosis_record
+from flexspline.results.diagnosis.summary import summary, verdict_heading
 from flexspline.results.job import Job
 from flexspline.results.records import as_json
+
+
+class UnwrittenError(ComputationError):
+    """A diagnosis that is known and could not be written: why, and the verdict in words, on one line."""
+
+    def __init__(self, fault: OSError, found: Diagnosis) -> None:
+        verdict = f"{verdict_heading(found)} ({found.verdict}). {summary(found)}"
+        super().__init__(f"{why_of(fault)}; no file was written. The verdict: {verdict}")
 
 
 def diagnose_and_write(
@@ -28,6 +39,7 @@ def diagnose_and_write(
     Raises
     ------
     DesignError, ComputationError, MeasurementError
+    UnwrittenError : the files could not be written, on a full disk; it says the verdict.
     """
     found, used = diagnose_with_stiffness(
         job.design,
@@ -41,5 +53,8 @@ def diagnose_and_write(
     )
     record = diagnosis_record(found)
     with job.progress.stage("figures and report"):
-        write_diagnosis(job.folder, found, record, used, (job.file,))
+        try:
+            write_diagnosis(job.folder, found, record, used, (job.file,))
+        except OSError as fault:
+            raise UnwrittenError(fault, found) from fault
     return as_json(record) if json else diagnosis_table(found, job.folder)

@@ -11,13 +11,15 @@ from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes
-from flexspline.results.diagnosis.reading import heads, reading_notes
+from flexspline.results.diagnosis.reading import heads, reading_notes, wrong_notes
+from flexspline.results.diagnosis.temperature_notes import drift_notes, lag_notes
 from flexspline.results.diagnosis.unseen import unseen_notes
 from flexspline.results.diagnosis.words import plus_minus, ratio_words, title_of
 from flexspline.results.numbers import grouped
@@ -35,7 +37,7 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     bend = diagnosis.prediction.bend
     against = () if bend is None else (
         "compared with the simulated curve of the whole gear, which leaves its chord by up to "
-        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec",
+        f"{max(map(abs, bend.angle_arcsec)):.3g} arcsec" + _scaled(diagnosis.prediction),
     )  # fmt: skip
     found = diagnosis.gear_inputs
     if found is not None:
@@ -45,12 +47,29 @@ def notes(diagnosis: Diagnosis) -> tuple[str, ...]:
     else:
         inputs = ()
     return (
+        *_wrong_readings(diagnosis),
         *_ratios(diagnosis.causes),
         *reading_notes(diagnosis.measurement.read_as),
         *against,
         *inputs,
         *_of_kind(diagnosis),
     )
+
+
+def _scaled(prediction: Prediction) -> str:
+    """That the curve of the record bends less or more, as its slope is; "" where it bends as simulated."""
+    if prediction.bend is None or prediction.measured_bend is None:
+        return ""
+    most = max(map(abs, prediction.measured_bend.angle_arcsec))
+    return f"; this record's by {most:.3g} arcsec, by the same factor as its slope"
+
+
+def _wrong_readings(diagnosis: Diagnosis) -> list[str]:
+    """Readings taken as wrong: column, numbers and lines in the file."""
+    measured = diagnosis.measurement
+    if not isinstance(measured, Sweep):
+        return []
+    return wrong_notes(measured.wrong)
 
 
 def _ratios(causes: Iterable[NamedCause]) -> list[str]:
@@ -66,7 +85,7 @@ def _of_kind(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.sweep is not None:
         measured = diagnosis.measurement
         of_record = record_notes(measured) if isinstance(measured, Sweep) else []
-        return (*_sweep_notes(diagnosis.sweep.explained), *of_record)
+        return (*_sweep_notes(diagnosis.sweep.explained, diagnosis.causes), *of_record)
     if diagnosis.end_points is not None and isinstance(diagnosis.measurement, EndPoints):
         of_race = _race_notes(diagnosis.end_points, diagnosis.measurement)
         return (*end_point_notes(diagnosis.end_points), *of_race)
@@ -93,10 +112,12 @@ def record_notes(sweep: Sweep) -> list[str]:
     return found
 
 
-def _sweep_notes(explained: ExplainedSweep) -> list[str]:
+def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> list[str]:
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
+    found += lag_notes(explained.identified)
+    found += drift_notes(causes)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.measurement.columns import STAMP, ReadColumn
 from flexspline.pipeline.diagnosis.measurement.read_as import ReadAs
 from flexspline.pipeline.diagnosis.measurement.units import COUNTS, QUANTITIES, symbol
 from flexspline.pipeline.diagnosis.measurement.workbook import WORKBOOK
+from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings
 
 MARKS = {".": "point", ",": "comma"}
 HEAD_LETTERS = 60
@@ -62,6 +63,24 @@ def reading_notes(read_as: ReadAs) -> list[str]:
         lines = listed(read_as.footer, "lines")
         found.append(f"skipped, text below the last row: line {lines}")
     return found
+
+
+def wrong_notes(readings: Iterable[WrongReadings]) -> list[str]:
+    """Readings taken as wrong: column, numbers and lines in the file."""
+    return [_wrong_words(wrong) for wrong in readings]
+
+
+def _wrong_words(wrong: WrongReadings) -> str:
+    s = "s" * (len(wrong.lines) > 1)
+    numbers = listed((f"{v:.9g}" for v in dict.fromkeys(wrong.values)), "numbers")
+    where = f"line{s} {listed(wrong.lines, 'lines')}"
+    what = f"{heads([wrong.head])} = {numbers} {symbol(wrong.unit)}".rstrip()
+    after = (
+        f"the row{s} {'are' if s else 'is'} left out"
+        if wrong.rows_left_out
+        else "a straight line between the readings before and after is taken instead"
+    )
+    return f"{what} in {where}, far from all other readings, is taken as a fault of the sensor: {after}"
 
 
 def heads(names: Iterable[str]) -> str:

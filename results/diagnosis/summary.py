@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexspline.geometry.listed import listed
-from flexspline.pipeline.diagnosis.absurd_size import given_words
 from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import DiagnosisOutcome, NamedCause
-from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
-from flexspline.pipeline.diagnosis.structure import FarSlope
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.shortage_words import shortage_words
+from flexspline.results.diagnosis.slope_words import slope_hint_words
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.words import (
     VERDICTS,
     cause_title,
     magnitude_words,
     plus_minus,
+    sure_words,
     title_of,
 )
 
@@ -54,37 +52,7 @@ def summary(diagnosis: Diagnosis) -> str:
         said = f"The curve has the simulated form, but the {far}."
     else:
         said = _verdict(diagnosis) + (f" The calibrated {far}." if far else "")
-    return said + _hint(diagnosis)
-
-
-def _hint(diagnosis: Diagnosis) -> str:
-    """What the slope of a sweep may come from besides the gear, as a sentence of its own; "" of nothing."""
-    sweep = diagnosis.measurement
-    if not isinstance(sweep, Sweep):
-        return ""
-    if any(u.limit for u in diagnosis.outcome.unexplained):
-        slopes = (isinstance(u.structure, FarSlope) for u in diagnosis.outcome.unexplained)
-        return given_words(diagnosis.given) if any(slopes) else ""  # it asks for units itself
-    hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes)
-    if hint is None:
-        return ""
-    times = _times(hint.slope)
-    if hint.units:
-        units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
-        return f" The slope is {times} than simulated, as with {units}: check the units."
-    return (
-        f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
-        " whose teeth and bearing yield too? Then use --against gear."
-    )
-
-
-def _times(slope: SlopeRatio) -> str:
-    """ "1.36 times softer"; both ends of a slope that is known roughly."""
-    soft = slope.ratio > 1
-    ends = (slope.low, slope.high) if soft else (1 / slope.high, 1 / slope.low)
-    size = slope.ratio if soft else 1 / slope.ratio
-    named = f"{size:.3g}" if slope.sharp or slope.low <= 0 else f"{ends[0]:.2g} to {ends[1]:.2g}"
-    return f"{named} times {'softer' if soft else 'stiffer'}"
+    return said + slope_hint_words(diagnosis)
 
 
 def _far_off(diagnosis: Diagnosis) -> str:
@@ -116,7 +84,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
         case "ambiguous":
             what = "missing from the simulation, and these data"
             what = "wrong, and these specimens" if specimens else what
-            return f"Something is {what} cannot tell what: {_rivals(outcome.causes)}."
+            open_ = f"Something is {what} cannot tell what: {_rivals(outcome.causes)}."
+            return f"{open_}{_beside(outcome.causes)}{_left_over(outcome)}"
         case _ if points is not None:
             return "The totals depend on torque in a way that no known cause explains."
         case _:
@@ -174,6 +143,14 @@ def _rivals(causes: Sequence[NamedCause]) -> str:
     return "; ".join(told)
 
 
+def _beside(causes: Sequence[NamedCause]) -> str:
+    """Causes without a rival, beside others that have one, each with how sure it is; "" of none."""
+    told = [
+        f"{_said(c)} ({sure_words(c)})" for c in causes if not c.alternatives and is_significant(c)
+    ]
+    return f" Beside it: {'; '.join(told)}." if told else ""
+
+
 def _unknown(outcome: DiagnosisOutcome, specimens: bool) -> str:
     known = f" Beside it: {_listed(outcome.causes)}." if outcome.causes else ""
     if specimens:
@@ -202,4 +179,5 @@ def _ambiguous_end_points(outcome: DiagnosisOutcome, analysis: EndPointAnalysis)
         else "The totals differ from the prediction"
     )
     why = "" if analysis.several_torques else ", because each unit was measured at one torque"
-    return f"{where}, and these end points cannot tell why: {rival}{why}."
+    beside = _beside(outcome.causes[1:])
+    return f"{where}, and these end points cannot tell why: {rival}{why}.{beside}"

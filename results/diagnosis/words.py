@@ -36,6 +36,8 @@ def sure_words(cause: NamedCause) -> str:
         return "not decided"
     # the evidence may be strong that there is an effect, its size nevertheless uncertain
     words = next((words for least, words in EVIDENCE_WORDS if cause.evidence_nats >= least), "weak")
+    if cause.or_temperature:
+        words += ", but not of which"
     return words if cause.deviations >= SIZE_KNOWN else f"{words}, size uncertain"
 
 
@@ -102,6 +104,8 @@ def cause_title(cause: NamedCause) -> str:
         more.append(f"of it {figures_text(cause.ahead_Nm)} N·m ahead of the gap")
     if cause.widest_arcsec is not None and _is_wider(cause):
         more.append(f"loop up to {figures_text(cause.widest_arcsec)} arcsec wide")
+    if cause.or_temperature:
+        more.append("with time or temperature")
     title = title_of(cause.id, cause.magnitude)
     return f"{title} ({', '.join(more)})" if more else title
 

@@ -85,6 +85,8 @@ def test_a_diagnosis(disk: str, tmp_path: Path, request: pytest.FixtureRequest) 
     measured.write_bytes(head("size-40-end-points"))
     ended = flexspline("diagnose", CUP, measured, *GIVEN, "--out", there / "out", folder=there)
     failed(ended, disk)
+    # what was computed is not lost with the files
+    assert ("no file was written. The verdict: " in ended.said[0]) == (disk == "full")
 
 
 @pytest.mark.parametrize("disk", ["full", "read_only"])

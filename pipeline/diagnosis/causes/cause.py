@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import log
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -134,6 +135,10 @@ class Cause(ABC):
     @abstractmethod
     def shapes(self, rig: Rig) -> list[Shape]:
         """Shapes worth trying on a rig's record; none where it lacks the channel."""
+
+    def log_share(self, shape: Shape, count: int) -> float:
+        """Log of the share of its prior that one of `count` shapes has."""
+        return -log(count)
 
     def stands_alone(self, shape: Shape) -> bool:
         """Whether an element of this shape is all there is of the cause: no second one stands beside it."""

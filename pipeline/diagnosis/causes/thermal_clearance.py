@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import log
 
 import numpy as np
 
@@ -15,6 +16,8 @@ THERMAL = "thermal_clearance"
 """This cause's id."""
 LAGS = (0.02, 0.05, 0.12, 0.3)
 """As shares of the record's duration; besides none."""
+NO_LAG_SHARE = 0.5
+"""Prior odds that no lag is seen: even."""
 STAGES = "stages"
 """The parameter of a gear that warms through its housing: two lags of one time constant, one behind the
 other. Two unequal ones lie between that and a single one."""
@@ -68,6 +71,12 @@ class ThermalClearance(Cause):
             for shape in (*lagging[1:], *twice[1:]) for way in (WARMER, COLDER)
         ]  # fmt: skip
         return [*plain, *lagging, *twice, *off]
+
+    def log_share(self, shape: Shape, count: int) -> float:
+        """Whether a lag can be seen at all has even odds: in equal shares twenty lags were twenty to one."""
+        if count == 1:
+            return 0.0
+        return log(NO_LAG_SHARE if shape["lag_s"] == 0 else (1 - NO_LAG_SHARE) / (count - 1))
 
     def stands_alone(self, shape: Shape) -> bool:
         """A gear is off by one temperature: two that cancel make any curve in time, as wear is one."""

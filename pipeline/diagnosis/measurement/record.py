@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.measurement.history_reading import history_of
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.measurement.units import ARCSEC_PER_TURN
+from flexspline.pipeline.diagnosis.measurement.wrong_readings import WrongReadings, without_wrong
 
 HEADS_SHOWN = 12
 """Columns that a message lists."""
@@ -56,6 +57,8 @@ class Sweep:
     read_as: ReadAs = AS_OURS
     averaging: Averaging | None = None
     """None where the rows are those of the file."""
+    wrong: tuple[WrongReadings, ...] = ()
+    """Readings whose rows were left out."""
 
     def __len__(self) -> int:
         return len(self.angle_arcsec)
@@ -123,7 +126,8 @@ def read_measurement(path: Path, counts_per_turn: float | None = None) -> Measur
     )
 
 
-def _sweep(table: MeasuredTable) -> Sweep:
+def _sweep(as_read: MeasuredTable) -> Sweep:
+    table, wrong = without_wrong(as_read)
     n = len(table)
     if n < FEWEST_SWEEP_ROWS:
         raise table.refuse(
@@ -136,7 +140,7 @@ def _sweep(table: MeasuredTable) -> Sweep:
     _refuse_full_turns(table, found.history.unit)
     return Sweep(
         table.path, found.history, table.numbers["angle_arcsec"], found.units, found.cycles,
-        table.line, "cycle" in table.numbers, table.read_as,
+        table.line, "cycle" in table.numbers, table.read_as, wrong=wrong,
     )  # fmt: skip
 
 

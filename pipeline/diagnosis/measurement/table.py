@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +46,18 @@ class MeasuredTable:
     def has(self, *names: str) -> bool:
         """Whether all these columns exist."""
         return all(n in self.numbers or n in self.labels for n in names)
+
+    def rows(self, chosen: np.ndarray) -> MeasuredTable:
+        """The chosen rows (mask)."""
+        return replace(
+            self,
+            numbers={name: values[chosen] for name, values in self.numbers.items()},
+            labels={
+                name: tuple(text for text, here in zip(texts, chosen, strict=True) if here)
+                for name, texts in self.labels.items()
+            },
+            line=self.line[chosen],
+        )
 
     def refuse(self, row: int | None, reason: str) -> MeasurementError:
         """The error for data row `row`, None for the whole file."""

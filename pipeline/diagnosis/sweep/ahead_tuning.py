@@ -133,7 +133,7 @@ class _Trial:
                 own = term.cause.columns(term.shape, history)
             blocks.append(own * term.prior)
             precision.append(np.ones(own.shape[1]))
-        target = sweep.angle_arcsec - p.prediction.angle_arcsec(history)
+        target = sweep.angle_arcsec - p.prediction.for_race.angle_arcsec(history)
         white = self.evidence.prepared(np.column_stack([*blocks, target]))
         return white[:, :-1], np.concatenate(precision), white[:, -1]
 

@@ -22,8 +22,9 @@ def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     """
     from scipy.optimize import lsq_linear
 
-    if evidence.columns.ahead is not None:
-        evidence = _of_all_torque(evidence, evidence.columns.ahead.carried_Nm)
+    columns = evidence.columns
+    if columns.ahead is not None or columns.rig.prediction.measured_bend is not None:
+        evidence = _as_simulated(evidence)
     history = evidence.columns.rig.history
     units = len(history.unit_slices)
     limited = slice(units, units + 2 + (2 * units if units > 1 else 0))
@@ -36,14 +37,17 @@ def calibrated_residual(evidence: GaussianEvidence) -> np.ndarray:
     return less_zero(evidence.target - seen, evidence.kept, history)
 
 
-def _of_all_torque(evidence: GaussianEvidence, carried_Nm: np.ndarray) -> GaussianEvidence:
-    """The calibration alone, with the torque that friction carries ahead of the teeth as the gear's."""
+def _as_simulated(evidence: GaussianEvidence) -> GaussianEvidence:
+    """The calibration alone, with the simulated bend, and all torque read as the gear's, also what friction
+    carries ahead of the teeth."""
     old = evidence.columns
     teeth, prediction = old.rig.history, old.rig.prediction
-    read = replace(teeth, torque_Nm=teeth.torque_Nm + carried_Nm)
+    carried = 0.0 if old.ahead is None else old.ahead.carried_Nm
+    read = replace(teeth, torque_Nm=teeth.torque_Nm + carried)
     rig = replace(old.rig, history=read)
     base, prior = base_columns(rig, old.base[:, -NOISE_COLUMNS:])
-    target = evidence.target + prediction.angle_arcsec(teeth) - prediction.angle_arcsec(read)
+    begun = prediction.for_race.angle_arcsec(teeth)
+    target = evidence.target + begun - prediction.angle_arcsec(read)
     return gaussian_evidence(
         DesignMatrix(rig, base, prior, old.all[:, :0], ()), target, evidence.kept, evidence.noise
     )

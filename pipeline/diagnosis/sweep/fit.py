@@ -192,5 +192,5 @@ def model_of(fit: SweepFit, sweep: Sweep, named: Sequence[str], offset_Nm: float
         {name: float(z) for name, z in zip(sweep.units, mean[:k], strict=True)},
         elements,
         own,
-        p.bend,
+        p.for_race.bend,
     )

@@ -10,11 +10,15 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
+from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
+from flexspline.pipeline.diagnosis.sweep.thermal_lag import lag_std
 
 SHAPE_NATS = 3.0
 """Sets of shapes count in a magnitude's doubt by exp(−nats/3), of large effects by less: no shape is exactly
@@ -53,6 +57,10 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         # their mean distance: one set far off does not make it as wide
         spread = float(weight @ np.abs(values - best[cause]))
         std[cause] = hypot(doubt.std[cause], spread)
+    if HARDENING in std:
+        std[HARDENING] = hypot(std[HARDENING], hardening_std(identified.fit))
+    if THERMAL in std:
+        std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
         std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
     # a loop in proportion to load has no width at T = 0 by its shape alone

@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
 from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
@@ -48,6 +49,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
             c, chance, tuple(dict.fromkeys(rivals)), magnitude[c], std[c], known_causes()[c].unit, nats,
             identified.rms[c], _own_units(explained, c), _ahead_Nm(explained, c),
             identified.fit.widest_loop_arcsec() if c == FRICTION else None,
+            c == DRIFT and may_follow_temperature(identified),
         ))  # fmt: skip
     if explained.offset_Nm and explained.crossing is not None:
         offset = known_causes()[OFFSET]

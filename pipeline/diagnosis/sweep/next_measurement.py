@@ -149,6 +149,10 @@ def next_measurement(explained: ExplainedSweep, decision: Decision) -> NextMeasu
     unsure = [c for c in decision.causes if c.alternatives] or list(decision.causes[-1:])
     if not unsure:
         return None
+    two_words = [c for c in decision.causes if c.or_temperature]
+    if two_words and not unsure[0].alternatives:
+        order = Doing("temperatures_in_other_order")
+        return NextMeasurement("temperature_C", "confirm", (two_words[0].id,), order)
     cause, rivals = unsure[0].id, unsure[0].alternatives
     aim: Aim = "separate" if rivals else "confirm"
     models = _rival_models(explained, decision, cause) if rivals else []

@@ -94,7 +94,7 @@ def prepare(
         history = known_causes()[FRICTION].at_teeth((ahead,), true)
         carried = FrictionAhead(ahead, true.torque_Nm - history.torque_Nm)
     rig = Rig(prediction, history)
-    target = sweep.angle_arcsec - prediction.angle_arcsec(history)
+    target = sweep.angle_arcsec - prediction.for_race.angle_arcsec(history)
     band = crossing_band_Nm(history)
     kept = naming_rows(history, band)
     per_cycle = len(history) / history.cycle_count

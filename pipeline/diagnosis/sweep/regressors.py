@@ -134,7 +134,7 @@ def design_matrix(
             k = block.shape[1]
             spread = np.full(k, cause.spread(shape, rig))
             at = slice(width, width + k)
-            share = -log(len(shapes))
+            share = cause.log_share(shape, len(shapes))
             against = frozenset({cause.id} if cause.stands_alone(shape) else ())
             terms.append(
                 Regressor(cause, shape, "", None, at, spread, cause.positive, share, against)

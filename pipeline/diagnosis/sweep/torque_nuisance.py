@@ -57,7 +57,7 @@ def softening(rig: Rig) -> Made:
 def over_angle(rig: Rig) -> Made:
     """Ripples over the output angle as simulated."""
     steady = replace(rig.history, torque_Nm=_steady(rig) * rig.torque_Nm)
-    angle = rig.prediction.angle_arcsec(steady)
+    angle = rig.prediction.for_race.angle_arcsec(steady)
     yield from _ripples(angle / np.abs(angle).max(), "angle_arcsec")
 
 

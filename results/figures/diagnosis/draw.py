@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,9 +11,9 @@ import numpy as np
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
-from flexspline.pipeline.diagnosis.outcome import Gain
+from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
-from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
+from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.figures.diagnosis.captions import caption
 from flexspline.results.figures.diagnosis.contribution_parts import parts
@@ -88,7 +89,7 @@ def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
     if gain is not None and gain.left and outcome.causes:
         write_held_out(sheet.place("held_out"), gain)
     words = None
-    if outcome.verdict == "unknown":
+    if outcome.unexplained:
         channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
         words = caption("residual_unknown", where=", ".join(channels))
     write_channels(
@@ -96,18 +97,25 @@ def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
         shown,
         shown.left,
         "Residual of the best model against every channel",
-        _told(shown),
+        residual_words(shown.tests, outcome.unexplained),
     )
 
 
-def _told(shown: SweepPictureData) -> dict[str, str]:
-    """Of each channel, whether structure is left in it."""
-    return {
-        t.channel: f"structure left, {t.rms_arcsec:.2g} arcsec"
-        if t.p_value < STRUCTURE_P_VALUE
-        else "no structure left"
-        for t in shown.tests
-    }
+def residual_words(
+    tests: Iterable[ChannelTest], unexplained: Sequence[Unexplained]
+) -> dict[str, str]:
+    """Of each channel, whether structure is left in it; the best model holds what has no name too."""
+    nameless = {u.channel: u.rms for u in unexplained}
+    nothing = "no further structure" if nameless else "no structure left"
+    said = {}
+    for t in tests:
+        if t.p_value < STRUCTURE_P_VALUE:
+            said[t.channel] = f"structure left, {t.rms_arcsec:.2g} arcsec"
+        elif t.channel in nameless:
+            said[t.channel] = f"fitted without a name, {nameless[t.channel]:.2g} arcsec"
+        else:
+            said[t.channel] = nothing
+    return said
 
 
 def _end_points(analysis: EndPointAnalysis, sheet: _Sheet) -> None:

@@ -1,0 +1,39 @@
+"""What the slope of a sweep may come from besides the gear, in words."""
+
+from __future__ import annotations
+
+from flexspline.pipeline.diagnosis.absurd_size import given_words
+from flexspline.pipeline.diagnosis.diagnose import Diagnosis
+from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.slope_hints import SlopeRatio, slope_hint
+from flexspline.pipeline.diagnosis.structure import FarSlope
+
+
+def slope_hint_words(diagnosis: Diagnosis) -> str:
+    """What the slope of a sweep may come from besides the gear, as a sentence of its own; "" of nothing."""
+    sweep = diagnosis.measurement
+    if not isinstance(sweep, Sweep):
+        return ""
+    if any(u.limit for u in diagnosis.outcome.unexplained):
+        slopes = (isinstance(u.structure, FarSlope) for u in diagnosis.outcome.unexplained)
+        return given_words(diagnosis.given) if any(slopes) else ""  # it asks for units itself
+    hint = slope_hint(sweep, diagnosis.prediction, diagnosis.outcome.causes)
+    if hint is None:
+        return ""
+    times = _times(hint.slope)
+    if hint.units:
+        units = " or ".join(f"{u.head} in {u.other}, not {u.unit}" for u in hint.units)
+        return f" The slope is {times} than simulated, as with {units}: check the units."
+    return (
+        f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
+        " whose teeth and bearing yield too? Then use --against gear."
+    )
+
+
+def _times(slope: SlopeRatio) -> str:
+    """ "1.36 times softer"; both ends of a slope that is known roughly."""
+    soft = slope.ratio > 1
+    ends = (slope.low, slope.high) if soft else (1 / slope.high, 1 / slope.low)
+    size = slope.ratio if soft else 1 / slope.ratio
+    named = f"{size:.3g}" if slope.sharp or slope.low <= 0 else f"{ends[0]:.2g} to {ends[1]:.2g}"
+    return f"{named} times {'softer' if soft else 'stiffer'}"

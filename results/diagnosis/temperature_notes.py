@@ -1,0 +1,38 @@
+"""What a reader should know where temperature has a part in what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
+from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.sweep.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.thermal_lag import thermal_lag
+from flexspline.results.diagnosis.words import title_of
+
+
+def lag_notes(identified: Identification) -> list[str]:
+    """That the gap follows the temperature late, where the model has it so."""
+    lag = thermal_lag(identified)
+    if lag is None:
+        return []
+    times = " and ".join(f"{s:.3g}" for s in lag.lags_s)
+    said = f"{title_of(THERMAL)}: in the model it follows the temperature reading with a lag of {times} s"
+    if lag.stages > 1:
+        said += ", twice in a row"
+    if lag.warmer_K:
+        way = "warmer" if lag.warmer_K > 0 else "colder"
+        said += f", and began {abs(lag.warmer_K):.2g} K {way} than the reading"
+    if not lag.shown:
+        said += "; without a lag this record is explained nearly as well"
+    return [said]
+
+
+def drift_notes(causes: Iterable[NamedCause]) -> list[str]:
+    """That a drift may follow the temperature."""
+    return [
+        f"{title_of(c.id)}: time and temperature went together, so a zero that follows the temperature "
+        "explains this record as well"
+        for c in causes
+        if c.or_temperature
+    ]
