@@ -24,8 +24,7 @@ INSIDE_SHARE = 0.9
 OFFSET_STEPS = 141
 """Odd, so that one of the offsets tried is 0; the best is refined between its neighbours."""
 UNSEEN_SIGMAS = 3.0
-"""Standard deviations of the torque noise that the rows of one crossing may share: an offset within those of
-their mean over all crossings is none."""
+"""Standard deviations of the torque noise: an offset within is none."""
 EACH_WAY, FEWEST_EACH_WAY = 0.3, 4
 """Share of the largest torque that must be passed both ways, by so many rows each."""
 SEEN_RATIO = 2.0
@@ -83,20 +82,15 @@ def crossing(
         low, high = _not_far_behind(places, nats)
         places = np.linspace(low - width, high + width, FINE_STEPS)
         nats = rows.log_likelihood(places, BLURS)
-    # an offset within the torque's noise, as all crossings know it, is none
-    shared = UNSEEN_SIGMAS * torque_noise_Nm / np.sqrt(max(1, crossings(torque_Nm)))
-    unseen = max(shared, even[1] - even[0]) * np.linspace(-1, 1, UNSEEN_STEPS)
+    # an offset within the torque's noise is none
+    unseen = max(UNSEEN_SIGMAS * torque_noise_Nm, even[1] - even[0]) * np.linspace(
+        -1, 1, UNSEEN_STEPS
+    )
     none = rows.log_likelihood(unseen, BLURS).max()
     weight = np.exp(nats - nats.max()) * np.gradient(places)
     mean = float(weight @ places / weight.sum())
     variance = float(weight @ (places - mean) ** 2 / weight.sum())
     return Crossing(mean, float(np.sqrt(variance)), float(nats.max() - none))
-
-
-def crossings(torque_Nm: np.ndarray) -> int:
-    """How often the torque goes from far on one side to far on the other."""
-    far = torque_Nm[np.abs(torque_Nm) > EACH_WAY * np.abs(torque_Nm).max()]
-    return int(np.count_nonzero(np.diff(np.sign(far))))
 
 
 def _not_far_behind(places: np.ndarray, nats: np.ndarray) -> tuple[float, float]:

@@ -156,19 +156,6 @@ def test_an_owner_may_give_way_once_the_set_is_whole() -> None:
     assert search.exchanged().owners(now) == {"direction_asymmetry"}
 
 
-def test_many_crossings_see_an_offset_within_the_noise_of_one_reading() -> None:
-    """0.12 N·m under noise of 0.05: within three deviations of a reading, but not of the mean of sixteen."""
-    rng = np.random.default_rng(5)
-    cycle = np.concatenate([np.linspace(-4, 4, 161), np.linspace(4, -4, 161)])
-    for cycles, seen in ((1, False), (8, True)):
-        torque = np.tile(cycle, cycles)
-        left = 30.0 * np.sign(torque) + rng.normal(0, 1.0, len(torque))
-        reading = torque + 0.12 + rng.normal(0, 0.05, len(torque))
-        found = crossing(reading, left, 60.0, 1.0, 0.05)
-        assert found is not None
-        assert (found.nats > 9) == seen
-
-
 def test_no_offset_from_torque_one_way() -> None:
     torque = np.linspace(0.0, 1.0, 300)
     assert crossing(torque, 30.0 * np.sign(torque), 60.0, 1.0, 0.01) is None
