@@ -45,12 +45,13 @@ PRESUMED_TERMS: Mapping[str, Mapping[str, float]] = {
 linear lags, and a soft wind-up at several scales."""
 NEVER = {"": 0.0}
 """Parameters that no shape has."""
-AHEAD_RACES = 6
-"""Races at most, each with the friction that the last one's terms make the best: beside a shifted reading the
-places of both move each other. Of 60 made-up records two had not settled after three."""
-AHEAD_SETTLED_SHARE, SETTLED_LOG = 0.001, 0.3
-"""Friction found again within this of the largest torque, as an offset is, and its stiffness ratio within
-this of its log, is the last: of friction 0.2 % of the torque too large a lag filled what was left."""
+AHEAD_RACES = 3
+"""Races at most, each with the friction that the last one's terms make the best."""
+RACES_OF_BOTH = 6
+"""The same beside a shifted reading, whose place and the friction's move each other."""
+AHEAD_SETTLED_SHARE, SETTLED_LOG = 0.003, 0.3
+"""Friction found again within this of the largest torque, and its stiffness ratio within this of its log, is
+the last: neither moves what counts."""
 AHEAD_NATS = 9.0
 """Nats over none: odds of 8000 to 1, twice what a cause costs; as for an offset of the torque reading."""
 SURE_NATS = 30.0
@@ -123,7 +124,7 @@ def _raced_with(
     if abs(float(np.log(element.amplitudes[0] / guess.amplitudes[0]))) > GUESS_LOG:
         element = replace(element, amplitudes=guess.amplitudes)
     seen: Crossing | None = None
-    for _ in range(AHEAD_RACES):
+    for _ in range(RACES_OF_BOTH if offset else AHEAD_RACES):
         explained = run_race(prepare(plain.sweep, plain.prediction, offset, element))
         now = explained.prepared
         identified = explained.identified
