@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.robust import rms
-from flexspline.pipeline.diagnosis.sweep.evidence import column_indices
+from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, column_indices
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 SHAPE_MISFIT = 2.0
@@ -17,10 +19,11 @@ SHAPE_MISFIT = 2.0
 def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     """Deviation of each cause's magnitude, in its unit, by the others' shapes.
 
-    A gear's law lies between the shapes that are tried. Each other shape of a cause, of the size found, is
-    fitted by the set as it is: the set leaves d of it, and other causes take up e. A law that differs from
-    the best shape in this direction, by the share of its rms that the doubt of its shape is, moves them by
-    e·doubt·rms/|d|, by e at the most. Of all directions this is the root mean square.
+    A gear's law lies between the shapes that are tried. Each other shape of a cause, as large beyond the
+    calibration as what was found, is fitted by the set as it is: the set leaves d of it, and other causes
+    take up e. A law that differs from the best shape in this direction, by the share of its rms that the
+    doubt of its shape is, moves them by e·doubt·rms/|d|, by e at the most. Of all directions this is the
+    root mean square.
 
     Parameters: slopes, of each magnitude for each amplitude (`SweepFit.magnitude_slopes`).
     """
@@ -42,9 +45,8 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
             for t in evidence.terms
             if t.owner == cause and t.width == 1 and t.at.start not in at
         ]
-        tried = evidence.x[:, others]
-        length = np.linalg.norm(tried, axis=0)
-        tried = tried[:, length > 0] * (size / length[length > 0])
+        length = lengths_beyond_calibration(evidence, others)
+        tried = evidence.x[:, others][:, length > 0] * (size / length[length > 0])
         if tried.shape[1] == 0:
             continue
         taken = inverse @ (model.T @ tried)
@@ -59,14 +61,21 @@ def leaked(fit: SweepFit, slopes: dict[str, np.ndarray]) -> dict[str, float]:
     return found
 
 
+def lengths_beyond_calibration(evidence: GaussianEvidence, columns: Sequence[int]) -> np.ndarray:
+    """(k,) length of columns beyond what the calibration takes up of them, in deviations of the noise.
+
+    Hardening is a spring too, and a change of compliance is no shape.
+    """
+    return np.sqrt(np.maximum(np.diag(evidence.gram)[columns], 0.0))
+
+
 def effect_size(fit: SweepFit, cause: str) -> float:
-    """Length of a cause's effect over the rows, in deviations of the noise."""
-    evidence, total = fit.evidence, np.zeros(len(fit.evidence.y))
-    amplitudes = fit.posterior.amplitudes(evidence)
-    for term, amplitude in zip(fit.regressors, amplitudes, strict=True):
-        if term.owner == cause:
-            total += evidence.x[:, term.at] @ (amplitude / evidence.scale[term.at])
-    return float(np.linalg.norm(total))
+    """Length of a cause's effect over the rows beyond the calibration, in deviations of the noise."""
+    evidence, posterior = fit.evidence, fit.posterior
+    at = column_indices(evidence, posterior.terms)
+    scaled = posterior.mean[posterior.base_count :] / evidence.scale[at]
+    mine = np.where(_owners(fit)[posterior.base_count :] == cause, scaled, 0.0)
+    return float(np.sqrt(max(mine @ evidence.gram[np.ix_(at, at)] @ mine, 0.0)))
 
 
 def _owners(fit: SweepFit) -> np.ndarray:

@@ -80,11 +80,18 @@ def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool
 def _stands_for_springs(identified: Identification) -> bool:
     """Whether the record fixes the compliance without friction, and does not beside it.
 
-    Friction that never saturates then takes up elastic twist: a spring left out looks the same.
+    Friction that never saturates then takes up elastic twist: a spring left out looks the same. All else is
+    beside both: a stiffness of few positions may leave the compliance open too, and is no friction. Ahead of
+    the teeth friction is no term, and no set is the same without it.
     """
     evidence, fit = identified.search.evidence, identified.fit
     stated = float(evidence.columns.base_prior[fit.units])
-    alone = fit_regressors(evidence, ()).calibration.compliance
+    others = [
+        i
+        for i in identified.best.terms
+        if evidence.terms[i].owner != FRICTION and evidence.columns.ahead is None
+    ]
+    alone = fit_regressors(evidence, others).calibration.compliance
     beside = fit.calibration.compliance
     assert alone is not None
     assert beside is not None

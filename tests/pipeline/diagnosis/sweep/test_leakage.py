@@ -13,7 +13,12 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
-from flexspline.pipeline.diagnosis.sweep.leakage import SHAPE_MISFIT, effect_size, leaked
+from flexspline.pipeline.diagnosis.sweep.leakage import (
+    SHAPE_MISFIT,
+    effect_size,
+    leaked,
+    lengths_beyond_calibration,
+)
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, prepare
 
 FRICTION, SPRING, GAP = "friction_hysteresis", "series_compliance", "clearance_offset"
@@ -62,7 +67,8 @@ def test_it_is_what_the_fit_of_a_law_between_two_shapes_is_off_by(prepared: Prep
     evidence = of_shapes(prepared, 2)
     fit = fit_regressors(evidence, [0, 2])
     size = effect_size(fit, FRICTION)
-    other = evidence.x[:, 1] * size / np.linalg.norm(evidence.x[:, 1])
+    length = float(lengths_beyond_calibration(evidence, [1])[0])
+    other = evidence.x[:, 1] * size / length
     # what base and set leave of it, their priors as further rows
     model = np.hstack([evidence.base, evidence.x[:, [0, 2]]])
     priors = np.diag(np.r_[1 / evidence.columns.base_prior, 1.0, 1.0])
@@ -72,7 +78,7 @@ def test_it_is_what_the_fit_of_a_law_between_two_shapes_is_off_by(prepared: Prep
     share = min(1.0, SHAPE_MISFIT * known_causes()[FRICTION].shape_doubt * size / left)
     # the same share of the other shape in the record itself, fitted again
     column = evidence.columns.all[:, 1] * evidence.scale[1]
-    moved = column * share * size / np.linalg.norm(evidence.x[:, 1])
+    moved = column * share * size / length
     again = gaussian_evidence(
         evidence.columns, evidence.target + moved, prepared.kept, prepared.noise
     )
@@ -88,7 +94,18 @@ def test_friction_that_holds_torque_or_does_not_leaves_the_spring_unknown(
     evidence = of_shapes(prepared, 2)
     first, second = evidence.terms[:2]
     assert {k for k in first.shape if first.shape[k] != second.shape[k]} == {"held"}
-    length = np.linalg.norm(evidence.x[:, :2], axis=0)
+    length = lengths_beyond_calibration(evidence, [0, 1])
     doubt = leak(fit_regressors(evidence, [0, 2]))[SPRING]
-    # the other shape is as long; the spring's prior and the noise of its fit are below a percent
+    # the other shape is as long beyond the calibration; the spring's prior and the noise are below a percent
     assert doubt == pytest.approx(12.5 * length[0] / length[1], rel=0.02)
+
+
+def test_a_spring_is_no_size_of_a_shape(prepared: PreparedSweep) -> None:
+    """What the calibration takes up has no shape to miss: of a spring nothing but its prior is left."""
+    evidence = of_shapes(prepared, 2)
+    fit = fit_regressors(evidence, [0, 2])
+    spring = float(fit.posterior.mean[-1] / evidence.scale[2])
+    raw = abs(spring) * float(np.linalg.norm(evidence.x[:, 2]))
+    # the rows know the compliance far better than its prior of 2 %
+    assert raw > 100
+    assert effect_size(fit, SPRING) < 0.1 * raw
