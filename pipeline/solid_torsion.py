@@ -22,7 +22,7 @@ from flexspline.pipeline.parts import PartModel
 
 SOLID_SECONDS = 30.0
 """Of all meshes of a part after the first: with that one and the rest of a command, a minute. Of 100 random
-designs one is cut off by it: K_b ± 1.8 % in 12 s; with 60 s the same in 63 s, for a mesh not finished."""
+designs one is cut off by it: K_b ± 1.8 % in 10 s; with 60 s the same in 63 s, for a mesh not finished."""
 LAYERED_TIMES, LAYERED_LEAST = 2.0, 1.5
 """Elements of the next mesh of a shaft in layers over those of the last, and at least."""
 LAYERED_ELEMENTS, LAYERED_LAST = 36_000, 12_000
