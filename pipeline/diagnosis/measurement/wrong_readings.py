@@ -122,11 +122,12 @@ def _far(values: np.ndarray, kept: np.ndarray) -> Iterator[np.ndarray]:
         yield far
 
 
-def _alone_or_the_same(values: np.ndarray, far: np.ndarray) -> np.ndarray:
-    """(n,) far rows, one or two in a row, or more that repeat one number to the last digit."""
-    out = np.zeros(len(values), bool)
+def _alone(far: np.ndarray, values: np.ndarray | None = None) -> np.ndarray:
+    """(n,) far rows, one or two in a row, or more whose `values` repeat one number to the last digit."""
+    out = np.zeros(len(far), bool)
     for a, b in runs(far):
-        out[a:b] = b - a <= LONGEST_OUTLIER or np.ptp(values[a:b]) == 0
+        repeats = values is not None and np.ptp(values[a:b]) == 0
+        out[a:b] = b - a <= LONGEST_OUTLIER or repeats
     return out
 
 
@@ -149,7 +150,7 @@ def _against_another(table: MeasuredTable, rows: np.ndarray, name: str, other: s
     def judge(far: np.ndarray, others: np.ndarray) -> np.ndarray:
         low, high = beside[others].min(), beside[others].max()
         within = (beside >= low) & (beside <= high)
-        return _alone_or_the_same(values, far) & (within | same)
+        return _alone(far, values) & (within | same)
 
     return judge
 
@@ -161,23 +162,20 @@ def _beyond_gears(table: MeasuredTable, rows: np.ndarray) -> Judge:
 
     def judge(far: np.ndarray, others: np.ndarray) -> np.ndarray:
         leaps = np.abs(celsius - np.median(celsius[others])) > LEAP_K
-        alone = np.zeros(len(celsius), bool)
-        for a, b in runs(far):
-            alone[a:b] = b - a <= LONGEST_OUTLIER
-        return far & (outside | (alone & leaps))
+        return far & (outside | (_alone(far) & leaps))
 
     return judge
 
 
 def _as_written(table: MeasuredTable, name: str) -> np.ndarray:
     """(n,) in the file's own unit."""
-    column = next((c for c in table.read_as.columns if c.name == name), None)
+    column = table.read_as.column(name)
     values = table.numbers[name]
     return values if column is None else (values - column.shift) / column.factor
 
 
 def _told(table: MeasuredTable, name: str, rows: np.ndarray) -> WrongReadings:
-    column = next((c for c in table.read_as.columns if c.name == name), None)
+    column = table.read_as.column(name)
     head, unit = (name, "") if column is None else (column.head or name, column.unit)
     values = _as_written(table, name)[rows]
     lines = tuple(int(line) for line in table.line[rows])

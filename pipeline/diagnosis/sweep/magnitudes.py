@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
+from flexspline.pipeline.diagnosis.sweep.other_sets import std_over
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
 from flexspline.pipeline.diagnosis.sweep.thermal_lag import lag_std
 
@@ -76,10 +77,8 @@ def _spring_std(identified: Identification, magnitude: float) -> float:
     says.
     """
     evidence, best = identified.search.evidence, identified.best
-    found = [identified.search.candidate(t) for t in _but_for_a_spring(evidence, best)]
-    weight = np.exp([min(c.score - best.score, 0.0) for c in found])
-    other = np.array([fit_regressors(evidence, c.terms).magnitudes()[SERIES] for c in found])
-    return float(np.sqrt(weight @ (other - magnitude) ** 2 / (1 + weight.sum())))
+    found = map(identified.search.candidate, _but_for_a_spring(evidence, best))
+    return std_over(identified, found, SERIES, magnitude)
 
 
 def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:

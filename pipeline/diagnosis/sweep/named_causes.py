@@ -86,11 +86,9 @@ def _stands_for_springs(identified: Identification) -> bool:
     """
     evidence, fit = identified.search.evidence, identified.fit
     stated = float(evidence.columns.base_prior[fit.units])
-    others = [
-        i
-        for i in identified.best.terms
-        if evidence.terms[i].owner != FRICTION and evidence.columns.ahead is None
-    ]
+    others = [i for i in identified.best.terms if evidence.terms[i].owner != FRICTION]
+    if evidence.columns.ahead is not None:
+        others = []
     alone = fit_regressors(evidence, others).calibration.compliance
     beside = fit.calibration.compliance
     assert alone is not None

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import COLDER, STAGES, THERMAL, WARMER
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE
-from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
+from flexspline.pipeline.diagnosis.sweep.other_sets import std_over
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
 
 
@@ -53,11 +51,7 @@ def lag_std(identified: Identification, magnitude: float) -> float:
 
     Each counts by its score, over all that were tried of one element, the rest of the best set as it is.
     """
-    evidence, best = identified.search.evidence, identified.best
-    others = list(_other_sets(identified))
-    weight = np.exp([min(c.score - best.score, 0.0) for c in others])
-    size = np.array([fit_regressors(evidence, c.terms).magnitudes()[THERMAL] for c in others])
-    return float(np.sqrt(weight @ (size - magnitude) ** 2 / (1 + weight.sum())))
+    return std_over(identified, _other_sets(identified), THERMAL, magnitude)
 
 
 def _other_sets(identified: Identification) -> Iterator[Candidate]:
