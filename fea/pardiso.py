@@ -27,9 +27,15 @@ IN_SINGLE = 27
 
 
 class PardisoFactors:
-    """Pardiso's factors of a matrix, until they are released or nobody holds this object."""
+    """Pardiso's factors of a matrix, until they are released or nobody holds this object.
+
+    They are used with as many threads as they were made with, whoever calls: each thread has a number of its
+    own, and factors of two threads substituted by one, or of one by two, give another vector without an error
+    (‖Ku − f‖ of 2 to 9 ‖f‖ in 79 of 80 solves).
+    """
 
     def __init__(self, matrix: csr_matrix, single: bool) -> None:
+        self._threads = _threads_of_caller()
         self._pt = np.zeros(64, np.int64)
         self._iparm = np.zeros(64, np.int32)
         for number, value in SETTINGS.items():
@@ -37,7 +43,9 @@ class PardisoFactors:
         self._iparm[IN_SINGLE] = single
         self._type = np.float32 if single else np.float64
         self._data, self._columns, self._starts = _upper(matrix, self._type)
-        self.release = finalize(self, _call, self._pt, self._iparm, RELEASE, len(self._starts) - 1)
+        self.release = finalize(
+            self, _call, self._pt, self._iparm, self._threads, RELEASE, len(self._starts) - 1
+        )
         try:
             self._do(ANALYSE_AND_FACTORISE)
         except SolveError:
@@ -69,12 +77,13 @@ class PardisoFactors:
 
     def _do(self, phase: int, b: np.ndarray | None = None, x: np.ndarray | None = None) -> None:
         matrix = (self._data, self._starts, self._columns)
-        _call(self._pt, self._iparm, phase, len(self._starts) - 1, matrix, b, x)
+        _call(self._pt, self._iparm, self._threads, phase, len(self._starts) - 1, matrix, b, x)
 
 
 def _call(
     pt: np.ndarray,
     iparm: np.ndarray,
+    threads: int,
     phase: int,
     unknowns: int,
     matrix: tuple[np.ndarray, ...] = (),
@@ -85,13 +94,25 @@ def _call(
     one, silent, error = _pointer(1), _pointer(0), ctypes.c_int32(0)
     data, starts, places = map(address, matrix) if matrix else (None,) * 3
     right, found = (None if v is None else address(v) for v in (b, x))
+    of_caller = _set_threads(threads)
     pardiso()(
         address(pt), one, one, _pointer(SYMMETRIC_POSITIVE), _pointer(phase), _pointer(unknowns),
         data, starts, places, None, _pointer(columns), address(iparm), silent,
         right, found, ctypes.byref(error),
     )  # fmt: skip
+    _set_threads(of_caller)
     if error.value:
         raise _said(error.value, unknowns)
+
+
+def _threads_of_caller() -> int:
+    """How many threads oneMKL would use for the thread that calls."""
+    return int(mkl().MKL_Get_Max_Threads())
+
+
+def _set_threads(count: int) -> int:
+    """Let oneMKL use so many for the thread that calls, 0: as usual; what was set before."""
+    return int(mkl().MKL_Set_Num_Threads_Local(count))
 
 
 def _pointer(value: int) -> Any:

@@ -1,0 +1,52 @@
+"""Factors that one thread makes and another uses, with other numbers of threads of oneMKL."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix, diags, eye_array, kron
+from threadpoolctl import threadpool_limits
+
+from flexspline.fea.pardiso import PardisoFactors, pardiso
+
+pytestmark = pytest.mark.skipif(pardiso() is None, reason="MKL has no wheel for this machine")
+
+SIDE = 24
+"""Grid points along an edge: where factors are small oneMKL uses one thread of two."""
+
+
+def block() -> csr_matrix:
+    """Springs between neighbours of a grid, each point held by one of a tenth."""
+    chain = diags([-1.0, 2.1, -1.0], [-1, 0, 1], shape=(SIDE, SIDE))
+    one = eye_array(SIDE)
+    along = (kron(kron(chain, one), one), kron(kron(one, chain), one), kron(kron(one, one), chain))
+    return csr_matrix(kron(sum(along), np.diag([1.0, 2.0, 3.0])))
+
+
+@pytest.mark.parametrize(("making", "solving"), [(1, 2), (2, 1)])
+def test_the_number_of_threads_may_change_between_factors_and_solve(
+    making: int, solving: int
+) -> None:
+    matrix = block()
+    true = np.random.default_rng(1).standard_normal(matrix.shape[0])
+    with threadpool_limits(making, "blas"):
+        factors = PardisoFactors(matrix, single=False)
+        again = PardisoFactors(matrix, single=False)
+    with threadpool_limits(solving, "blas"):
+        # a condition number of 4e1
+        assert factors.solve(matrix @ true) == pytest.approx(true, abs=1e-12)
+        assert again.replace(2 * matrix)
+        assert again.solve(matrix @ true) == pytest.approx(true / 2, abs=1e-12)
+    factors.release()
+    again.release()
+
+
+def test_the_thread_that_calls_keeps_its_own_number() -> None:
+    from flexspline.fea.mkl import mkl
+
+    with threadpool_limits(1, "blas"):
+        factors = PardisoFactors(block(), single=False)
+    with threadpool_limits(2, "blas"):
+        before = mkl().MKL_Get_Max_Threads()
+        factors.solve(np.ones(3 * SIDE**3))
+        assert mkl().MKL_Get_Max_Threads() == before
