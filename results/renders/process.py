@@ -51,13 +51,13 @@ class DrawingProcess:
         self._gave_up = {} if gave_up is None else gave_up
         self._too_slow = False
         self._closed = False
-        self._starting = Lock()
+        self._lock = Lock()
 
     def __enter__(self) -> DrawingProcess:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with self._starting:  # by another thread, perhaps just now
+        with self._lock:  # by another thread, perhaps just now
             self._closed = True
             self._end()
         if self._folder is not None:
@@ -79,14 +79,17 @@ class DrawingProcess:
             raise NotDrawnError(why_of(fault, "the folder for temporary files: ")) from fault
 
     def _drawn(self, name: str, arguments: tuple[Any, ...]) -> bytes:
-        if self._folder is None:
-            # who ends the drawing does not wait for a thread that is about to write into it
-            self._folder = tempfile.TemporaryDirectory(
-                prefix="flexspline-picture-", ignore_cleanup_errors=True
-            )
-        asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
-        made.unlink(missing_ok=True)
-        asked.write_bytes(packed(arguments))
+        content = packed(arguments)
+        with self._lock:  # an end that comes meanwhile removes the folder afterwards
+            if self._closed:
+                raise NotDrawnError(STOPPED)
+            if self._folder is None:
+                self._folder = tempfile.TemporaryDirectory(
+                    prefix="flexspline-picture-", ignore_cleanup_errors=True
+                )
+            asked, made = (Path(self._folder.name) / n for n in ("asked.npz", "picture.png"))
+            made.unlink(missing_ok=True)
+            asked.write_bytes(content)
         question = {"function": name, "asked": str(asked), "made": str(made)}
         answer = self._exchange(json.dumps(question))
         if answer is None and self._closed:
@@ -100,7 +103,7 @@ class DrawingProcess:
 
     def _exchange(self, question: str) -> str | None:
         """The answer, None where the process ended first."""
-        with self._starting:
+        with self._lock:
             if self._closed:
                 return None
             process = self._running()

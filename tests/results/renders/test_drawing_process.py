@@ -89,6 +89,20 @@ def test_the_process_and_its_files_are_gone_in_the_end(tmp_path, monkeypatch) ->
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("drawn_before", [0, 1])
+def test_what_is_asked_for_after_the_end_leaves_no_files(
+    drawn_before: int, tmp_path, monkeypatch
+) -> None:
+    """A thread whose command has failed asks once more: a megabyte was left in each such command's wake."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with DrawingProcess() as process:
+        for _ in range(drawn_before):
+            process.draw(failing_drawings.good, "once")
+    with pytest.raises(NotDrawnError, match="stopped"):
+        process.draw(failing_drawings.good, "late")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_folder_with_modules_of_the_users_own_changes_nothing(tmp_path, monkeypatch) -> None:
     (tmp_path / "numpy.py").write_text("raise SystemExit('not this one')")
     monkeypatch.chdir(tmp_path)
