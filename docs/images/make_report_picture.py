@@ -21,12 +21,12 @@ WIDTH, GAP = 1200, 20
 
 def main() -> None:
     """The first page in light, the stress in dark, side by side."""
-    sys.path[:0] = [str(ROOT / "tests")]
+    sys.path.insert(0, str(ROOT / "tests" / "helpers"))
     from browser import chromium
 
     with tempfile.TemporaryDirectory() as name:
         design = str(ROOT / "examples" / "xb1-40.toml")
-        command = [sys.executable, "-m", "flexspline.results.cli", "run", design, "--out", name]
+        command = [sys.executable, "-m", "flexspline.results.entry", "run", design, "--out", name]
         subprocess.run(command, check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
         with chromium() as browser:
             shots = []

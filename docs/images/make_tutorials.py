@@ -1,4 +1,4 @@
-"""Makes the tutorials' pictures: runs their commands and shrinks what they draw.
+"""Makes the pictures of the tutorials and of the README's diagnosis: runs the commands, shrinks the pictures.
 
 python3 docs/images/make_tutorials.py
 """
@@ -15,7 +15,9 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 WIDTH = 1000
 MAKING = ("init", "run", "study", "diagnose")
+README_DIAGNOSIS = "diagnose examples/xb1-40.toml examples/measured/xb1-40-sweep.csv --out example"
 PICTURES = {
+    "example/causes.png": "xb1-40-causes.png",
     "design.out/wave_generator.png": "tutorial-wave-generator.png",
     "design.out/backlash_budget.png": "tutorial-budget.png",
     "length.out/pareto.png": "tutorial-pareto.png",
@@ -26,12 +28,13 @@ PICTURES = {
 
 def main() -> None:
     """Run what makes the pictures, then copy them."""
-    sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
+    sys.path[:0] = [str(ROOT / "tests" / "helpers"), str(ROOT / "tests")]
     from document_blocks import blocks
     from test_document_commands import desk, shell
 
     with tempfile.TemporaryDirectory() as name:
         folder = desk(Path(name))
+        shell(f"flexspline {README_DIAGNOSIS}", folder)
         for page in ("tutorial-designer.md", "tutorial-test-engineer.md"):
             for block in blocks(ROOT / "docs" / page):
                 if block.file:
