@@ -78,8 +78,9 @@ def write_pareto(path: Path, result: StudyResult) -> None:
         x, y = _values(result.feasible, first), _values(result.feasible, second)
         colour = _values(result.feasible, more[0]) if more else PALETTE[1]
         dots = axes.scatter(
-            x, y, s=26, c=colour, cmap=COLOUR_MAP if more else None, label="within the constraints"
-        )
+            x, y, s=26, c=colour, cmap=COLOUR_MAP if more else None,
+            label="within the constraints" if result.study.file.constraint else "designs",
+        )  # fmt: skip
         order = np.argsort(_values(front, first))
         at = np.column_stack([_values(front, first), _values(front, second)])[order]
         line = "-" if not more else ""  # a front of three is no curve here
@@ -195,4 +196,5 @@ def _settling(axes: Axes, result: StudyResult, key: str, sense: str) -> None:
     q = entry(key)
     axes.set_ylabel(f"{q.mathtext} in {q.unit}")
     axes.set_xlabel("design")
+    axes.locator_params("x", integer=True)
     axes.grid(True)
