@@ -10,6 +10,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.causes.operators import lags
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 
 THERMAL = "thermal_clearance"
@@ -96,9 +97,7 @@ class ThermalClearance(Cause):
         return shape["lag_s"] <= shape["longest_lag_s"] and off <= shape.get(MOST_OFF, 0.0)
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        if history.temperature_C is None:
-            raise ValueError("thermal clearance needs a temperature")
-        temperature = history.temperature_C
+        temperature = temperature_without_noise(history)
         if shape["lag_s"] > 0:
             constant, stages = np.array([shape["lag_s"]]), int(shape.get(STAGES, 1))
             for _ in range(stages):

@@ -186,11 +186,11 @@ def _crossing(explained: ExplainedSweep) -> Crossing | None:
     friction = prepared.ahead.amplitudes[0]
     way = direction_of_loading(true_history(prepared.sweep, prepared.offset_Nm))
     good = ~prepared.outlier & (way != 0)
-    gap = fit.measured_rig().gap_arcsec
+    gap = fit.gap_arcsec()
     left = fit.residual() + history.sign * gap / 2
     along = (way * history.torque_Nm + friction)[good]
     found = crossing(
-        along, (way * left)[good], gap, prepared.noise.std_arcsec, torque_noise_Nm(history)
+        along, (way * left)[good], gap[good], prepared.noise.std_arcsec, torque_noise_Nm(history)
     )
     if found is None:
         return None

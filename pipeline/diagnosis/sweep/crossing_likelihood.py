@@ -57,13 +57,14 @@ class CrossingRows:
 
     Attributes
     ----------
-    torque_Nm, left_arcsec : (n,) readings; angle less everything but the gap.
+    torque_Nm, left_arcsec, gap_arcsec : (n,) readings; angle less everything but the gap; the row's own gap,
+        which temperature or wear changes.
     noise_arcsec : of the angle. width_Nm : of the torque reading's noise.
     """
 
     torque_Nm: np.ndarray
     left_arcsec: np.ndarray
-    gap_arcsec: float
+    gap_arcsec: np.ndarray
     noise_arcsec: float
     width_Nm: float
 
@@ -72,7 +73,7 @@ class CrossingRows:
         cls,
         torque_Nm: np.ndarray,
         left_arcsec: np.ndarray,
-        gap_arcsec: float,
+        gap_arcsec: np.ndarray,
         noise_arcsec: float,
         width_Nm: float,
     ) -> CrossingRows:
@@ -80,7 +81,7 @@ class CrossingRows:
         order = np.argsort(torque_Nm)
         beside = np.abs(np.abs(left_arcsec) - gap_arcsec / 2)
         noise = max(noise_arcsec, MISFIT_RATIO * SIGMA_PER_MAD * float(np.median(beside)))
-        return cls(torque_Nm[order], left_arcsec[order], gap_arcsec, noise, width_Nm)
+        return cls(torque_Nm[order], left_arcsec[order], gap_arcsec[order], noise, width_Nm)
 
     def log_likelihood(self, places_Nm: np.ndarray, blurs: tuple[Blur, ...]) -> np.ndarray:
         """(p,) of the gap crossed at each place, whichever of the blurs is there."""
@@ -89,8 +90,9 @@ class CrossingRows:
 
     def _blurred(self, places_Nm: np.ndarray, blur: Blur) -> np.ndarray:
         """(p,) with one blur. Rows beyond its reach of every place are summed once, not place by place."""
+        left, gap, half = self.left_arcsec, self.gap_arcsec, self.gap_arcsec / 2
         below, above = (
-            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * self.gap_arcsec / 2)))])
+            np.concatenate([[0.0], np.cumsum(self._log(self._near(side * half, left), gap))])
             for side in (-1, 1)
         )
         reach = blur.reach * self.width_Nm
@@ -100,34 +102,38 @@ class CrossingRows:
         at = first[:, None] + np.arange(widest)
         inside = at < last[:, None]
         at = np.minimum(at, len(self.torque_Nm) - 1)
-        own = self._own(self.torque_Nm[at] - places_Nm[:, None], self.left_arcsec[at], blur)
+        own = self._own(self.torque_Nm[at] - places_Nm[:, None], left[at], gap[at], blur)
         return np.asarray(
             below[first]
             + above[-1]
             - above[last]
-            + np.where(inside, self._log(own), 0.0).sum(axis=1)
+            + np.where(inside, self._log(own, gap[at]), 0.0).sum(axis=1)
         )
 
-    def _own(self, beyond_Nm: np.ndarray, left: np.ndarray, blur: Blur) -> np.ndarray:
+    def _own(
+        self, beyond_Nm: np.ndarray, left: np.ndarray, gap: np.ndarray, blur: Blur
+    ) -> np.ndarray:
         """Density of rows so far beyond the place."""
-        half, beyond = self.gap_arcsec / 2, beyond_Nm / self.width_Nm
+        half, beyond = gap / 2, beyond_Nm / self.width_Nm
         if blur.ends:
             true = (beyond[..., None] - blur.reading * _nodes) / blur.ends
-            return self._near(half * erf(true / np.sqrt(2)), left[..., None]) @ _weights
+            mean = half[..., None] * erf(true / np.sqrt(2))
+            return self._near(mean, left[..., None]) @ _weights
         z = beyond / blur.reading
         up, in_gap = ndtr(z), IN_GAP * np.exp(-(z**2) / 2)
         either = up * self._near(half, left) + (1 - up) * self._near(-half, left)
         noise = self.noise_arcsec
-        anywhere = (ndtr((left + half) / noise) - ndtr((left - half) / noise)) / self.gap_arcsec
+        anywhere = (ndtr((left + half) / noise) - ndtr((left - half) / noise)) / gap
         return np.asarray((1 - in_gap) * either + in_gap * anywhere)
 
-    def _near(self, mean: np.ndarray | float, left: np.ndarray | None = None) -> np.ndarray:
-        """Normal density of the angles (by default of all rows) about a mean."""
-        off = (self.left_arcsec if left is None else left) - mean
+    def _near(self, mean: np.ndarray, left: np.ndarray) -> np.ndarray:
+        """Normal density of angles about a mean."""
         noise = self.noise_arcsec
-        return np.asarray(np.exp(-((off / noise) ** 2) / 2) / (np.sqrt(2 * np.pi) * noise))
+        return np.asarray(
+            np.exp(-(((left - mean) / noise) ** 2) / 2) / (np.sqrt(2 * np.pi) * noise)
+        )
 
-    def _log(self, own: np.ndarray) -> np.ndarray:
-        """A row that the model does not claim lies anywhere over twice the gap."""
-        other = OUTLIER_SHARE / (2 * self.gap_arcsec + SPIKE_REACH * self.noise_arcsec)
+    def _log(self, own: np.ndarray, gap: np.ndarray) -> np.ndarray:
+        """A row that the model does not claim lies anywhere over twice its gap."""
+        other = OUTLIER_SHARE / (2 * gap + SPIKE_REACH * self.noise_arcsec)
         return np.asarray(np.log((1 - OUTLIER_SHARE) * own + other))

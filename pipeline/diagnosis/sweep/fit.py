@@ -28,7 +28,8 @@ from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, Regres
 LINEAR = {SERIES: 0, CLEARANCE: 1}
 """Causes whose elements are part of the measured compliance or gap."""
 
-
+LEAST_GAP_ARCSEC = 1e-3
+"""Of a row's own: no angle reading resolves less, and a gap is never negative."""
 SLOPE_STEP = 0.3
 """Of a standard deviation, for slopes of magnitudes: near enough to the mean to be first order."""
 
@@ -139,6 +140,14 @@ class SweepFit:
             if term.owner == owner:
                 total += self.evidence.columns.all[:, term.at] @ amplitudes
         return total
+
+    def gap_arcsec(self) -> np.ndarray:
+        """(n,) of each row, as measured and as temperature or wear changes it; not below LEAST_GAP_ARCSEC."""
+        gap = np.full(len(self.rig.history), self.measured_rig().gap_arcsec)
+        for cause_id in self.elements():
+            if known_causes()[cause_id].shows_as == "gap":
+                gap += 2 * self.rig.history.sign * self.added(cause_id)
+        return np.maximum(gap, LEAST_GAP_ARCSEC)
 
     def residual(self) -> np.ndarray:
         """(n,) measured less fitted angle, all rows."""

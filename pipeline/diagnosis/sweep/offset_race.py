@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, TooFewRow
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import NAMED_COST, Search
-from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing
+from flexspline.pipeline.diagnosis.sweep.torque_offset import SEEN_RATIO, Crossing
 
 OFFSET_ROUNDS = 4
 """Races at most, each with the offset that the last one found; doubled, no verdict of 12 made-up
@@ -46,8 +46,8 @@ def with_torque_offset(plain: ExplainedSweep) -> ExplainedSweep:
         raced = _raced_with(prepared, guess)
         if any(gained(shifted, plain) > NAMED_COST for shifted in raced):
             first, last = raced[0], raced[-1]
-            # a place that was found from the first may leave a few rows on the wrong side of the gap
-            return first if gained(first, last) > NAMED_COST else last
+            # not by the angles' misfit: lags of temperature, tuned in each race, move that by tens of nats
+            return first if wrong_side_rows(first) < wrong_side_rows(last) else last
     if seen is not None and _counts(seen, prepared):
         return (plain, *_raced_with(prepared, seen.offset_Nm))[-1]
     return plain
@@ -84,6 +84,23 @@ def _raced_with(plain: PreparedSweep, offset_Nm: float) -> tuple[ExplainedSweep,
     return (found[0], replace(found[-1], offset_Nm=offset_Nm))
 
 
+def wrong_side_rows(explained: ExplainedSweep) -> int:
+    """How many rows, of those whose side of the gap is sure, lie nearer to its other side."""
+    prepared, fit = explained.prepared, explained.identified.fit
+    history, gap = prepared.rig.history, fit.gap_arcsec()
+    seen = (gap > SEEN_RATIO * prepared.noise.std_arcsec) & (
+        np.abs(history.torque_Nm) > _unsure_Nm(prepared)
+    )
+    seen &= ~(turning(history) | settling(history))
+    return int((seen & (history.sign * fit.residual() < -gap / 2)).sum())
+
+
+def _unsure_Nm(prepared: PreparedSweep) -> float:
+    """Torque within which the side of the gap is unsure: nobody knows it nearer to the gap's step."""
+    noise_Nm = torque_noise_Nm(prepared.rig.history)
+    return max(BESIDE_STEP * prepared.rig.torque_Nm, BAND_SIGMAS * noise_Nm)
+
+
 def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
     """By how many nats a record is better explained by `found`, which takes another torque for the true one.
 
@@ -91,8 +108,7 @@ def gained(found: ExplainedSweep, plain: ExplainedSweep) -> float:
     calls a spike costs it what a spike does, whatever its misfit.
     """
     one, other = (e.prepared.rig.history for e in (found, plain))
-    largest = plain.prepared.rig.torque_Nm
-    side = max(BESIDE_STEP * largest, BAND_SIGMAS * torque_noise_Nm(plain.prepared.rig.history))
+    side = _unsure_Nm(plain.prepared)
     common = (np.abs(one.torque_Nm) > side) & (np.abs(other.torque_Nm) > side)
     for history in (one, other):
         common &= ~(turning(history) | settling(history))

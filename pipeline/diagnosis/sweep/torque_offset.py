@@ -51,7 +51,7 @@ class Crossing:
 def crossing(
     torque_Nm: np.ndarray,
     left_arcsec: np.ndarray,
-    gap_arcsec: float,
+    gap_arcsec: np.ndarray | float,
     noise_arcsec: float,
     torque_noise_Nm: float,
 ) -> Crossing | None:
@@ -60,12 +60,14 @@ def crossing(
     Parameters
     ----------
     torque_Nm : (n,) readings. left_arcsec : (n,) measured angle less everything but the gap; what an
-        offset does to the twist itself is in the zero, which is free.
+        offset does to the twist itself is in the zero, which is free. gap_arcsec : of all rows, or (n,) each
+        row's own.
 
     Returns None where the gap is too small to see, or no rows lie near zero.
     """
     largest = float(np.abs(torque_Nm).max())
-    if gap_arcsec < SEEN_RATIO * noise_arcsec or largest == 0:
+    gap = np.broadcast_to(gap_arcsec, torque_Nm.shape)
+    if gap.max() < SEEN_RATIO * noise_arcsec or largest == 0:
         return None
     if not both_ways(torque_Nm):
         return None
@@ -73,9 +75,9 @@ def crossing(
     if not near.any():
         return None
     width = max(torque_noise_Nm, LEAST_WIDTH * largest)
-    rows = CrossingRows.of(torque_Nm[near], left_arcsec[near], gap_arcsec, noise_arcsec, width)
+    rows = CrossingRows.of(torque_Nm[near], left_arcsec[near], gap[near], noise_arcsec, width)
     even = np.linspace(-OFFSET_REACH, OFFSET_REACH, OFFSET_STEPS) * largest * INSIDE_SHARE
-    inside = rows.torque_Nm[np.abs(rows.left_arcsec) < WITHIN_GAP * gap_arcsec]
+    inside = rows.torque_Nm[np.abs(rows.left_arcsec) < WITHIN_GAP * rows.gap_arcsec]
     places = np.union1d(even, np.round(inside / width) * width)
     nats = rows.log_likelihood(places, WIDEST)
     for _ in range(ZOOMS):

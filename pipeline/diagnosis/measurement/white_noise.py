@@ -1,0 +1,33 @@
+"""The white noise of readings that follow something slower."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
+
+FEWEST_FOR_NOISE = 8
+"""Readings; of fewer a median of third differences rests on less than five."""
+FIFTH_PER_SIGMA = 0.2533
+"""What a fifth of |x| lies below for x normal with deviation 1, Φ⁻¹(3/5)."""
+
+
+def white_noise(readings: np.ndarray, t: np.ndarray) -> float | None:
+    """Standard deviation of readings (n,) at times (n,), in their unit; None of too few.
+
+    The least of three estimates, each too large where its assumption fails: from readings off the straight
+    line between their neighbours (ramps), from third differences (curves, evenly sampled), and from the
+    smallest fifth of the steps from one to the next (holds).
+    """
+    if len(readings) < FEWEST_FOR_NOISE:
+        return None
+    span = np.maximum(t[2:] - t[:-2], ABOVE_ZERO)
+    share = np.clip((t[1:-1] - t[:-2]) / span, 0.0, 1.0)
+    off = readings[1:-1] - (1 - share) * readings[:-2] - share * readings[2:]
+    line = np.median(np.abs(off) / np.sqrt(1 + share**2 + (1 - share) ** 2)) / MAD_PER_SIGMA
+    third = (
+        np.median(np.abs(np.diff(readings, 3))) / MAD_PER_SIGMA / np.sqrt(20)
+    )  # 1² + 3² + 3² + 1²
+    first = np.quantile(np.abs(np.diff(readings)), 0.2) / FIFTH_PER_SIGMA / np.sqrt(2)
+    return float(min(line, third, first))
