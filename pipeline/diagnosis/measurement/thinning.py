@@ -41,7 +41,7 @@ def thinned(sweep: Sweep) -> Sweep:
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
         rows = rows[~_spikes(sweep.angle_arcsec[rows])]
-        groups += _blocks(rows, near[rows], block)
+        groups += _blocks(rows, near[rows] | _beside_jumps(sweep.angle_arcsec[rows]), block)
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
@@ -49,7 +49,7 @@ def thinned(sweep: Sweep) -> Sweep:
 
 
 def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
-    """Blocks of neighbouring rows (m,); each row near zero torque stays by itself.
+    """Blocks of neighbouring rows (m,); each row near the gap's crossing stays by itself.
 
     A mean over both sides of the gap is on neither.
     """
@@ -68,6 +68,19 @@ def _spared(labels: np.ndarray, counts: np.ndarray, block: int) -> np.ndarray:
     if len(labels) <= many:
         return labels
     return labels[np.unique(np.linspace(0, len(labels) - 1, max(2, many)).round().astype(int))]
+
+
+def _beside_jumps(angle: np.ndarray) -> np.ndarray:
+    """Rows on either side of a jump: a reading that is shifted is not near zero where the gap is crossed."""
+    beside = np.zeros(len(angle), bool)
+    if len(angle) < 5:
+        return beside
+    step = np.diff(angle)
+    off = np.abs(step - np.median(step))
+    jumps = off > SPIKE * (SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC)
+    beside[:-1] |= jumps
+    beside[1:] |= jumps
+    return beside
 
 
 def _spikes(angle: np.ndarray) -> np.ndarray:

@@ -161,16 +161,17 @@ def test_no_offset_from_torque_one_way() -> None:
     assert crossing(torque, 30.0 * np.sign(torque), 60.0, 1.0, 0.01) is None
 
 
-def test_thinning_keeps_straight_branches_and_both_sides_of_the_gap() -> None:
+@pytest.mark.parametrize("too_high_Nm", [0.0, 0.3])
+def test_thinning_keeps_straight_branches_and_both_sides_of_the_gap(too_high_Nm: float) -> None:
     n = 40_000
     torque = 2.0 * np.sin(np.linspace(0, 8 * np.pi, n))
     cycle = np.repeat(np.arange(4), n // 4)
     history = History(torque, np.zeros(n, int), cycle, np.arange(n, dtype=float))
     angle = PREDICTION.angle_arcsec(history)
-    short = thinned(_sweep(history, angle))
+    short = thinned(_sweep(history.shifted(-too_high_Nm), angle))
     assert len(short) < 1.3 * MOST_FIT_ROWS
     # on a straight branch means of torque and angle stay on it; a mean over the gap would be on neither side
-    off = short.angle_arcsec - PREDICTION.angle_arcsec(short.history)
+    off = short.angle_arcsec - PREDICTION.angle_arcsec(short.history.shifted(too_high_Nm))
     assert np.abs(off).max() < 1e-9
     assert set(np.unique(short.history.cycle)) == {0, 1, 2, 3}
 
