@@ -88,6 +88,7 @@ def run(
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
         from flexspline.results.report.build import write_run_page, write_run_report
+        from flexspline.results.report.content import ExtendedSum
 
         with RunDrawings(job.context) as drawings:
             with kept(job, json):
@@ -101,6 +102,7 @@ def run(
                 torque = job.design.load.torque_Nm
                 extended = extended_backlash(result.backlash, measured.model, torque)
             name = measured.path.name if measured else ""
+            total = ExtendedSum(name, extended.total_arcsec) if extended is not None else None
 
             def record() -> Record:
                 added = extended_record(extended, name) if extended is not None else {}
@@ -112,8 +114,8 @@ def run(
                 tell(f"warning: {line}")
         with job.context.progress.stage("report"):
             files = (job.file,)
-            write_run_report(job.folder / "report.pdf", result, pictures, name, files)
-        write_run_page(job.folder / "report.html", job.context, result, pictures, name, files)
+            write_run_report(job.folder / "report.pdf", result, pictures, total, files)
+        write_run_page(job.folder / "report.html", job.context, result, pictures, total, files)
         missing = {"pictures_missing": dict(pictures.missing)} if pictures.missing else {}
         deliver(job, record() | missing, json)
 

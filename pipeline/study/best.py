@@ -1,4 +1,4 @@
-"""The best design of a study on the wave generator, by the solid model: what its picture shows."""
+"""The best design of a study on the wave generator, as `run` computes it: what its picture shows."""
 
 from __future__ import annotations
 

@@ -146,7 +146,17 @@ def row_notes(prepared: PreparedSweep) -> list[str]:
         if count
     ]
     found.append(
-        f"{grouped(counts.crossing, 0)} {what} with |T| < {prepared.band_Nm:.3g} N·m (backlash crossing) "
+        f"{grouped(counts.crossing, 0)} {what} {_at_the_crossing(prepared)} (backlash crossing) "
         "were not used for identification" + (f"; nor were {', '.join(others)}" if others else "")
     )
     return found
+
+
+def _at_the_crossing(prepared: PreparedSweep) -> str:
+    """Which rows those are: the teeth's torque counts, which is not what was read."""
+    band = f"{prepared.band_Nm:.3g} N·m"
+    if prepared.ahead is not None:
+        return f"where friction ahead of the teeth leaves them less than {band}"
+    if prepared.offset_Nm:
+        return f"within {band} of the shifted zero of torque"
+    return f"with |T| < {band}"

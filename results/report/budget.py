@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.results.doubt import spread_sentence
+from flexspline.results.quantities import quantity
 from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
 from flexspline.results.report.document import (
@@ -20,6 +21,8 @@ from flexspline.results.report.document import (
 from flexspline.results.report.picture_blocks import shown
 from flexspline.results.report.spans import Words, plain, symbol
 
+EXTENDED = "extended.total_arcsec"
+"""The sum's key in `result.json`."""
 _DELTA: Node = ("symbol", "Δ_bl")
 _SHAFT: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_e")])
 _FLEXSPLINE: Node = ("over", [("text", "2"), ("symbol", "T_L")], [("symbol", "K_b")])
@@ -73,18 +76,23 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         caption=f"The four terms and their sum; {spread_sentence(content.backlash)}.",
         strong=len(rows) - 1,
     )  # fmt: skip
-    extended = (
-        plain(" Below the simulated sum: what the extended model in ")
-        + plain(content.extended_model)
-        + plain(" adds between the two torques.")
-        if content.extended_model
-        else ()
-    )
+    shown_below = ""
+    if content.extended is not None:
+        model, total = content.extended.model, content.extended.total_arcsec
+        more, text = total - content.backlash.total_arcsec, quantity(EXTENDED).text
+        yield Paragraph(
+            plain(
+                f"With the extended model in {model} the backlash is {text(total)} arcsec: the measured "
+                f"stiffness and gap, and the causes found, {'add' if more >= 0 else 'take off'} "
+                f"{text(abs(more))} arcsec. No standard deviation is computed for this sum."
+            )
+        )
+        shown_below = f" Below the simulated sum: what the model in {model} adds."
     stated = content.backlash.std_arcsec is not None
     terms = plain(
         "The terms as they add up"
         + (", the total with one standard deviation, and its sources." if stated else ".")
     )
     line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture("backlash_budget", terms + extended, 62))
+    yield from shown(content, roomy, Picture("backlash_budget", terms + plain(shown_below), 62))
     yield from shown(content, roomy, Picture("torque_angle", line, 54))

@@ -11,7 +11,7 @@ from flexspline.pipeline.parts import AnalysisContext
 from flexspline.results.atomic import write_bytes
 from flexspline.results.pictures import RunPictures
 from flexspline.results.report.attached import Attachment
-from flexspline.results.report.content import ReportContent
+from flexspline.results.report.content import ExtendedSum, ReportContent
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.sections import run_document
 from flexspline.results.report.versions import library_versions
@@ -23,11 +23,11 @@ def write_run_report(
     path: Path,
     result: RunResult,
     pictures: RunPictures,
-    extended_model: str = "",
+    extended: ExtendedSum | None = None,
     attached: tuple[Attachment, ...] = (),
 ) -> None:
     """`report.pdf` of `flexspline run`."""
-    write_report(path, report_content(result, pictures, extended_model, attached))
+    write_report(path, report_content(result, pictures, extended, attached))
 
 
 def write_run_page(
@@ -35,11 +35,11 @@ def write_run_page(
     context: AnalysisContext,
     result: RunResult,
     pictures: RunPictures,
-    extended_model: str = "",
+    extended: ExtendedSum | None = None,
     attached: tuple[Attachment, ...] = (),
 ) -> None:
     """`report.html` of `flexspline run`: the same content, with 3-D views, in one file."""
-    content = report_content(result, pictures, extended_model, attached)
+    content = report_content(result, pictures, extended, attached)
     images = {}
     for name, source in content.pictures.items():
         image = png(source)
@@ -51,7 +51,7 @@ def write_run_page(
 def report_content(
     result: RunResult,
     pictures: RunPictures,
-    extended_model: str,
+    extended: ExtendedSum | None,
     attached: tuple[Attachment, ...],
 ) -> ReportContent:
     """What a run's report says, before any layout."""
@@ -76,6 +76,6 @@ def report_content(
         warnings=all_warnings(result),
         stage_seconds=result.stage_seconds,
         versions=library_versions(),
-        extended_model=extended_model,
+        extended=extended,
         attached=attached,
     )

@@ -16,6 +16,14 @@ from flexspline.results.report.attached import Attachment
 
 
 @dataclass(frozen=True)
+class ExtendedSum:
+    """The backlash with what an extended model adds, and the name of the model's file."""
+
+    model: str
+    total_arcsec: float
+
+
+@dataclass(frozen=True)
 class ReportContent:
     """Everything that one report says.
 
@@ -35,7 +43,7 @@ class ReportContent:
     warnings : one line each.
     stage_seconds : elapsed time of each stage that was computed and not read from the cache.
     versions : name and version of the libraries that computed and drew.
-    extended_model : name of the extended model's file whose terms the budget shows; "" for none.
+    extended : the sum with an extended model, whose terms the budget shows.
     attached : the files that the report carries, the design file first.
     """
 
@@ -57,7 +65,7 @@ class ReportContent:
     gear_missing: str = ""
     stage_seconds: Mapping[str, float] | None = None
     versions: Mapping[str, str] | None = None
-    extended_model: str = ""
+    extended: ExtendedSum | None = None
     attached: tuple[Attachment, ...] = ()
 
     @property

@@ -57,7 +57,7 @@ CAPTIONS = {
     "constraint allows.",
     "convergence.png": "Every design in the order chosen, and the best so far.",
     "best.png": "The best designs in section.",
-    BEST_STRESS: "Design {first} on the wave generator, by the solid model.",
+    BEST_STRESS: "Design {first} on the wave generator, as flexspline run computes it.",
     "tolerance.png": "Distribution; Sobol indices and how much tighter tolerances narrow the 95 % range, "
     "where known.",
 }

@@ -17,7 +17,9 @@ from flexspline.pipeline.diagnosis.causes.micro_slip import (
 )
 from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
+from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE, square_loops
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import CLEARED, less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 FRICTION = "friction_hysteresis"
@@ -66,7 +68,8 @@ class FrictionHysteresis(Cause):
     closing (`loaded`); and whether the friction also takes torque at the loop's ends (`held` = 1) or
     leaves the chord as it is (`held` = 0).
 
-    Micro-slip is an element of another kind: no threshold, but a `power` of torque (`micro_slip.py`).
+    Two elements are of other kinds, without a threshold: micro-slip, with a `power` of torque
+    (`micro_slip.py`), and a loop with `square` ends (`square_loop.py`).
 
     Friction ahead of the teeth (output bearing, seals) is an element of another kind: its amplitude is a
     torque F [N·m], and gap and elasticity act on T − F·z (`sliding.py`). It adds nothing to the angle by
@@ -88,10 +91,10 @@ class FrictionHysteresis(Cause):
 
     def shapes(self, rig: Rig) -> list[Shape]:
         largest = rig.torque_Nm
-        deadband = max(DEADBAND * largest, deadband_Nm(rig.history))
+        deadband = max(DEADBAND * largest, CLEARED * deadband_Nm(rig.history))
         found: list[Shape] = []
         # an element narrower than the torque's noise cannot be seen
-        least = deadband_Nm(rig.history) / largest
+        least = deadband / largest
         shares = [s for s in THRESHOLDS if s >= least] or [THRESHOLDS[-1]]
         for share in shares:
             for spread, loaded, held, start in VARIANTS:
@@ -102,13 +105,15 @@ class FrictionHysteresis(Cause):
                     "reach": CLOSING_REACH * (loaded == CLOSING), "growth": float(loaded == GROWING),
                 })  # fmt: skip
         return found + [
-            {POWER: p, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
-            for p in POWERS for held in (1, 0)
+            {**kind, "held": held, "largest_torque_Nm": largest, "deadband_Nm": deadband}
+            for kind in ({SQUARE: 1.0}, *({POWER: p} for p in POWERS)) for held in (1, 0)
         ]  # fmt: skip
 
     def possible(self, shape: Shape) -> bool:
         if POWER in shape:
             return LEAST_POWER <= shape[POWER] <= MOST_POWER
+        if SQUARE in shape:
+            return True
         return (
             shape["threshold_Nm"] >= shape["deadband_Nm"]
             and (
@@ -130,13 +135,21 @@ class FrictionHysteresis(Cause):
 
     def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
         """Nothing for elements ahead of the teeth: they are in the history's torque."""
-        own = [s for s in shapes if AHEAD not in s and POWER not in s]
+        history = less_jitter(history)
+        own = [s for s in shapes if "threshold_Nm" in s]
         behind = iter(self._behind(own, history) if own else ())
         slipping = iter(micro_slips([s for s in shapes if POWER in s], history))
+        square = iter(square_loops([s for s in shapes if SQUARE in s], history))
         none = np.zeros((len(history), 1))
-        return [
-            none if AHEAD in s else next(slipping) if POWER in s else next(behind) for s in shapes
-        ]
+
+        def column(s: Shape) -> np.ndarray:
+            if POWER in s:
+                return next(slipping)
+            if SQUARE in s:
+                return next(square)
+            return next(behind) if "threshold_Nm" in s else none
+
+        return [column(s) for s in shapes]
 
     def _behind(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
         """Columns of elements with a threshold."""

@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.ramps import (
     shortest_lag_s,
     slowest_ramp_s,
 )
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import CLEARED, less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
 RATE = "rate_dependence"
@@ -25,8 +25,6 @@ LAG_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)
 LONGER_SHARES = (0.7, 1.0, 1.6, 2.5, 4.0)
 """The same where torque is never held and ramps differ, up to half of the slowest cycle's: at one rate so
 long a lag may be friction. Four of the quickest cycle's ramps are 98 % of its twist lost."""
-CLEARED = 0.25
-"""Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
 EXPONENTS = (0.6, 0.8, 1.25, 1.6)
 """Of the rate: twist that levels off with it or steepens; refined, so that steps of a third do."""
 LEAST_EXPONENT, MOST_EXPONENT = 0.4, 1.8

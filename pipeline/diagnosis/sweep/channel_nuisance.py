@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.measurement.temperature import temperature_without_noise
 from flexspline.pipeline.diagnosis.prediction import REFERENCE_C
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import (
@@ -22,8 +23,9 @@ TELLING = 7
 """Positions up to here can be anything and yet be the harmonics 1, 2 and 4."""
 WAVES = range(3, 61)
 """Half periods over the time of the record."""
-STEADY_K = 0.3
-"""A temperature that varies by less is constant to a usual sensor's ±0.3 K at 0 °C (IEC 60751, class B)."""
+STEADY_K = 0.6
+"""A temperature that varies by less is constant: at either end a usual sensor is within ±0.3 K (IEC 60751,
+class B, at 0 °C), and a metal's stiffness changes by 0.03 %/K."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
 DEGREES = (1, 2, 3)
@@ -103,7 +105,7 @@ def over_temperature(rig: Rig) -> Made:
     change with temperature at 20 °C at all, and no material does that.
     """
     temperature = rig.history.temperature_C
-    if temperature is None or np.ptp(temperature) < STEADY_K:
+    if temperature is None or np.ptp(temperature_without_noise(rig.history)) < STEADY_K:
         return
     torque = rig.history.torque_Nm / rig.torque_Nm
     warm = to_one(temperature - REFERENCE_C)

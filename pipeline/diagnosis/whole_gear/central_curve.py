@@ -30,6 +30,10 @@ FEWEST_CYCLES = 3
 """From which on their scatter says how sure a mean is."""
 
 
+LEAST_SHARE = 1e-3
+"""Of the largest torque: below it the gear's own curve moves by less than any reading resolves."""
+
+
 @dataclass(frozen=True)
 class CentralCurve:
     """Half of what lies between +T and −T, at m places of torque.
@@ -50,7 +54,9 @@ class CentralCurve:
 
     @property
     def smallest_Nm(self) -> float:
-        return float(min(sizes.min() for sizes in self.torques_Nm))
+        """Not below LEAST_SHARE of the largest, where friction ahead of the teeth leaves them torque at 0."""
+        smallest = float(min(sizes.min() for sizes in self.torques_Nm))
+        return max(smallest, LEAST_SHARE * self.largest_Nm)
 
 
 def central_curve(

@@ -86,7 +86,8 @@ def _states(chain: Chain, curve: CentralCurve, start: Equilibrium) -> list[Equil
 
 def _as_recorded(chain: Chain, curve: CentralCurve, states: list[Equilibrium]) -> np.ndarray:
     angle = PchipInterpolator(_knots(curve), [chain.angle(at) for at in states])
-    return ARCSEC_PER_RAD * np.array([float(angle(t).mean()) for t in curve.torques_Nm])
+    read = [np.maximum(sizes, curve.smallest_Nm) for sizes in curve.torques_Nm]
+    return ARCSEC_PER_RAD * np.array([float(angle(sizes).mean()) for sizes in read])
 
 
 def _chi_square(curve: CentralCurve, angles: np.ndarray) -> float:

@@ -8,6 +8,7 @@ from blank_pictures import blank_pictures
 from hand_made_gear import content, design
 from page_text import letters, pdf_letters, read_page, spans, strings
 
+from flexspline.results.report.content import ExtendedSum
 from flexspline.results.report.document import Document, Heading, Paragraph
 from flexspline.results.report.page import page_of, png
 from flexspline.results.report.payload import payload_of
@@ -38,7 +39,9 @@ def page(made, views=None):
 
 def test_pdf_and_page_say_the_payload(tmp_path):
     made = content(
-        pictures=blank_pictures(tmp_path), warnings=("the wall is thin",), extended_model="m.toml"
+        pictures=blank_pictures(tmp_path),
+        warnings=("the wall is thin",),
+        extended=ExtendedSum("m.toml", 90.0),
     )
     write_report(tmp_path / "r.pdf", made)
     printed = pdf_letters(tmp_path / "r.pdf")
@@ -61,10 +64,12 @@ def test_pdf_and_page_say_the_payload(tmp_path):
 
 @pytest.mark.parametrize("name", NASTY)
 def test_names_print_as_their_letters(name, tmp_path):
-    plain = content(pictures=blank_pictures(tmp_path), warnings=("x",), extended_model="x")
+    plain = content(
+        pictures=blank_pictures(tmp_path), warnings=("x",), extended=ExtendedSum("x", 90.0)
+    )
     nasty = content(
         pictures=plain.pictures, design=design(name=name, material=name), warnings=(name,),
-        extended_model=name, stage_seconds={name: 1.0},
+        extended=ExtendedSum(name, 90.0), stage_seconds={name: 1.0},
     )  # fmt: skip
     shown, tags, _ = read_page(page(nasty))
     # running head, title, facts, warning, budget's caption, stages

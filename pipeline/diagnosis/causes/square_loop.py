@@ -1,0 +1,47 @@
+"""Friction that turns with the torque at once: a loop with square ends.
+
+Coulomb friction on a stiff part slips within a torque too small to be read, and a rig that reads torque and
+angle on either side of its own friction shows the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.causes.cause import Shape
+from flexspline.pipeline.diagnosis.causes.operators import rising
+from flexspline.pipeline.diagnosis.measurement.history import History
+
+SQUARE = "square"
+"""The parameter of such an element, and of no other; 1."""
+
+
+def square_loops(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
+    """Columns (n, 1): −1 while torque rises, 1 while it falls. With `held` = 0 the chord between the loop's
+    ends is taken off, where the simulated stiffness has it."""
+    if not shapes:
+        return []
+    way = _from_the_turn(history, rising(history, shapes[0]["deadband_Nm"]))
+    chord = history.torque_Nm / shapes[0]["largest_torque_Nm"]
+    return [((chord if not s["held"] else 0.0) - way)[:, None] for s in shapes]
+
+
+def _from_the_turn(history: History, way: np.ndarray) -> np.ndarray:
+    """(n,) the direction from the turn on: it is seen only when torque has come back beyond its noise.
+
+    The row of the largest or smallest torque itself is neither.
+    """
+    out = way.copy()
+    for rows in history.unit_slices:
+        torque, begun = history.torque_Nm[rows], 0
+        for seen in np.flatnonzero(np.diff(way[rows])) + 1:
+            before = way[rows[seen - 1]]
+            if before == 0:
+                continue
+            turn = begun + int(np.argmax(before * torque[begun:seen]))
+            out[rows[turn]] = 0.0
+            out[rows[turn + 1 : seen]] = way[rows[seen]]
+            begun = turn
+    return out
