@@ -22,6 +22,8 @@ from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_mode
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.prediction import prediction_of
 from flexspline.pipeline.diagnosis.whole_gear.against import against_gear
+from flexspline.pipeline.diagnosis.whole_gear.central_curve import CentralCurve
+from flexspline.pipeline.diagnosis.whole_gear.fitted_input import angles_as_recorded
 from flexspline.pipeline.gear_chain import Chain, chain_of
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml").changed({"shaft.bolt_count": 0})
@@ -75,6 +77,17 @@ def test_what_bends_as_the_gear_does_is_no_hardening(chain: Chain, record: Path)
     assert gain is not None
     assert gain.rmse_before == pytest.approx(FRICTION_arcsec, rel=0.05)
     assert gain.rmse_after < 1.2 * gain.noise_floor
+
+
+def test_a_place_that_was_read_at_no_torque_has_an_angle(chain: Chain) -> None:
+    """Friction ahead of the teeth leaves them torque there: the row is used. It was a traceback."""
+    read = (np.array([0.0, 0.4]), np.array([5.0]), np.array([10.0]))
+    curve = CentralCurve(read, np.zeros(3), np.ones(3))
+    found = angles_as_recorded(chain, curve, chain.model.at_torque(curve.smallest_Nm))
+    near, *rest = chain.angles([0.4, 5.0, 10.0]) * ARCSEC_PER_RAD
+    # chords of the curve's places: within two hundredths, as above
+    np.testing.assert_allclose(found[1:], rest, rtol=0.02)
+    assert 0 < found[0] < near
 
 
 def test_a_bend_is_odd_and_goes_on_beyond_its_end() -> None:
