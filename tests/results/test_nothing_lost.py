@@ -140,7 +140,7 @@ def test_a_report_is_made_of_what_there_is(revolved, tmp_path, monkeypatch):
     assert not result.fields
     lines = [line for line in all_warnings(result) if line.endswith(f"not found, {WHY}")]
     assert len(lines) == 4  # two peaks under torque, the ellipse, the contact
-    content = build.report_content(result, RunPictures({}), "", ())
+    content = build.report_content(result, RunPictures({}), None, ())
     write_report(tmp_path / "r.pdf", content)
     page, *_ = read_page(page_of(run_document(content), {}, {}).decode())
     for said in (pdf_letters(tmp_path / "r.pdf"), letters(" ".join(page))):
