@@ -13,34 +13,45 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import still
 
 SQUARE = "square"
 """The parameter of such an element, and of no other; 1."""
 
 
 def square_loops(shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
-    """Columns (n, 1): −1 while torque rises, 1 while it falls. With `held` = 0 the chord between the loop's
-    ends is taken off, where the simulated stiffness has it."""
+    """Columns (n, 1): −1 while torque rises, and rests then, 1 while it falls.
+
+    With `held` = 0 the chord between the loop's ends is taken off, where the simulated stiffness has it.
+    """
     if not shapes:
         return []
-    way = _from_the_turn(history, rising(history, shapes[0]["deadband_Nm"]))
+    deadband = shapes[0]["deadband_Nm"]
+    way = _from_the_turn(history, rising(history, deadband), deadband)
     chord = history.torque_Nm / shapes[0]["largest_torque_Nm"]
     return [((chord if not s["held"] else 0.0) - way)[:, None] for s in shapes]
 
 
-def _from_the_turn(history: History, way: np.ndarray) -> np.ndarray:
+def _from_the_turn(history: History, way: np.ndarray, deadband_Nm: float) -> np.ndarray:
     """(n,) the direction from the turn on: it is seen only when torque has come back beyond its noise.
 
-    The row of the largest or smallest torque itself is neither.
+    The row of the largest or smallest torque itself is neither: the last one, where torque rests there.
     """
-    out = way.copy()
+    out, last_at_rest = way.copy(), np.arange(len(way))
+    for hold in still(history):
+        last_at_rest[hold] = hold[-1]
     for rows in history.unit_slices:
         torque, begun = history.torque_Nm[rows], 0
         for seen in np.flatnonzero(np.diff(way[rows])) + 1:
             before = way[rows[seen - 1]]
             if before == 0:
                 continue
-            turn = begun + int(np.argmax(before * torque[begun:seen]))
+            height = before * torque[begun:seen]
+            turn = begun + int(np.argmax(height))
+            near = rows[begun:seen][height > height.max() - deadband_Nm]
+            resting = last_at_rest[near][last_at_rest[near] > near]
+            if len(resting):
+                turn = min(int(np.searchsorted(rows, resting.max())), int(seen) - 1)
             out[rows[turn]] = 0.0
             out[rows[turn + 1 : seen]] = way[rows[seen]]
             begun = turn

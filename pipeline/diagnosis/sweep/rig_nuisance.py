@@ -120,7 +120,11 @@ def ringing(rig: Rig) -> Made:
         return
     spacing = float(
         np.median(
-            [np.quantile(np.diff(history.time_s[r]), FINEST_PART) for r in history.unit_slices]
+            [
+                np.quantile(np.diff(history.time_s[r]), FINEST_PART)
+                for r in history.unit_slices
+                if len(r) > 1
+            ]
         )
     )
     shortest = FEWEST_PERIOD_ROWS * max(spacing, LEAST_TIME_S)

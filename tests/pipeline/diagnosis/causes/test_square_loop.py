@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
+from histories import PREDICTION
 
 import flexspline
+from flexspline.pipeline.diagnosis.causes import known_causes
+from flexspline.pipeline.diagnosis.causes.cause import Rig
+from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE
+from flexspline.pipeline.diagnosis.measurement.history import History
 
 DESIGN = flexspline.load_design(EXAMPLES / "xb1-40.toml")
 WIDTH_arcsec = 6.0
@@ -49,3 +54,21 @@ def test_a_square_loop_is_friction(
     size = causes["friction_hysteresis"]
     # five deviations of 0.4 arcsec in 50 rows about T = 0
     assert size.magnitude == pytest.approx(WIDTH_arcsec, abs=0.3)
+
+
+def test_where_torque_rests_the_loop_turns_at_the_end_of_the_rest() -> None:
+    """Friction does not turn while torque is held, whatever its reading's noise says."""
+    up, rest = np.linspace(-2, 2, 80), np.full(40, 2.0)
+    true = np.concatenate([up, rest, up[::-1], -rest] * 3)
+    read = true + np.random.default_rng(4).normal(0, 0.01, len(true))
+    none = np.zeros(len(true), int)
+    history = History(read, none, none, np.arange(len(true), dtype=float))
+    friction = known_causes()["friction_hysteresis"]
+    (shape,) = (s for s in friction.shapes(Rig(PREDICTION, history)) if s.get(SQUARE) and s["held"])
+    column = friction.columns(shape, history)[:, 0]
+    way = np.sign(np.diff(true, append=true[-1]))
+    for rests in (np.arange(k + 85, k + 115) for k in range(0, len(true) - 240, 240)):
+        assert (column[rests] == -1).all()
+    moving = np.flatnonzero(way[1:] * way[:-1] > 0)
+    wrong = column[moving] != -way[moving]
+    assert wrong.mean() < 0.03  # rows beside the ends of the rests
