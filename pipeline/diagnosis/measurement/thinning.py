@@ -21,7 +21,7 @@ SPIKE = 6.0
 
 
 def thinned(sweep: Sweep) -> Sweep:
-    """A record of at most about 6000 rows: means over blocks of neighbouring rows of one cycle.
+    """A record of some 6000 rows, and what stays single: means over blocks of neighbouring rows of one cycle.
 
     Torque, angle and every channel are averaged over the same rows, so a straight branch stays what it
     was; a corner is rounded over one block. Spikes of single rows are taken out first. Where cycles
