@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -136,20 +136,15 @@ class FrictionHysteresis(Cause):
     def columns_of_all(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
         """Nothing for elements ahead of the teeth: they are in the history's torque."""
         history = less_jitter(history)
-        own = [s for s in shapes if "threshold_Nm" in s]
-        behind = iter(self._behind(own, history) if own else ())
-        slipping = iter(micro_slips([s for s in shapes if POWER in s], history))
-        square = iter(square_loops([s for s in shapes if SQUARE in s], history))
+        kinds: tuple[tuple[str, Callable[..., list[np.ndarray]]], ...] = (
+            ("threshold_Nm", self._behind), (POWER, micro_slips), (SQUARE, square_loops),
+        )  # fmt: skip
+        found: dict[int, np.ndarray] = {}
+        for key, columns in kinds:
+            own = [s for s in shapes if key in s]
+            found |= zip(map(id, own), columns(own, history), strict=True)
         none = np.zeros((len(history), 1))
-
-        def column(s: Shape) -> np.ndarray:
-            if POWER in s:
-                return next(slipping)
-            if SQUARE in s:
-                return next(square)
-            return next(behind) if "threshold_Nm" in s else none
-
-        return [column(s) for s in shapes]
+        return [found.get(id(s), none) for s in shapes]
 
     def _behind(self, shapes: Sequence[Shape], history: History) -> list[np.ndarray]:
         """Columns of elements with a threshold."""

@@ -75,9 +75,7 @@ def _beside_jumps(angle: np.ndarray) -> np.ndarray:
     beside = np.zeros(len(angle), bool)
     if len(angle) < 5:
         return beside
-    step = np.diff(angle)
-    off = np.abs(step - np.median(step))
-    jumps = off > SPIKE * (SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC)
+    jumps = _beyond_scatter(np.diff(angle))
     beside[:-1] |= jumps
     beside[1:] |= jumps
     return beside
@@ -88,13 +86,18 @@ def _spikes(angle: np.ndarray) -> np.ndarray:
     if len(angle) < 5:
         return np.zeros(len(angle), bool)
     off = angle[1:-1] - (angle[:-2] + angle[2:]) / 2
-    scale = SIGMA_PER_MAD * np.median(np.abs(off - np.median(off))) + LEAST_ANGLE_ARCSEC
     far = np.zeros(len(angle), bool)
-    far[1:-1] = np.abs(off - np.median(off)) > SPIKE * scale
+    far[1:-1] = _beyond_scatter(off)
     # a spike pulls its neighbours' differences too: only the largest of three is the spike
     size = np.zeros(len(angle))
     size[1:-1] = np.abs(off)
     return far & (size >= np.maximum(np.roll(size, 1), np.roll(size, -1)))
+
+
+def _beyond_scatter(angle: np.ndarray) -> np.ndarray:
+    """Which differences of angles lie SPIKE deviations from their median, or more."""
+    off = np.abs(angle - np.median(angle))
+    return np.asarray(off > SPIKE * (SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC))
 
 
 def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Sweep:
