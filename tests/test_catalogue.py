@@ -82,9 +82,8 @@ def test_elements_are_the_same_curve() -> None:
     """The extension is the cause that a sweep's diagnosis names, beside a straight line of K3."""
     row = row_of(32, ">50")
     T = np.array([5.0, 29.0, 60.0, 108.0, 200.0])
-    none = np.zeros(len(T), int)
     added = known_causes()["stiffness_hardening"].angle_arcsec(
-        hardening_elements(row, 216.0), History(T, none, none)
+        hardening_elements(row, 216.0), History.course(T)
     )
     assert added + T / row.K[2] * ARCSEC_PER_RAD == pytest.approx(
         twist_rad(row, T) * ARCSEC_PER_RAD

@@ -231,8 +231,7 @@ class FrictionHysteresis(Cause):
         largest = rig.torque_Nm + sum(e.amplitudes[0] for e in elements if AHEAD in e.shape)
         up = np.linspace(-largest, largest, LOOP_ROWS)
         loop = np.concatenate([up, up[::-1], up, up[::-1]])
-        none = np.zeros(len(loop), int)
-        teeth = self.at_teeth(elements, History(loop, none, none))
+        teeth = self.at_teeth(elements, History.course(loop))
         angle = rig.compliance * (teeth.torque_Nm - loop) + self.angle_arcsec(elements, teeth)
         rising, falling = angle[2 * LOOP_ROWS : 3 * LOOP_ROWS], angle[3 * LOOP_ROWS :]
         return falling[::-1] - rising

@@ -13,7 +13,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.causes.operators import rising
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import still
+from flexspline.pipeline.diagnosis.measurement.known_ways import still
 
 SQUARE = "square"
 """The parameter of such an element, and of no other; 1."""

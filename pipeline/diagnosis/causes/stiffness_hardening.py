@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 
 HARDENING = "stiffness_hardening"
 """This cause's id."""
@@ -108,7 +109,7 @@ class StiffnessHardening(Cause):
         return shape["parameter"] < shape["second"] <= MOST_SECOND and 0 < shape["share"] < 1
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        x = np.abs(history.torque_Nm) / shape["largest_torque_Nm"]
+        x = np.abs(less_jitter(history).torque_Nm) / shape["largest_torque_Nm"]
         return ((self._law(shape, x) - self._slope_held(shape) * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
@@ -121,8 +122,7 @@ class StiffnessHardening(Cause):
 
     def _twist(self, elements: Sequence[Element], rig: Rig, a: float, b: float) -> float:
         torque = np.array([a, b]) * rig.torque_Nm
-        none = np.zeros(2, int)
-        angle = rig.compliance * torque + self.angle_arcsec(elements, History(torque, none, none))
+        angle = rig.compliance * torque + self.angle_arcsec(elements, History.course(torque))
         return float(angle[1] - angle[0])
 
     @staticmethod

@@ -36,25 +36,20 @@ def plans(torque_Nm: float) -> list[MeasurementPlan]:
         MeasurementPlan(
             "repeat",
             Doing("same_ends"),
-            _history(np.tile([torque_Nm, -torque_Nm], TIMES_OVER)),
+            History.course(np.tile([torque_Nm, -torque_Nm], TIMES_OVER)),
         ),
-        MeasurementPlan("torque_Nm", Doing("other_ends", listed), _history(np.array(ends))),
+        MeasurementPlan("torque_Nm", Doing("other_ends", listed), History.course(np.array(ends))),
         MeasurementPlan(
             "sweep",
             Doing("closed_sweep", (torque_Nm,)),
-            _history(torque_Nm * one),
+            History.course(torque_Nm * one),
         ),
         MeasurementPlan(
             "torque_amplitude",
             Doing("closed_sweeps", listed),
-            _history(np.concatenate([a * torque_Nm * loop for a in AMPLITUDES])),
+            History.course(np.concatenate([a * torque_Nm * loop for a in AMPLITUDES])),
         ),
     ]
-
-
-def _history(torque: np.ndarray) -> History:
-    none = np.zeros(len(torque), int)
-    return History(torque, none, none)
 
 
 def separated(

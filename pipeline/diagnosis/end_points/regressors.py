@@ -64,8 +64,7 @@ class EndPointRegressor:
 def rig_of(points: EndPoints, prediction: Prediction) -> Rig:
     """A rig that goes straight to +T and to −T of every row."""
     largest = float(points.torque_Nm.max())
-    none = np.zeros(2, int)
-    return Rig(prediction, History(np.array([largest, -largest]), none, none))
+    return Rig(prediction, History.course(np.array([largest, -largest])))
 
 
 def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]:
@@ -106,5 +105,4 @@ def end_point_regressors(points: EndPoints, rig: Rig) -> list[EndPointRegressor]
 
 
 def _at(cause: Cause, shape: Shape, torque: np.ndarray) -> np.ndarray:
-    none = np.zeros(len(torque), int)
-    return cause.columns(shape, History(torque, none, none))[:, 0]
+    return cause.columns(shape, History.course(torque))[:, 0]

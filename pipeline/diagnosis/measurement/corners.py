@@ -8,14 +8,20 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.ramps import CYCLE_PARTS, ramp_rate, rates_of
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_rate, rates_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 SUDDEN = 0.3
 """Of the ramps' rate, between two neighbouring stretches of a few rows: it is 1 at a hold's ends and 2 at
 a triangle's; at a sine's turn half of this, over a sixtieth of the cycle."""
+LONGEST_PARTS = 30
+"""Of a cycle: from one such part to the next a sine changes its rate by 2π/30 = 0.21 of its fastest, below
+`SUDDEN`."""
 CORNER_SIGMAS = 4.5
 """Deviations of a change by the torque's noise: one row of noise in 150 000 changes by more."""
+MET_WIDTHS = 3
+"""Times the rows of a rate, through which the ways beside a corner are laid. With 1 % of noise and 1500 rows
+a cycle they meet within two rows of the corner; ways of a rate's own rows meet up to 17 away."""
 WAY = 4
 """Rows through which a straight way is laid on either side of a corner."""
 FEWEST_ROWS_OF_UNIT = 24
@@ -44,25 +50,25 @@ def corners_of(history: History) -> list[Corner]:
         noise = torque_noise_Nm(history) / fast
         width = rates_of(history, rows).width
         cycle = len(rows) / (int(history.cycle[rows].max()) + 1)
-        widths = [
-            w for w in (width, 2 * width, 4 * width) if w == width or w * CYCLE_PARTS <= cycle
-        ]
-        change = _sudden(time, torque / fast, noise, widths)
+        longest = max(width, int(cycle / LONGEST_PARTS))
+        widths = sorted({min(w, longest) for w in (width, 2 * width, 4 * width)})
+        change = _sudden(time, torque / fast, noise, widths, cycle)
+        most = max(MET_WIDTHS * width, WAY)
         found += [
             Corner(unit, _met(time, torque, i, way), float(change[i]))
-            for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), max(width, WAY))
+            for i, way in _ways(np.flatnonzero(change).tolist(), len(rows), most)
         ]
     return found
 
 
 def _sudden(
-    time_s: np.ndarray, torque_s: np.ndarray, noise_s: float, widths: list[int]
+    time_s: np.ndarray, torque_s: np.ndarray, noise_s: float, widths: list[int], cycle: float
 ) -> np.ndarray:
     """(n,) sudden changes of rate, 0 at all other rows; torque and its noise in seconds of the ramps' rate.
 
-    Over more rows smaller changes stand out of the noise. A corner is spread over the rows that a rate is
-    taken over, with one sign. A short ramp between two holds begins and ends with opposite signs, however
-    near.
+    Over more rows smaller changes stand out of the noise, beyond what a sine of so many rows a `cycle` does.
+    A corner is spread over the rows that a rate is taken over, with one sign. A short ramp between two holds
+    begins and ends with opposite signs, however near.
     """
     found = np.zeros(len(time_s))
     for width in widths:
@@ -75,10 +81,11 @@ def _sudden(
         change[width:-width] = rate[width:] - rate[:-width]
         before, after = 1 / span[:-width], 1 / span[width:]
         doubt[width:-width] = noise_s * np.sqrt(before**2 + after**2 + (before + after) ** 2)
-        clear = np.abs(change) > np.maximum(SUDDEN, CORNER_SIGMAS * doubt)
-        for i in np.argsort(-np.abs(change), kind="stable")[: int(clear.sum())]:
+        smooth = 2 * np.pi * width / cycle
+        clear = np.flatnonzero(np.abs(change) > np.maximum(SUDDEN, smooth + CORNER_SIGMAS * doubt))
+        for i in clear[np.argsort(-np.abs(change[clear]), kind="stable")]:
             mine = taken[float(np.sign(change[i]))]
-            if clear[i] and not mine[i]:
+            if not mine[i]:
                 mine[max(0, i - 2 * width) : i + 2 * width + 1] = True
                 found[i] = change[i]
     return found
@@ -91,11 +98,23 @@ def _ways(places: list[int], rows: int, most: int) -> list[tuple[int, int]]:
 
 
 def _met(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
-    """Time [s] where the straight ways before and after row i meet, between its neighbours.
+    """Time [s] where the straight ways before and after a corner near row i meet.
 
     The row's own where the ways are too short to have a slope beyond the torque's noise, or have one time by
-    a clock that counts whole seconds.
+    a clock that counts whole seconds. Where they meet beyond a neighbour, the ways part there: noise moves
+    the row of the largest change.
     """
+    first = i
+    while True:
+        found = _met_at(time_s, torque_Nm, i, way)
+        nearer = i + int(found >= time_s[min(i + 1, len(time_s) - 1)]) - int(found <= time_s[i - 1])
+        if abs(nearer - first) <= abs(i - first) or abs(nearer - first) > way // 2:
+            return found
+        i = nearer
+
+
+def _met_at(time_s: np.ndarray, torque_Nm: np.ndarray, i: int, way: int) -> float:
+    """Time [s] where the ways that part at row i meet, between its neighbours."""
     if way < WAY or i < way or i + way >= len(time_s):
         return float(time_s[i])
     t = time_s - time_s[i]

@@ -18,6 +18,8 @@ class History:
     unit : (n,) index of the unit under test; `cycle` (n,) load cycle, counted from 0 in each unit.
     time_s, temperature_C, input_angle_deg : (n,), None where not recorded. `input_angle_deg` is where
         the wave generator was locked.
+    readings : (n,) of how many readings each row is the mean; None where it is one of each.
+    exact : whether torque is a calculated course, which has no noise.
     """
 
     torque_Nm: np.ndarray
@@ -26,10 +28,18 @@ class History:
     time_s: np.ndarray | None = None
     temperature_C: np.ndarray | None = None
     input_angle_deg: np.ndarray | None = None
+    readings: np.ndarray | None = None
+    exact: bool = False
     memo: dict[tuple[str, float], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
     """What operators have made of this history once and need again; never part of its value."""
+
+    @classmethod
+    def course(cls, torque_Nm: np.ndarray) -> History:
+        """A calculated course of torque (n,), in one cycle of one unit."""
+        none = np.zeros(len(torque_Nm), int)
+        return cls(torque_Nm, none, none, exact=True)
 
     def __len__(self) -> int:
         return len(self.torque_Nm)
@@ -43,6 +53,7 @@ class History:
         return History(
             self.torque_Nm[chosen], self.unit[chosen], self.cycle[chosen],
             part(self.time_s), part(self.temperature_C), part(self.input_angle_deg),
+            part(self.readings), self.exact,
         )  # fmt: skip
 
     def shifted(self, offset_Nm: float) -> History:

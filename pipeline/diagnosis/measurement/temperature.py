@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
 from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 INTERVAL_SIGMAS = 2.0
@@ -48,18 +49,10 @@ def _smoothed(readings: np.ndarray, t: np.ndarray) -> np.ndarray:
     growing = np.ones(len(readings), bool)
     low, high = readings - INTERVAL_SIGMAS * noise, readings + INTERVAL_SIGMAS * noise
     for most in REACHES:
-        mean, count = _means(readings, np.full(len(readings), most))
+        mean, count = moving_mean(readings, most)
         half = INTERVAL_SIGMAS * noise / np.sqrt(count)
         low, high = np.maximum(low, mean - half), np.minimum(high, mean + half)
         growing &= low <= high
         reach[growing] = most
-    first, _ = _means(readings, reach)
-    return first + _means(readings - first, reach)[0]
-
-
-def _means(values: np.ndarray, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) over as many rows ahead as behind, `reach` or as many as there are; of how many rows."""
-    row, sums = np.arange(len(values)), np.concatenate([[0.0], np.cumsum(values)])
-    reach = np.minimum(reach, np.minimum(row, len(values) - 1 - row))
-    count = 2 * reach + 1
-    return (sums[row + reach + 1] - sums[row - reach]) / count, count
+    first, _ = moving_mean(readings, reach)
+    return first + moving_mean(readings - first, reach)[0]

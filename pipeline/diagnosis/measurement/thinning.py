@@ -9,13 +9,17 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_ANGLE_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
 from flexspline.pipeline.diagnosis.measurement.record import Averaging, Sweep
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
 MOST_FIT_ROWS = 6000
 """A design matrix of 600 columns then takes 14 MB in float32."""
 FEWEST_PER_CYCLE = 150
 """Rows of a cycle that are left: a block is then well below the crossing's band."""
+NOISE_SIGMAS = 4.0
+"""Of the torque's noise: a reading farther from those about it, one of 16 000, is a step of the torque."""
 SPIKE = 6.0
 """Standard deviations from the mean of both neighbours; one row of normal noise in 500 million."""
 
@@ -36,7 +40,8 @@ def thinned(sweep: Sweep) -> Sweep:
     block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
         block = max(1, int(np.median(counts) // FEWEST_PER_CYCLE))
-    near = np.abs(h.torque_Nm) < crossing_band_Nm(h)
+    torque = _steady(h, block)
+    near = (np.abs(torque) < crossing_band_Nm(h)) & _passing(h, torque, block)
     groups: list[np.ndarray] = []
     for label in _spared(labels, counts, block):
         rows = np.flatnonzero(keys == label)
@@ -45,7 +50,29 @@ def thinned(sweep: Sweep) -> Sweep:
     first = np.array([g[0] for g in groups])
     order = np.argsort(first)
     groups = [groups[i] for i in order]
-    return _averaged(sweep, groups, first[order])
+    return _averaged(sweep, groups, first[order], torque)
+
+
+def _steady(history: History, block: int) -> np.ndarray:
+    """(n,) torque of each row, by the rows about it where they differ by noise.
+
+    Its own reading, noisier than a mean over a block, would choose which rows count as near a limit.
+    """
+    torque = np.empty(len(history))
+    for rows in history.unit_slices:
+        torque[rows], _ = moving_mean(history.torque_Nm[rows], block // 2)
+    far = np.abs(history.torque_Nm - torque) > NOISE_SIGMAS * torque_noise_Nm(history)
+    return np.where(far, history.torque_Nm, torque)
+
+
+def _passing(history: History, steady_Nm: np.ndarray, block: int) -> np.ndarray:
+    """(n,) whether torque moves beyond its noise from one block to the next: a mean says less then."""
+    moved = np.zeros(len(history))
+    for rows in history.unit_slices:
+        at = np.arange(len(rows))
+        after, before = (np.clip(at + k, 0, len(rows) - 1) for k in (block, -block))
+        moved[rows] = np.abs(steady_Nm[rows[after]] - steady_Nm[rows[before]])
+    return moved > NOISE_SIGMAS * torque_noise_Nm(history) * np.sqrt(2 / block)
 
 
 def _blocks(rows: np.ndarray, near: np.ndarray, block: int) -> list[np.ndarray]:
@@ -100,7 +127,11 @@ def _beyond_scatter(angle: np.ndarray) -> np.ndarray:
     return np.asarray(off > SPIKE * (SIGMA_PER_MAD * np.median(off) + LEAST_ANGLE_ARCSEC))
 
 
-def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Sweep:
+def _averaged(
+    sweep: Sweep, groups: list[np.ndarray], first: np.ndarray, steady_Nm: np.ndarray
+) -> Sweep:
+    """Rows that stay single have the steady torque (n,): they are as noisy as means then."""
+
     def mean(values: np.ndarray) -> np.ndarray:
         return np.array([values[g].mean() for g in groups])
 
@@ -113,10 +144,12 @@ def _averaged(sweep: Sweep, groups: list[np.ndarray], first: np.ndarray) -> Swee
     off_torque = h.torque_Nm[rows] - np.repeat(torque, sizes)
     off = sweep.angle_arcsec[rows] - np.repeat(angle, sizes)
     within = off @ off, off @ off_torque, off_torque @ off_torque
+    alone = np.array(sizes) == 1
+    torque[alone] = steady_Nm[first[alone]]
     history = History(
         torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), maybe(h.temperature_C),
-        None if h.input_angle_deg is None else h.input_angle_deg[first],
+        None if h.input_angle_deg is None else h.input_angle_deg[first], np.array(sizes),
     )  # fmt: skip
     return replace(
         sweep, history=history, angle_arcsec=angle, line=sweep.line[first],

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.holds import holds
-from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
+from flexspline.pipeline.diagnosis.measurement.torque_noise import TORQUE_NOISE, torque_noise_Nm
+from flexspline.pipeline.diagnosis.robust import rms
 
 FAR_SIGMAS = 4.0
 """Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
@@ -21,8 +21,10 @@ CLEARED = 0.25
 """Of the torque's noise that is left where it is taken off: 0.39 amid a way, 0.26 in the mean of 15 rows."""
 CYCLE_PART = 40
 """Of a cycle, on either side: of a sine a parabola there leaves (2π/40)⁴/24 of its height at most, 3e-5."""
-CORNER_ROWS = 4
-"""Rows by which a hold's ends and the corners there may differ, both together."""
+PARABOLA_MIDDLE = 1.5
+"""Of a parabola through n rows the middle has this share of their noise, over √n: √(9/4)."""
+RIDGE = 1e-12
+"""Beside a parabola's equations, whose diagonal is 1 and more: rows of one time have some solution then."""
 FEWEST_STRAIGHT_ROWS = 4
 """Rows of a straight way: a parabola leaves nothing of three."""
 
@@ -50,37 +52,16 @@ def jitter(history: History, width: int) -> np.ndarray:
         return jitter(reading, width)
     key = ("jitter", float(width))
     if key not in history.memo:
-        out, corners = np.zeros(len(history)), corners_of(history)
-        for unit, rows in enumerate(history.unit_slices):
-            t, edges = _ways(history, corners, unit, rows)
+        out = np.zeros(len(history))
+        for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
+            t = history.time_or_rows(rows)
             out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
-        for hold in still(history):
-            out[hold] = history.torque_Nm[hold] - history.torque_Nm[hold].mean()
+        for way in known_ways(history):
+            if way.held or width >= widest(history):
+                out[way.rows] = way.noise_Nm
         # beyond its noise it is a corner that was not seen
         history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * torque_noise_Nm(history), out, 0.0)
     return history.memo[key]
-
-
-def still(history: History) -> list[np.ndarray]:
-    """Rows of each hold between two corners of the programme: a sine's turn ends at no corner."""
-    key = ("still", 0.0)
-    if key not in history.memo:
-        corners, way = corners_of(history), np.zeros(len(history), int)
-        for unit, rows in enumerate(history.unit_slices):
-            _, edges = _ways(history, corners, unit, rows)
-            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
-        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + CORNER_ROWS]
-    found: list[np.ndarray] = history.memo[key]
-    return found
-
-
-def _ways(
-    history: History, corners: list[Corner], unit: int, rows: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Time (m,) of a unit's rows, and the first row of each way between two corners, the last one's end."""
-    t = history.time_or_rows(rows)
-    turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
-    return t, np.unique([0, *turned, len(rows)])
 
 
 def widest(history: History) -> int:
@@ -93,9 +74,20 @@ def less_jitter(history: History) -> History:
     key = ("less_jitter", 0.0)
     if key not in history.memo:
         torque = history.torque_Nm - jitter(history, widest(history))
-        history.memo[key] = replace(history, torque_Nm=torque)
+        cleared = replace(history, torque_Nm=torque)
+        cleared.memo[TORQUE_NOISE] = _left_Nm(history)
+        history.memo[key] = cleared
     found: History = history.memo[key]
     return found
+
+
+def _left_Nm(history: History) -> float:
+    """Noise [N·m] that a typical row has without its jitter: it is alike in neighbours, so none sees it."""
+    rows = 2 * widest(history) + 1
+    left = np.full(len(history), PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_Nm(history))
+    for way in known_ways(history):
+        left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
+    return rms(left)
 
 
 def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: int) -> np.ndarray:
@@ -110,7 +102,7 @@ def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: 
     x = t[near] - t[:, None]
     x /= np.maximum(np.abs(np.where(inside, x, 0.0)).max(axis=1, keepdims=True), LEAST_TIME_S)
     basis = np.stack([np.ones_like(x), x, x * x], axis=2) * inside[:, :, None]
-    gram = np.einsum("nwi,nwj->nij", basis, basis) + 1e-9 * np.eye(3)
+    gram = np.einsum("nwi,nwj->nij", basis, basis) + RIDGE * np.eye(3)
     right = np.einsum("nwi,nw->ni", basis, torque[near])
     off = torque - np.linalg.solve(gram, right[:, :, None])[:, 0, 0]
     return np.where(last - first < FEWEST_STRAIGHT_ROWS, 0.0, off)

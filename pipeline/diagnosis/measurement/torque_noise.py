@@ -11,6 +11,8 @@ DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 LARGEST_NOISE = 0.02
 """Of the largest torque: what looks like more is no noise."""
+TORQUE_NOISE = ("torque_noise", 0.0)
+"""Key of a history's torque noise."""
 
 
 def deadband_Nm(history: History) -> float:
@@ -19,17 +21,35 @@ def deadband_Nm(history: History) -> float:
 
 
 def torque_noise_Nm(history: History) -> float:
-    """White noise of the torque reading [N·m], the typical unit's."""
-    key = ("torque_noise", 0.0)
-    if key not in history.memo:
-        history.memo[key] = _torque_noise_Nm(history)
-    return float(history.memo[key])
+    """White noise of the torque [N·m], the typical unit's, in rows of the usual number of readings."""
+    if TORQUE_NOISE not in history.memo:
+        history.memo[TORQUE_NOISE] = _torque_noise_Nm(history)
+    return float(history.memo[TORQUE_NOISE])
+
+
+def torque_noise_of_rows_Nm(history: History) -> np.ndarray:
+    """(n,) of each row [N·m]: a mean of more readings has less."""
+    usual = torque_noise_Nm(history)
+    if history.readings is None:
+        return np.full(len(history), usual)
+    of_usual = np.median(history.readings[_usual(history)])
+    return np.asarray(usual * np.sqrt(of_usual / history.readings))
+
+
+def _usual(history: History) -> np.ndarray:
+    """(n,) rows that are means of as many readings as most, within a factor of two."""
+    if history.readings is None:
+        return np.ones(len(history), bool)
+    return np.asarray(2 * history.readings > np.median(history.readings))
 
 
 def _torque_noise_Nm(history: History) -> float:
+    if history.exact:
+        return 0.0
+    usual = _usual(history)
     each = (
         white_noise(history.torque_Nm[rows], history.time_or_rows(rows))
-        for rows in history.unit_slices
+        for rows in (unit[usual[unit]] for unit in history.unit_slices)
     )
     found = [noise for noise in each if noise is not None]
     largest = float(np.abs(history.torque_Nm).max())

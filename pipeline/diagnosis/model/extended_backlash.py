@@ -82,6 +82,12 @@ def _there_and_back(torque_Nm: float) -> tuple[History, int, np.ndarray]:
     zero = np.zeros(n)
     time = np.arange(n) * RAMP_S / RAMP_ROWS
     history = History(
-        torque, np.zeros(n, int), np.zeros(n, int), time, np.full(n, REFERENCE_C), zero
+        torque,
+        np.zeros(n, int),
+        np.zeros(n, int),
+        time,
+        np.full(n, REFERENCE_C),
+        zero,
+        exact=True,
     )
     return history, int(at[3]), at[[2, 4]]

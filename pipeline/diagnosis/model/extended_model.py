@@ -55,20 +55,20 @@ class ExtendedModel:
             is not as long as the torque.
         """
         torque = _channel("torque_Nm", torque_Nm, torque_Nm)
+
+        def maybe(name: str, values: Channel | None) -> np.ndarray | None:
+            return None if values is None else _channel(name, values, torque)
+
         history = History(
             torque,
             np.zeros(len(torque), int),
             np.zeros(len(torque), int)
             if cycle is None
             else _channel("cycle", cycle, torque).astype(int),
-            *(
-                None if values is None else _channel(name, values, torque)
-                for name, values in (
-                    ("time_s", time_s),
-                    ("temperature_C", temperature_C),
-                    ("input_angle_deg", input_angle_deg),
-                )
-            ),
+            maybe("time_s", time_s),
+            maybe("temperature_C", temperature_C),
+            maybe("input_angle_deg", input_angle_deg),
+            exact=True,
         )
         for cause_id, elements in self.elements.items():
             for channel in channels_needed(known_causes()[cause_id], elements):

@@ -38,8 +38,7 @@ def half_loop_arcsec(model: ExtendedModel, largest_Nm: float) -> float:
     friction = replace(_friction_alone(model), gap_arcsec=0.0)
     up = np.linspace(-largest_Nm, largest_Nm, LOOP_ROWS)
     loop = np.concatenate([up, up[::-1], up, up[::-1]])
-    none = np.zeros(len(loop), int)
-    angle = friction.angle_of(History(loop, none, none))
+    angle = friction.angle_of(History.course(loop))
     there, back = angle[2 * LOOP_ROWS : 3 * LOOP_ROWS], angle[3 * LOOP_ROWS :]
     return float(np.abs(back[::-1] - there).max()) / 2
 

@@ -8,7 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.crossing_forms import Tried
@@ -61,8 +63,15 @@ class CrossedRecord:
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """Rows that count: friction's memory from before the record, and turns, say nothing of the gap."""
-        good = np.flatnonzero(~settling(self.history) & ~turning(self.history))
+        """Rows that count: friction's memory from before the record, and turns, say nothing of the gap.
+
+        Nor do rests about zero torque: the output lies anywhere in the gap there.
+        """
+        count = ~settling(self.history) & ~turning(self.history)
+        band = crossing_band_Nm(self.history)
+        for hold in holds(self.history):
+            count[hold] &= bool(np.abs(self.history.torque_Nm[hold]).mean() >= band)
+        good = np.flatnonzero(count)
         return good[:: max(1, len(good) // self.most_rows)]
 
     @cached_property

@@ -9,7 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Shape
+from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import READING
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, Regressor
 
 MOST_WHITENED_ROWS = 4000
@@ -50,9 +52,38 @@ class GaussianEvidence:
 
     def prepared(self, values: np.ndarray) -> np.ndarray:
         """(n, k) further columns of the record, whitened like all others."""
-        stretches = stretches_of(self.columns.rig.history, self.kept)
         block = max(1, int(self.kept.sum()) // MOST_WHITENED_ROWS)
-        return _summed(self.noise.whitened(values[self.kept].astype(float), stretches), block)
+        values = self._white_by_rows(values)
+        for rows, basis, less in self._white_by_ways:
+            values[rows] -= basis @ (less[:, None] * (basis.T @ values[rows]))
+        return _summed(values, block)
+
+    def _white_by_rows(self, values: np.ndarray) -> np.ndarray:
+        """(m, k) kept rows, but for what the noise of the torque does to whole ways."""
+        stretches = stretches_of(self.columns.rig.history, self.kept)
+        return self.noise.whitened(values[self.kept].astype(float), stretches)
+
+    @cached_property
+    def _white_by_ways(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Of each way whose torque few numbers tell: kept rows (m,), directions (m, k) and what goes of each.
+
+        The numbers' doubts are noise of whole ways, whatever noise the rows have.
+        """
+        history = self.columns.rig.history
+        ways = known_ways(history.memo.get(READING, history))
+        if not ways:
+            return []
+        doubts = np.zeros((len(history), max(w.doubt_Nm.shape[1] for w in ways)))
+        for way in ways:
+            doubts[way.rows, : way.doubt_Nm.shape[1]] = way.doubt_Nm
+        white = self._white_by_rows(self.columns.rig.prediction.compliance * doubts)
+        place, found = np.cumsum(self.kept) - 1, []
+        for way in ways:
+            rows = place[way.rows[self.kept[way.rows]]]
+            own = white[rows, : way.doubt_Nm.shape[1]]
+            directions, size, _ = np.linalg.svd(own, full_matrices=False)
+            found.append((rows, directions, 1 - 1 / np.hypot(1, size)))
+        return found
 
     def base_with(self, blocks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Columns (r, p) of the base and of blocks of unit prior; inverse variances (p,) of their priors."""

@@ -94,9 +94,8 @@ class SweepFit:
         ahead = self.evidence.columns.ahead
         if ahead is not None and HARDENING in elements:  # at T = 0 the teeth feel ± its torque
             ends = ahead.torque_Nm * np.array([-1.0, 1.0])
-            none = np.zeros(2, int)
             twist = known_causes()[HARDENING].angle_arcsec(
-                elements[HARDENING], History(ends, none, none)
+                elements[HARDENING], History.course(ends)
             )
             found[FRICTION] += float(twist[1] - twist[0])
         return found

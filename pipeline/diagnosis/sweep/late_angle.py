@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
@@ -17,6 +18,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import LateAngle
 from flexspline.pipeline.diagnosis.sweep.crossing_fit import CrossedRecord, CrossingFit, likeliest
@@ -61,7 +63,7 @@ def late_angle_of(
     That is: with a shifted torque reading, friction ahead of the teeth, both, a late torque reading, or a
     twist that lags. What a race `explained` by causes may be there in any size.
     """
-    history = prepared.sweep.history
+    history = less_jitter(prepared.sweep.history)
     if history.time_s is None or not both_ways(history.torque_Nm):
         return None
     gap = prepared.prediction.gap_arcsec
@@ -80,11 +82,12 @@ def late_angle_of(
 
 
 def _found(explained: ExplainedSweep | None) -> dict[str, np.ndarray]:
-    """What each cause and nuisance term of a race adds (n,), by owner."""
+    """What each cause and nuisance term of a race adds (n,), by owner; but for the gap's step itself."""
     if explained is None:
         return {}
     identified = explained.identified
-    return {owner: identified.fit.added(owner) for owner in sorted(identified.rms)}
+    owners = sorted(set(identified.rms) - {CLEARANCE})
+    return {owner: identified.fit.added(owner) for owner in owners}
 
 
 def _searched(crossed: CrossedRecord) -> _Searched:

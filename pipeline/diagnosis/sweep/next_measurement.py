@@ -67,7 +67,7 @@ def plans(prepared: PreparedSweep) -> list[MeasurementPlan]:
         n = sum(map(len, torque))
         return History(
             np.concatenate(torque), np.zeros(n, int), np.concatenate(cycle), np.concatenate(time),
-            np.concatenate(temperature), np.concatenate(place),
+            np.concatenate(temperature), np.concatenate(place), exact=True,
         )  # fmt: skip
 
     place0 = float(h.input_angle_deg[0]) if h.input_angle_deg is not None else 0.0

@@ -8,8 +8,8 @@ from scipy.special import ndtr
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import steadied
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.known_ways import still
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import still
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.jumps import (

@@ -28,8 +28,7 @@ which the power is a chord: p(p − 1)/8·0.08² = 0.4 % for p = 2.5 and less be
 
 
 def along(torque: np.ndarray) -> History:
-    none = np.zeros(len(torque), int)
-    return History(torque, none, none)
+    return History.course(torque)
 
 
 def element(power: float, held: int = 1) -> dict[str, float]:

@@ -13,8 +13,7 @@ LARGEST_NM = 40.0
 
 
 def twist(shape: Shape, torque_Nm: np.ndarray) -> np.ndarray:
-    none = np.zeros(len(torque_Nm), int)
-    return StiffnessHardening().columns(shape, History(torque_Nm, none, none))[:, 0]
+    return StiffnessHardening().columns(shape, History.course(torque_Nm))[:, 0]
 
 
 def spring(cubic_share: float, held: int) -> Shape:

@@ -132,8 +132,7 @@ def triangles(*peaks_Nm: float) -> History:
         np.arange(1, round(abs(b - a) / 0.02) + 1) * 0.02 * np.sign(b - a) + a
         for a, b in pairwise(corners)
     ])  # fmt: skip
-    none = np.zeros(len(torque), int)
-    return History(torque, none, none)
+    return History.course(torque)
 
 
 def test_what_friction_remembers_is_unknown_until_torque_has_wiped_it_out() -> None:

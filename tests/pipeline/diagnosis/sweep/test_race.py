@@ -170,9 +170,10 @@ def test_thinning_keeps_straight_branches_and_both_sides_of_the_gap(too_high_Nm:
     angle = PREDICTION.angle_arcsec(history)
     short = thinned(_sweep(history.shifted(-too_high_Nm), angle))
     assert len(short) < 1.3 * MOST_FIT_ROWS
-    # on a straight branch means of torque and angle stay on it; a mean over the gap would be on neither side
+    # on a straight branch means of torque and angle stay on it; a mean over the gap would be on neither side.
+    # of a row that stays single torque is a mean over seven: of a curve it is off by T''·(0 + 1 + 4 + 9)/7
     off = short.angle_arcsec - PREDICTION.angle_arcsec(short.history.shifted(too_high_Nm))
-    assert np.abs(off).max() < 1e-9
+    assert np.abs(off).max() < PREDICTION.compliance * 2.0 * (8 * np.pi / n) ** 2 * 2
     assert set(np.unique(short.history.cycle)) == {0, 1, 2, 3}
 
 

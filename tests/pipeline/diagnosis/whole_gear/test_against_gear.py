@@ -56,9 +56,8 @@ def record(chain: Chain, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_prediction_is_the_gear_s_curve(chain: Chain) -> None:
     found = against_gear(prediction_of(DESIGN, K_b, K_e), chain, LARGEST_Nm)
     torque = np.array([0.3, 1.0, 3.0, 7.0, 10.0])
-    none = np.zeros(len(torque), int)
     expected = chain.angles(torque.tolist()) * ARCSEC_PER_RAD
-    both = [found.angle_arcsec(History(sign * torque, none, none)) for sign in (1, -1)]
+    both = [found.angle_arcsec(History.course(sign * torque)) for sign in (1, -1)]
     # between the curve's places it is a chord: within two hundredths of the largest bend
     np.testing.assert_allclose(both[0], expected, atol=0.02 * max(found.bend.angle_arcsec))
     np.testing.assert_allclose(both[1], -both[0])

@@ -1,0 +1,138 @@
+"""Ways of the torque's programme that few numbers tell: holds, and smooth ways of many rows.
+
+Torque there is known much better than by any reading: from the mean of a hold, from a polynomial over a way.
+What the noise does to their coefficients stays, and it is alike in many rows: no row averages it out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil
+
+import numpy as np
+
+from flexspline.pipeline.diagnosis.measurement.corners import corners_of
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
+from flexspline.pipeline.diagnosis.measurement.torque_noise import (
+    torque_noise_Nm,
+    torque_noise_of_rows_Nm,
+)
+
+CORNER_ROWS = 4
+"""Rows by which a hold's ends and the corners there may differ, both together."""
+SEEN_SIGMAS = 3.0
+"""Of the torque noise: a polynomial over a way that stands out of it by less is not the torque's."""
+LONGEST_OF_CYCLE = 0.75
+"""Of a cycle: a way from one turn to the next is half of it, or a row more."""
+MOST_DEGREE, TESTED = 11, 3
+"""Half a cycle of a sine from peak to peak is told to 1e-8 of its height; and how many polynomials beyond the
+last must not stand out: of a way with a centre every second one is zero. Of a curve these are told too, as it
+may have a little of them; a straight way has none."""
+AT_CORNER = 3
+"""Rows by which a corner in noise may be misplaced: they do not count."""
+BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
+"""What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
+FEWEST_ROWS_PER_NUMBER = 20
+"""A parabola about each row knows torque to 0.23 of its noise amid 41 rows; so does a polynomial then."""
+
+
+@dataclass(frozen=True)
+class KnownWay:
+    """Rows (m,) in order, and what is known of the torque there.
+
+    Attributes
+    ----------
+    noise_Nm : (m,) of the readings, but for what the numbers take of it.
+    doubt_Nm : (m, k) what the noise does to each of the numbers: independent columns of one deviation each.
+    """
+
+    rows: np.ndarray
+    noise_Nm: np.ndarray
+    doubt_Nm: np.ndarray
+
+    @property
+    def held(self) -> bool:
+        """Whether torque rests there."""
+        return self.doubt_Nm.shape[1] == 1
+
+
+def programme_edges(history: History) -> list[np.ndarray]:
+    """Of each unit: the first row, within it, of each way between two corners, and the last one's end."""
+    key = ("programme_edges", 0.0)
+    if key not in history.memo:
+        corners, found = corners_of(history), []
+        for unit, rows in enumerate(history.unit_slices):
+            t = history.time_or_rows(rows)
+            turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
+            found.append(np.unique([0, *turned, len(rows)]))
+        history.memo[key] = found
+    edges: list[np.ndarray] = history.memo[key]
+    return edges
+
+
+def still(history: History) -> list[np.ndarray]:
+    """Rows of each hold between two corners of the programme: a sine's turn ends at no corner."""
+    key = ("still", 0.0)
+    if key not in history.memo:
+        way = np.zeros(len(history), int)
+        for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
+            way[rows] = np.repeat(np.diff(edges), np.diff(edges))
+        history.memo[key] = [h for h in holds(history) if np.median(way[h]) <= len(h) + CORNER_ROWS]
+    found: list[np.ndarray] = history.memo[key]
+    return found
+
+
+def known_ways(history: History) -> list[KnownWay]:
+    """What lies between two corners, in parts of 3/4 of a cycle at the most, and holds of few rows."""
+    key = ("known_ways", 0.0)
+    if key not in history.memo:
+        each = _known_ways(history) if torque_noise_Nm(history) > 0 else ()
+        history.memo[key] = [way for way in each if way is not None]
+    ways: list[KnownWay] = history.memo[key]
+    return ways
+
+
+def _known_ways(history: History) -> Iterator[KnownWay | None]:
+    """Ways between corners first: a hold's rows may reach a little beyond its corners."""
+    longest = LONGEST_OF_CYCLE * len(history) / history.cycle_count
+    left = np.ones(len(history), bool)
+    for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
+        for first, last in pairwise(edges.tolist()):
+            for way in np.array_split(rows[first:last], ceil((last - first) / longest)):
+                if len(way) >= FEWEST_ROWS_PER_NUMBER:
+                    left[way] = False
+                    yield _known(history, way, len(way) // FEWEST_ROWS_PER_NUMBER - 1)
+    for hold in still(history):
+        if left[hold].all():
+            yield _known(history, hold, 0)
+
+
+def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
+    """By the fewest polynomials over a way that leave noise, `most` the highest; None where none do."""
+    torque, noise = history.torque_Nm[way], torque_noise_of_rows_Nm(history)[way]
+    t = history.time_or_rows(way)
+    x = 2 * (t - t[0]) / max(float(np.ptp(t)), LEAST_TIME_S) - 1
+    tested = TESTED if len(way) >= FEWEST_ROWS_PER_NUMBER else 0
+    if tested and len(np.unique(t)) < FEWEST_ROWS_PER_NUMBER:  # a clock of whole minutes
+        return None
+    most = min(most, MOST_DEGREE)
+    polynomials = np.polynomial.legendre.legvander(x, most + tested) / noise[:, None]
+    inner = slice(AT_CORNER, len(way) - AT_CORNER) if tested else slice(None)
+    basis, change = np.linalg.qr(polynomials[inner])
+    along = basis.T @ (torque / noise)[inner]
+    seen = np.abs(along) > SEEN_SIGMAS
+    for degree in range(most + 1):
+        if not seen[degree + 1 : degree + 1 + TESTED].any():
+            count = 1 + (degree if degree <= 1 else min(degree + TESTED, most + tested))
+            told = np.linalg.solve(change[:count, :count].T, polynomials[:, :count].T).T
+            left = torque / noise - told @ along[:count]
+            mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
+            if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
+                return None
+            return KnownWay(way, noise * left, noise[:, None] * told)
+    return None
