@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.coarse_clock import spread_stamps
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
 from flexspline.pipeline.diagnosis.measurement.time_stamps import is_clock, is_short
@@ -70,7 +71,7 @@ def history_of(table: MeasuredTable) -> NamedHistory:
     time = table.numbers.get("time_s")
     history = History(
         torque, unit, counted,
-        None if time is None or is_frozen(time) else time,
+        None if time is None or is_frozen(time) else spread_stamps(time, unit),
         table.numbers.get("temperature_C"),
         table.numbers.get("input_angle_deg"),
     )  # fmt: skip
