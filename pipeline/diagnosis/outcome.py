@@ -99,6 +99,8 @@ class Gain:
     """Measured less predicted angle of those rows: `before`, `calibrated`, `after`."""
     stated_std: float = 0.0
     """Root mean square of the standard deviation that what was learnt states for these rows, noise aside."""
+    elsewhere: bool = False
+    """Whether a cause is judged at positions of the wave generator that were all held out with these rows."""
 
     @property
     def channel(self) -> str:

@@ -14,6 +14,8 @@ from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 INTERVAL_SIGMAS = 2.0
 """Half an interval about a mean. Of noise alone means leave it once in 20 rows, and stay means of fewer."""
+STEP_SHARE = 0.01
+"""Of a step of rounding, within which two are one: what is written in decimals differs by its last bit."""
 REACHES = (1, 2, 4, 8, 16, 32, 64)
 """Rows on either side of the means tried: the noise of the last is a tenth."""
 
@@ -40,10 +42,21 @@ def temperature_without_noise(history: History) -> np.ndarray:
     return quiet
 
 
+def _rounding(readings: np.ndarray) -> float:
+    """Deviation of what rounding does, where readings mostly stay, and else mostly change by one step."""
+    moved = np.abs(np.diff(readings))
+    moved = moved[moved > 0]
+    if len(moved) == 0 or len(moved) > len(readings) / 2:
+        return 0.0
+    step = float(np.median(moved))
+    alike = np.abs(moved - step) < STEP_SHARE * step
+    return step / np.sqrt(12) if alike.mean() > 1 / 2 else 0.0
+
+
 def _smoothed(readings: np.ndarray, t: np.ndarray) -> np.ndarray:
     """The means, and what they find in the rest: of a curve they alone take a part (twicing: Tukey, 1977)."""
-    noise = white_noise(readings, t)
-    if not noise:
+    noise = max(white_noise(readings, t) or 0.0, _rounding(readings))
+    if noise == 0:
         return readings
     reach = np.zeros(len(readings), int)
     growing = np.ones(len(readings), bool)

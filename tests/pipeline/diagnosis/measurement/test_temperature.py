@@ -38,9 +38,16 @@ def test_a_step_between_two_rows_stays_where_it_is() -> None:
     assert np.abs(off).max() < 4 * NOISE_K  # a mean across the step would be 3.5 K off
 
 
+def test_a_rounded_reading_is_nearer_to_the_temperature_than_it_says() -> None:
+    """Steps of 0.2 K on a rise of 0.01 K a row: off by 0.2/√12 = 0.058 K as read."""
+    true = 20 + 0.01 * np.arange(600)
+    found = temperature_without_noise(history(np.round(true / 0.2) * 0.2))
+    assert np.std(found - true) < 0.5 * 0.2 / np.sqrt(12)
+
+
 @pytest.mark.parametrize(
     "exact",
-    [np.repeat([20.0, 25.0, 21.0], 40), np.round(np.linspace(20, 23, 400), 1), np.full(50, 22.0)],
+    [np.repeat([20.0, 25.0, 21.0], 40), np.linspace(20, 23, 400) ** 2 / 20, np.full(50, 22.0)],
 )
 def test_readings_without_noise_are_left_as_they_are(exact: np.ndarray) -> None:
     assert np.array_equal(temperature_without_noise(history(exact)), exact)

@@ -164,13 +164,17 @@ RATE = LeftOut("torque_rate", (0.1, 0.1), level=True)
 
 
 def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
-    def level(calibrated: float, after: float, stated: float = 0.0) -> Gain:
-        return Gain(RATE, 9.0, calibrated, after, 0.5, stated_std=stated)
+    def level(
+        calibrated: float, after: float, stated: float = 0.0, elsewhere: bool = False
+    ) -> Gain:
+        return Gain(RATE, 9.0, calibrated, after, 0.5, stated_std=stated, elsewhere=elsewhere)
 
     assert refuted([]) is None
     assert refuted([level(4.0, 1.0), level(1.0, 1.9)]) is None
     # what only the level held out tells may be missed by as much as was said
     assert refuted([level(1.0, 2.1, stated=0.8)]) is None
+    # as positions of the wave generator that went with it
+    assert refuted([level(1.0, 5.0, elsewhere=True)]) is None
     # and at one level of two, which alone may show a shape
     assert refuted([level(4.0, 1.0), level(1.0, 2.1)]) is None
     found = refuted([level(4.0, 1.0), level(1.0, 2.1, stated=0.6), level(1.0, 2.05)])
@@ -178,3 +182,18 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     assert found.channel == "torque_rate"
     assert found.structure == MissedLevel(RATE, 2.1, 1.0)
     assert found.limit
+
+
+@pytest.mark.parametrize("positions", [9, 1])
+def test_a_level_with_positions_of_its_own_says_where_it_is(positions: int) -> None:
+    """Nine cycles, every third to half the torque; a wave generator that is locked anew for each, or never."""
+    history = replace(levels((1.0, 1.0, 0.5) * 3, (1.0,) * 9), temperature_C=None)
+    place = 360.0 / 9 * history.cycle if positions > 1 else np.zeros(len(history))
+    history = replace(history, input_angle_deg=place)
+    rng = np.random.default_rng(6)
+    angle = 10.0 * history.torque_Nm + 30.0 * history.sign + 3.0 * np.sin(np.radians(place))
+    raced = explained(history, angle + rng.normal(0, 0.5, len(angle)))
+    gains = gains_at_levels(raced, ("kinematic_error",))
+    assert len(gains) == 2
+    assert all(g.elsewhere == (positions > 1) for g in gains)
+    assert not any(g.elsewhere for g in gains_at_levels(raced, ("friction_hysteresis",)))
