@@ -186,7 +186,7 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
 
 @pytest.mark.parametrize("positions", [9, 1])
 def test_a_level_with_positions_of_its_own_says_where_it_is(positions: int) -> None:
-    """Nine cycles, every third to half the torque; a wave generator that is locked anew for each, or never."""
+    """Nine cycles, every third to half the torque; a wave generator locked anew for each, or never."""
     history = replace(levels((1.0, 1.0, 0.5) * 3, (1.0,) * 9), temperature_C=None)
     place = 360.0 / 9 * history.cycle if positions > 1 else np.zeros(len(history))
     history = replace(history, input_angle_deg=place)
