@@ -20,16 +20,16 @@ def test_what_the_torque_s_noise_leaves_is_white_afterwards() -> None:
     """Noise drawn as it is said to be, of rows and of each way's two numbers: variance 1 in every direction.
 
     Of 300 draws a variance is known to √(2/300) = 0.08; of some 20 directions the worst is within four times
-    that. Without the ways' own noise it would be (c · 0.02 · √200 / 0.5)² and more.
+    that. Without the ways' own noise it would be 1 + (10 · 0.02 / 0.25)² = 1.64.
     """
     rng = np.random.default_rng(1)
     turn = np.arange(ROWS) * 4 / ROWS
     torque = 4 / np.pi * np.arcsin(np.sin(2 * np.pi * turn)) + rng.normal(0, 0.02, ROWS)
     none = np.zeros(ROWS, int)
     history = History(torque, none, turn.astype(int), np.arange(ROWS, dtype=float))
-    angle = PREDICTION.angle_arcsec(history) + rng.normal(0, 0.5, ROWS)
+    angle = PREDICTION.angle_arcsec(history) + rng.normal(0, 0.25, ROWS)
     prepared = prepare(as_read(history, angle), PREDICTION)
-    white_rows = Noise(white=0.25, coloured=0.0, memory=0.0)
+    white_rows = Noise(white=0.0625, coloured=0.0, memory=0.0)
     evidence = gaussian_evidence(prepared.columns, prepared.target, prepared.kept, white_rows)
     ways = known_ways(prepared.rig.history)
     assert len(ways) == 9
