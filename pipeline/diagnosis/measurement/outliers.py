@@ -6,6 +6,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.runs import runs
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 
 OUTLIER_SIGMAS = 5.0
 """One row of normal noise in 1.7 million lies further off."""
@@ -25,7 +26,7 @@ def isolated_outliers(residual: np.ndarray, history: History, sigma: float) -> n
         if b - a > LONGEST_OUTLIER:
             out[a:b] = False
     rows = np.flatnonzero(out)
-    rising = np.gradient(history.torque_Nm) > 0
+    rising = np.gradient(less_jitter(history).torque_Nm) > 0
     near = SAME_PLACE * np.abs(history.torque_Nm).max()
     for i in rows:
         same = (

@@ -13,6 +13,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.clearance_offset import CLEARANCE
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
+from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
@@ -72,7 +73,7 @@ def central_curve(
     size = np.abs(history.torque_Nm)
     edges = np.linspace(prepared.band_Nm, float(size.max()), BINS + 1)
     number = np.clip(np.digitize(size, edges) - 1, 0, BINS - 1)
-    rising = np.gradient(history.torque_Nm) > 0
+    rising = direction_of_loading(history) > 0
     found = []
     wanted = np.unique(history.cycle) if cycles is None else cycles
     for cycle in wanted:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Literal
 
 import numpy as np
@@ -99,11 +100,14 @@ def gear_inputs(design: Design, chain: Chain, analysis: SweepAnalysis) -> GearIn
     curve = _with_numerical(curve, nominal)
     off = curve.angle_arcsec - nominal
     base = float(((off / curve.std_arcsec) ** 2).sum())
-    found = [fitted(one, chain, curve, nominal, start) for one in inputs.values()]
-    found.sort(key=lambda one: one.chi_square)
+    each = (fitted(one, chain, curve, nominal, start) for one in inputs.values())
+    # an input that moves nothing on this gear has no value
+    found = sorted((f for f in each if f.std < inf), key=lambda one: one.chi_square)
     plain = GearInputs("consistent", rms(off), base, len(off), tuple(found))
     if chdtrc(len(off), base) > MISFIT_P_VALUE:
         return plain
+    if not found:
+        return replace(plain, outcome="unknown")
     best = found[0]
     if chdtrc(len(off) - 1, best.chi_square) < MISFIT_P_VALUE:
         return _of_pairs(plain, tuple(inputs.values()), chain, curve, analysis, start)

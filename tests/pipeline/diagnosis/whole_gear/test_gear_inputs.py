@@ -6,6 +6,7 @@ that the inputs can be told apart, not that a real gear obeys the model.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,7 +19,8 @@ import flexspline
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-from flexspline.pipeline.diagnosis.whole_gear.inputs import inputs_of
+from flexspline.pipeline.diagnosis.whole_gear import identification
+from flexspline.pipeline.diagnosis.whole_gear.inputs import GearInput, inputs_of
 from flexspline.pipeline.gear_chain import Chain, chain_of
 from flexspline.results.diagnosis.gear_inputs import gear_inputs_notes, gear_inputs_record
 
@@ -83,6 +85,20 @@ def test_the_gear_as_drawn_leaves_nothing_to_explain(chain: Chain, tmp_path: Pat
     assert found is not None
     assert found.outcome == "consistent"
     assert "named" not in gear_inputs_record(found)
+
+
+def test_an_input_that_moves_nothing_has_no_value(
+    chain: Chain, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle = GearInput("idle", "mm", 1.0, 0.0, 2.0, 0.1, lambda chain, value: chain)
+    monkeypatch.setattr(identification, "inputs_of", lambda design, chain: (idle,))
+    found = diagnosed(chain, chain, tmp_path / "a.csv").gear_inputs
+    assert found is not None
+    assert (found.outcome, found.fitted) == ("consistent", ())
+    bent = diagnosed(chain, chain, tmp_path / "b.csv", more=lambda t: 8 * np.sin(t)).gear_inputs
+    assert bent is not None
+    assert bent.outcome == "unknown"
+    assert json.dumps(gear_inputs_record(bent), allow_nan=False)
 
 
 def test_a_twist_of_another_kind_is_not_named(chain: Chain, tmp_path: Path) -> None:
