@@ -16,11 +16,12 @@ from flexspline.fea.pardiso import pardiso
 from flexspline.fea.solid.errors import MemoryShortError
 
 SolverKind = Literal["direct", "iterative"]
-DIRECT_BELOW = {True: 40_000, False: 50_000}
+DIRECT_BELOW = {True: 25_000, False: 50_000}
 """Unknowns up to which factors are the faster way or as fast, with and without MKL. Seconds of factors (in
-single precision, with their own steps) and of iteration, two threads: 28 900 0.6 and 0.85, 35 300 0.7 and
-0.6, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000 8.8 and 2.2, 270 000 13.7 and 4.2;
-where an iteration takes many steps factors follow (`steps_of_factors`)."""
+single precision, with their own steps) and of iteration, two threads: 30 000 0.74 and 0.25, 33 000 0.50 and
+0.29, 39 400 0.6 and 0.28, 64 300 2.0 and 1.1, 97 000 2.8 and 1.2, 135 000 5.1 and 2.9, 173 000 8.8 and 2.2,
+270 000 13.7 and 4.2; one thread, as beside another program: 30 000 1.16 and 0.38, 39 400 1.15 and 0.43.
+Where an iteration takes many steps factors follow (`steps_of_factors`)."""
 THIN_BELOW, THIN_ENTRIES = 300_000, 75.0
 """The same with MKL of a part that is mostly surface: it has fewer entries per unknown (65 to 73 in cups of
 one or two layers, 75 to 83 in shafts and thick hats), its factors are small, and its flat elements take many
