@@ -14,6 +14,8 @@ from flexspline.pipeline.diagnosis.measurement.white_noise import white_noise
 
 INTERVAL_SIGMAS = 2.0
 """Half an interval about a mean. Of noise alone means leave it once in 20 rows, and stay means of fewer."""
+LARGEST_ROUNDING_K = 0.5
+"""Thermometers show 0.1, 0.2 or 0.5 K; larger steps from cycle to cycle are an oven's."""
 STEP_SHARE = 0.01
 """Of a step of rounding, within which two are one: what is written in decimals differs by its last bit."""
 REACHES = (1, 2, 4, 8, 16, 32, 64)
@@ -50,7 +52,8 @@ def _rounding(readings: np.ndarray) -> float:
         return 0.0
     step = float(np.median(moved))
     alike = np.abs(moved - step) < STEP_SHARE * step
-    return step / np.sqrt(12) if alike.mean() > 1 / 2 else 0.0
+    rounded = step <= LARGEST_ROUNDING_K and alike.mean() > 1 / 2
+    return step / np.sqrt(12) if rounded else 0.0
 
 
 def _smoothed(readings: np.ndarray, t: np.ndarray) -> np.ndarray:
