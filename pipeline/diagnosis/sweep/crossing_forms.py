@@ -26,6 +26,8 @@ FILTER, DELAY, BOTH = "filter", "delay", "both"
 """Kinds of a late angle: through a filter, by a delay, or both readings through one filter."""
 SHORTEST_SHARE, LONGEST_SHARE, TIMES = 0.002, 0.4, 32
 """Times tried, as shares of a ramp, each 1.19 times the one before: the best one is refined."""
+SOFT_ENDS, SOFT_STEPS = (0.002, 0.1), 24
+"""Widths of a gap's soft ends tried, as shares of the largest torque, each 1.19 times the one before."""
 FRICTIONS = 45
 """Frictions tried, 1 % of the largest torque apart: the best one is refined."""
 
@@ -50,6 +52,13 @@ def at_a_place(history: History) -> list[Tried]:
     """Crossed at one torque in both senses: a shifted reading, or none."""
     places = np.linspace(-OFFSET_REACH, OFFSET_REACH, FIRST_STEPS) * _largest(history)
     return [Tried("offset", p, _sharp(history.torque_Nm - p)) for p in places.tolist()]
+
+
+def softly(history: History) -> list[Tried]:
+    """Crossed at zero, by teeth that take up their load one after another: alike in both senses."""
+    torque = history.torque_Nm
+    widths = np.geomspace(*SOFT_ENDS, SOFT_STEPS) * _largest(history)
+    return [Tried("soft", width, _soft(torque, width)) for width in widths.tolist()]
 
 
 def behind_friction(
@@ -101,6 +110,10 @@ def _largest(history: History) -> float:
 
 def _sharp(torque_Nm: np.ndarray) -> Form:
     return lambda more: np.sign(torque_Nm + more)
+
+
+def _soft(torque_Nm: np.ndarray, width_Nm: float) -> Form:
+    return lambda more: np.tanh((torque_Nm + more) / width_Nm)
 
 
 def _spread(history: History, torque_Nm: np.ndarray, filter_s: float) -> Form:

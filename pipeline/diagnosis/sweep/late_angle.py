@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import is_rival
+from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.robust import rms
@@ -31,10 +32,12 @@ from flexspline.pipeline.diagnosis.sweep.crossing_forms import (
     behind_friction,
     late,
     of_time,
+    softly,
 )
 from flexspline.pipeline.diagnosis.sweep.first_offset import FIRST_NATS
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
+from flexspline.pipeline.diagnosis.sweep.search import NAMED_COST
 from flexspline.pipeline.diagnosis.sweep.step_place import DEPENDENT
 from flexspline.pipeline.diagnosis.sweep.torque_offset import both_ways
 
@@ -60,8 +63,8 @@ def late_angle_of(
 ) -> LateAngle | None:
     """What the gap's crossing of a record says; None where it is crossed as well in another way.
 
-    That is: with a shifted torque reading, friction ahead of the teeth, both, a late torque reading, or a
-    twist that lags. What a race `explained` by causes may be there in any size.
+    That is: with a shifted torque reading, friction ahead of the teeth, both, soft ends of the gap, a late
+    torque reading, or a twist that lags. What a race `explained` by causes may be there in any size.
     """
     history = less_jitter(prepared.sweep.history)
     if history.time_s is None or not both_ways(history.torque_Nm):
@@ -76,7 +79,8 @@ def late_angle_of(
     if len(apart) == len(found):
         return None
     alone = _searched(CrossedRecord(history, angle, gap, noise, apart))
-    if alone.nats >= FIRST_NATS and is_rival(_behind(alone, whole), np.inf):
+    fewer = NAMED_COST * (len(found) - len(apart))
+    if alone.nats >= FIRST_NATS and is_rival(_behind(alone, whole) - fewer, np.inf):
         return _sized(alone)
     return None
 
@@ -94,7 +98,7 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     """The likeliest late angle and the likeliest other form."""
     history = crossed.history
     by_time = [list(of_time(history, kind)) for kind in (*LATE_KINDS, *OTHERS)]
-    forms = [*by_time, at_a_place(history), behind_friction(history)]
+    forms = [*by_time, at_a_place(history), softly(history), behind_friction(history)]
     coarse = replace(crossed, most_rows=COARSE_ROWS)
     fits = [coarse.best(tried[::COARSE_EVERY]) for tried in forms]
     best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
@@ -106,8 +110,15 @@ def _searched(crossed: CrossedRecord) -> _Searched:
         crossed = replace(crossed, noise_arcsec=_left_by(best))
         if best is own:
             fits += _rubbed(crossed, friction=fits[-1])
-    own, *others = (crossed.of(fit.tried) for fit in (own, *fits[len(LATE_KINDS) :]))
+    others = [crossed.of(fit.tried) for fit in fits[len(LATE_KINDS) :]]
+    own = crossed.best(_times_about(history, own.tried))
     return _Searched(crossed, own, max(others, key=likeliest))
+
+
+def _times_about(history: History, tried: Tried) -> list[Tried]:
+    """Late angles between the neighbours of one that was tried."""
+    times = np.geomspace(tried.value / 1.2, tried.value * 1.2, FINE_TIMES)
+    return [late(history, tried.kind, time) for time in times.tolist()]
 
 
 def _beside(tried: list[Tried], best: CrossingFit) -> list[Tried]:
@@ -148,8 +159,8 @@ def _rubbed(crossed: CrossedRecord, friction: CrossingFit) -> list[CrossingFit]:
 def _sized(searched: _Searched) -> LateAngle:
     """Time and deviation by how likely each of some neighbouring times is."""
     crossed, tried = searched.crossed, searched.own.tried
-    times = np.geomspace(tried.value / 1.2, tried.value * 1.2, FINE_TIMES)
-    forms = [late(crossed.history, tried.kind, time) for time in times.tolist()]
+    forms = _times_about(crossed.history, tried)
+    times = np.array([form.value for form in forms])
     nats = np.array([crossed.of(one).log_likelihood for one in forms]) / DEPENDENT
     weight = np.exp(nats - nats.max())
     time = float(weight @ times / weight.sum())
