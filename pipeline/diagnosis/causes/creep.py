@@ -13,7 +13,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
 CREEP = "creep"
 """This cause's id."""
@@ -99,7 +99,7 @@ class Creep(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         tau, weight = self._kelvin(shape)
-        return (lags(less_jitter(history).torque_Nm, history, tau) @ weight)[:, None]
+        return (lags(by_known_ways(history), history, tau) @ weight)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:
         return self.spread_share * rig.prediction.compliance

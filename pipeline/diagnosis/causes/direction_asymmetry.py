@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
 ASYMMETRY = "direction_asymmetry"
 """This cause's id."""
@@ -58,7 +58,7 @@ class DirectionAsymmetry(Cause):
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         largest = shape["largest_torque_Nm"]
-        x = _share(less_jitter(history).torque_Nm / largest, shape["rounding_Nm"] / largest)
+        x = _share(by_known_ways(history) / largest, shape["rounding_Nm"] / largest)
         return (largest * x ** shape["exponent"])[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig, Shape
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import by_known_ways
 
 HARDENING = "stiffness_hardening"
 """This cause's id."""
@@ -109,7 +109,7 @@ class StiffnessHardening(Cause):
         return shape["parameter"] < shape["second"] <= MOST_SECOND and 0 < shape["share"] < 1
 
     def columns(self, shape: Shape, history: History) -> np.ndarray:
-        x = np.abs(less_jitter(history).torque_Nm) / shape["largest_torque_Nm"]
+        x = np.abs(by_known_ways(history)) / shape["largest_torque_Nm"]
         return ((self._law(shape, x) - self._slope_held(shape) * x) * history.sign)[:, None]
 
     def spread(self, shape: Shape, rig: Rig) -> float:

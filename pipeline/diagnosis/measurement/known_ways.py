@@ -12,6 +12,7 @@ from itertools import pairwise
 from math import ceil
 
 import numpy as np
+from numpy.linalg import norm
 
 from flexspline.pipeline.diagnosis.measurement.corners import corners_of
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
@@ -37,6 +38,10 @@ AT_CORNER = 3
 """Rows by which a corner in noise may be misplaced: they do not count."""
 BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
 """What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
+END_ROWS, END_SIGMAS = (3, 6, 12, 24), 2.5
+"""The same of the first and the last rows: a corner that the drive rounds."""
+KNOWN_SHARE = 0.8
+"""Of the ways that must be known: chance refuses 6 in 100."""
 FEWEST_ROWS_PER_NUMBER = 20
 """A parabola about each row knows torque to 0.23 of its noise amid 41 rows; so does a polynomial then."""
 
@@ -88,28 +93,37 @@ def still(history: History) -> list[np.ndarray]:
 
 
 def known_ways(history: History) -> list[KnownWay]:
-    """What lies between two corners, in parts of 3/4 of a cycle at the most, and holds of few rows."""
+    """What lies between two corners, in parts of 3/4 of a cycle at the most, and holds of few rows.
+
+    Where many ways bend, as a drive that rounds its corners makes them, only holds are known.
+    """
     key = ("known_ways", 0.0)
     if key not in history.memo:
-        each = _known_ways(history) if torque_noise_Nm(history) > 0 else ()
-        history.memo[key] = [way for way in each if way is not None]
+        found: list[KnownWay] = []
+        if torque_noise_Nm(history) > 0:
+            each = [
+                _known(history, way, len(way) // FEWEST_ROWS_PER_NUMBER - 1)
+                for way in _ways(history)
+            ]
+            known = [way for way in each if way is not None]
+            found = known if len(known) >= KNOWN_SHARE * len(each) else []
+            left = np.ones(len(history), bool)
+            for way in found:
+                left[way.rows] = False
+            holds_alone = (_known(history, h, 0) for h in still(history) if left[h].all())
+            found += [way for way in holds_alone if way is not None]
+        history.memo[key] = found
     ways: list[KnownWay] = history.memo[key]
     return ways
 
 
-def _known_ways(history: History) -> Iterator[KnownWay | None]:
-    """Ways between corners first: a hold's rows may reach a little beyond its corners."""
+def _ways(history: History) -> Iterator[np.ndarray]:
+    """Rows between two corners, of enough rows for a number; a hold's own may reach beyond its corners."""
     longest = LONGEST_OF_CYCLE * len(history) / history.cycle_count
-    left = np.ones(len(history), bool)
     for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
         for first, last in pairwise(edges.tolist()):
-            for way in np.array_split(rows[first:last], ceil((last - first) / longest)):
-                if len(way) >= FEWEST_ROWS_PER_NUMBER:
-                    left[way] = False
-                    yield _known(history, way, len(way) // FEWEST_ROWS_PER_NUMBER - 1)
-    for hold in still(history):
-        if left[hold].all():
-            yield _known(history, hold, 0)
+            parts = np.array_split(rows[first:last], ceil((last - first) / longest))
+            yield from (way for way in parts if len(way) >= FEWEST_ROWS_PER_NUMBER)
 
 
 def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
@@ -131,8 +145,20 @@ def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
             count = 1 + (degree if degree <= 1 else min(degree + TESTED, most + tested))
             told = np.linalg.solve(change[:count, :count].T, polynomials[:, :count].T).T
             left = torque / noise - told @ along[:count]
-            mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
-            if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
+            if _bends(left, told, inner):
                 return None
             return KnownWay(way, noise * left, noise[:, None] * told)
     return None
+
+
+def _bends(left: np.ndarray, told: np.ndarray, inner: slice) -> bool:
+    """Whether what polynomials (m, k) leave (m,), in rows' deviations, is no noise, amid it or at an end."""
+    mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
+    if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
+        return True
+    counts = [k for k in END_ROWS if 3 * k <= len(left)]
+    ends = [slice(k) for k in counts] + [slice(-k, None) for k in counts]
+    off = [
+        left[e].mean() / np.hypot(len(left[e]) ** -0.5, norm(told[e].mean(axis=0))) for e in ends
+    ]
+    return bool(np.abs(off).max(initial=0.0) > END_SIGMAS)

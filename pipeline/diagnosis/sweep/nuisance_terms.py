@@ -139,7 +139,7 @@ def _of_lags(rig: Rig) -> np.ndarray:
     """
     h = rig.history
     zeros = h.unit[:, None] == np.arange(len(h.unit_slices))
-    return np.column_stack([zeros, less_jitter(h).torque_Nm, h.sign, lagging_torque(h)])
+    return np.column_stack([zeros, h.torque_Nm, h.sign, lagging_torque(h)])
 
 
 NUISANCE_KINDS = (

@@ -71,10 +71,29 @@ def test_the_torque_is_off_by_as_much_as_its_ways_say(programme: Programme) -> N
 def test_no_row_is_left_out_and_few_numbers_tell_each_way(programme: Programme) -> None:
     history, true = read(programme, 6000, 1)
     ways = known_ways(history)
-    assert sum(len(w.rows) for w in ways) >= 0.95 * len(history)
+    # one way of nine may be refused by chance, and parabolas know its torque to 0.23 of its noise
+    assert sum(len(w.rows) for w in ways) >= 0.85 * len(history)
     off = less_jitter(history).torque_Nm - true
     # half a cycle of 750 rows by two numbers: √(2/750) = 0.05 of the noise; of a sine by eight: 0.1
     assert off.std() < 0.13 * NOISE_Nm
+
+
+@pytest.mark.parametrize("seed", [1, 3, 4, 5])
+def test_corners_that_a_drive_rounds_are_not_taken_for_noise(seed: int) -> None:
+    """Rests of 80 rows, corners rounded over 25: straight ways would be off by 1 N·m, three deviations.
+
+    A parabola through 20 rows on either side keeps to what is between corners, and is off by half of that.
+    """
+    rows = 3200
+    window = np.hanning(27)
+    turn = np.arange(3 * rows) * 4 / rows
+    smooth = np.convolve(30 * rests(turn), window / window.sum(), "same")[rows : 2 * rows]
+    noise = 0.3 * np.random.default_rng(seed).normal(size=rows)
+    none = np.zeros(rows, int)
+    history = History(smooth + noise, none, turn[:rows].astype(int), 0.1 * np.arange(rows))
+    off = less_jitter(history).torque_Nm - smooth
+    assert off.std() < 0.5 * 0.3
+    assert not [way for way in known_ways(history) if len(way.rows) > 100]
 
 
 def test_a_bend_that_was_not_seen_makes_no_known_way() -> None:
@@ -105,9 +124,9 @@ def test_single_readings_amid_means_count_as_such() -> None:
         assert short.time_s is not None
         assert set(np.unique(short.readings)) >= {1, 6}
         squares += numbers_off(short, np.interp(short.time_s, history.time_s, true))
-    # 108 squares of one deviation: 1 ± 3·√(2/108)
-    assert len(squares) >= 100
-    assert np.mean(squares) == pytest.approx(1.0, abs=0.41)
+    # some 100 squares of one deviation: 1 ± 3·√(2/80), as chance refuses a way or a record
+    assert len(squares) >= 80
+    assert np.mean(squares) == pytest.approx(1.0, abs=0.47)
 
 
 def test_rows_of_one_time_have_no_polynomial_over_time() -> None:
