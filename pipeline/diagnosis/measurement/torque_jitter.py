@@ -40,6 +40,12 @@ def behind(reading: History, carried_Nm: np.ndarray) -> History:
     return found
 
 
+def reading_of(history: History) -> History:
+    """The reading whose noise a history's torque has: its own, but for `behind`."""
+    found: History = history.memo.get(READING, history)
+    return found
+
+
 def jitter(history: History, width: int) -> np.ndarray:
     """(n,) torque less a parabola through `width` rows on either side: its noise, and little else.
 
@@ -47,9 +53,7 @@ def jitter(history: History, width: int) -> np.ndarray:
     one, and at the record's ends, as many rows lie on one side. Of a hold between corners it is the torque
     less its mean.
     """
-    reading: History | None = history.memo.get(READING)
-    if reading is not None:
-        return jitter(reading, width)
+    history = reading_of(history)
     key = ("jitter", float(width))
     if key not in history.memo:
         out = np.zeros(len(history))
@@ -75,7 +79,7 @@ def less_jitter(history: History) -> History:
     if key not in history.memo:
         torque = history.torque_Nm - jitter(history, widest(history))
         cleared = replace(history, torque_Nm=torque)
-        cleared.memo[TORQUE_NOISE] = _left_Nm(history)
+        cleared.memo[TORQUE_NOISE] = _left_Nm(reading_of(history))
         history.memo[key] = cleared
     found: History = history.memo[key]
     return found
@@ -89,7 +93,7 @@ def by_known_ways(history: History) -> np.ndarray:
     key = ("by_known_ways", 0.0)
     if key not in history.memo:
         torque = history.torque_Nm.copy()
-        for way in known_ways(history.memo.get(READING, history)):
+        for way in known_ways(reading_of(history)):
             torque[way.rows] -= way.noise_Nm
         history.memo[key] = torque
     return history.memo[key]
@@ -97,11 +101,14 @@ def by_known_ways(history: History) -> np.ndarray:
 
 def _left_Nm(history: History) -> float:
     """Noise [N·m] that a typical row has without its jitter: it is alike in neighbours, so none sees it."""
-    rows = 2 * widest(history) + 1
-    left = np.full(len(history), PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_Nm(history))
-    for way in known_ways(history):
-        left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
-    return rms(left)
+    key = ("left", 0.0)
+    if key not in history.memo:
+        rows = 2 * widest(history) + 1
+        left = np.full(len(history), PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_Nm(history))
+        for way in known_ways(history):
+            left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
+        history.memo[key] = rms(left)
+    return float(history.memo[key])
 
 
 def _off_parabolas(torque: np.ndarray, t: np.ndarray, edges: np.ndarray, width: int) -> np.ndarray:

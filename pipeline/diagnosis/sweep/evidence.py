@@ -11,7 +11,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Shape
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import READING
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import reading_of
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, Regressor
 
 MOST_WHITENED_ROWS = 4000
@@ -70,7 +70,7 @@ class GaussianEvidence:
         The numbers' doubts are noise of whole ways, whatever noise the rows have.
         """
         history = self.columns.rig.history
-        ways = known_ways(history.memo.get(READING, history))
+        ways = known_ways(reading_of(history))
         if not ways:
             return []
         doubts = np.zeros((len(history), max(w.doubt_Nm.shape[1] for w in ways)))
