@@ -48,12 +48,12 @@ class TooManyElementsError(SolidError):
 
 
 class NoBetterMeshError(SolidError):
-    """No mesh is worth its solve: at best ± `expected` of K, and ± `known` is there already."""
+    """No mesh is worth its solve: it promises ± `expected` of K, and ± `known` is there already."""
 
     def __init__(self, expected: float, known: float) -> None:
         self.expected, self.known = expected, known
         super().__init__(
-            f"a solid mesh was expected to give bounds of ± {percent(expected, 3)} at best, and "
+            f"no solid mesh was solved: bounds of ± {percent(expected, 3)} were expected, and "
             f"± {percent(known, 3)} is known"
         )
 

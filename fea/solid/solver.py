@@ -88,7 +88,7 @@ def solve(
                 raise
             how = "direct"  # below, where the error holds none of the iteration's memory any more
     if how == "direct":
-        u[free] = direct(condense(matrix, I=free, expand=False), right[free])
+        u[free] = direct(condense(matrix, D=fixed, expand=False), right[free])
     forces = matrix @ u
     off = (forces - load)[free]
     residual = float(np.linalg.norm(off)) / max(float(np.linalg.norm(right)), ABOVE_ZERO)
