@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.lost_turns import turned_unseen
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 from flexspline.pipeline.diagnosis.measurement.torque_noise import LARGEST_NOISE
 
@@ -71,12 +72,15 @@ def _one_way(steps: np.ndarray) -> list[tuple[int, int]]:
 
 
 def play(history: History, width_Nm: float) -> np.ndarray:
-    """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone."""
+    """(n,) torque that follows only beyond ± `width_Nm`: reversals smaller than twice that are gone.
+
+    It goes to turns that nobody has written, too (`lost_turns.py`).
+    """
     width = np.array([max(width_Nm, LEAST_TORQUE_Nm)])
     key = ("play", float(width[0]))
     if key not in history.memo:
-        state = stops(history, history.torque_Nm, width, np.zeros(1))[:, 0]
-        history.memo[key] = history.torque_Nm - state
+        torque = turned_unseen(history)
+        history.memo[key] = torque - stops(history, torque, width, np.zeros(1))[:, 0]
     return history.memo[key]
 
 

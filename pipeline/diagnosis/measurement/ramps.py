@@ -8,6 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 MOVING = 0.3
@@ -45,23 +46,26 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     # a ramp's step, from moves over a small part of a cycle
     cycles = int(np.ptp(history.cycle[rows])) + 1
     coarse = max(1, len(rows) // (CYCLE_PARTS * cycles))
-    far = np.abs(torque[coarse:] - torque[:-coarse])
+    part = np.searchsorted(losses(t, torque, coarse), np.arange(len(rows)))
+
+    def beyond(moved: np.ndarray) -> np.ndarray:
+        return np.maximum(moved - NOISE_MOVES * noise, 0.0)
+
+    def moved(width: int) -> np.ndarray:
+        """(m,) without sign; 0 over a loss of rows, which says little of a rate."""
+        return np.abs(torque[width:] - torque[:-width]) * (part[width:] == part[:-width])
+
+    far = moved(coarse)
     far = far[far > NOISE_MOVES * noise]
     step = np.quantile(far, FAST_QUANTILE) / coarse if len(far) else 0.0
     fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, LEAST_TORQUE_Nm)), 1, widest))
     width = 1  # a ramp may be shorter than that part
     while width < fewest:
-        moved = np.abs(torque[width:] - torque[:-width])
-        if (
-            by_travel(moved, np.maximum(moved - NOISE_MOVES * noise, 0.0), 0.5)
-            >= CLEAR_SIGMAS * noise
-        ):
+        if by_travel(moved(width), beyond(moved(width)), 0.5) >= CLEAR_SIGMAS * noise:
             break
         width = min(2 * width, fewest)
-    moved = torque[width:] - torque[:-width]
-    travel = np.maximum(np.abs(moved) - NOISE_MOVES * noise, 0.0)
     span = np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
-    return Rates(width, moved / span, travel)
+    return Rates(width, (torque[width:] - torque[:-width]) / span, beyond(moved(width)))
 
 
 def moving_rates(history: History, rows: np.ndarray) -> Rates | None:

@@ -1,0 +1,25 @@
+"""Rows that a record has lost: a logger that paused, rows that somebody deleted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+LOST_STEPS = 4.0
+"""Usual steps of time from one row to the next, beyond which others are missing between them."""
+LOST_SHARE = 0.5
+"""Of the travel: where more of it lies between rows that are far apart, a logger writes what changes."""
+
+
+def losses(t: np.ndarray, torque_Nm: np.ndarray, step: int = 1) -> np.ndarray:
+    """Rows (k,) of one unit after which others are missing.
+
+    Parameters: times (n,) and torques (n,); and over how many rows, a `step`, the travel is taken.
+    """
+    spans = np.diff(t)
+    usual = np.median(spans) if len(spans) else 0.0
+    if usual <= 0:  # a clock of whole seconds
+        return np.zeros(0, int)
+    lost = spans > LOST_STEPS * usual
+    travel = np.abs(np.diff(torque_Nm[::step])).sum()
+    missing = np.abs(np.diff(torque_Nm))[lost].sum()
+    return np.flatnonzero(lost) if missing <= LOST_SHARE * travel else np.zeros(0, int)
