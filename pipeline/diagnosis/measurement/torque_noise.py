@@ -11,6 +11,12 @@ DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 LARGEST_NOISE = 0.02
 """Of the largest torque: what looks like more is no noise."""
+COARSE_STEP = (1e-3, 0.03)
+"""Of the largest torque: what is read in smaller steps is not seen to be, larger ones are a programme's."""
+FEWEST_LEVELS = 30
+"""Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
+STEP_SHARE = 0.01
+"""Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
 TORQUE_NOISE = ("torque_noise", 0.0)
 """Key of a history's torque noise."""
 
@@ -53,4 +59,21 @@ def _torque_noise_Nm(history: History) -> float:
     )
     found = [noise for noise in each if noise is not None]
     largest = float(np.abs(history.torque_Nm).max())
-    return min(float(np.median(found)), LARGEST_NOISE * largest) if found else 0.0
+    if not found:
+        return 0.0
+    return min(max(float(np.median(found)), _rounding_Nm(history)), LARGEST_NOISE * largest)
+
+
+def _rounding_Nm(history: History) -> float:
+    """Deviation of what rounding does to a torque that is read in coarse steps, 0 where it is not.
+
+    A programme of stairs has larger steps.
+    """
+    levels = np.unique(history.torque_Nm)
+    if len(levels) < FEWEST_LEVELS or history.readings is not None:
+        return 0.0
+    steps, largest = np.diff(levels), float(np.abs(levels).max())
+    step = float(np.median(steps))
+    coarse = COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest
+    alike = np.abs(steps / step - np.round(steps / step)) < STEP_SHARE
+    return step / np.sqrt(12) if coarse and alike.all() else 0.0

@@ -107,6 +107,7 @@ def test_a_wrong_temperature_is_bridged(rows: list[int], value: float, tmp_path:
 
 def few_large_cycles(columns: Columns) -> None:
     """Nine of ten rows within ± 1 N·m, then one way to 10 N·m in two rows."""
+    columns["angle_arcsec"] -= 0.9 * COMPLIANCE * columns["torque_Nm"]
     columns["torque_Nm"] /= 10
     columns["torque_Nm"][500:502] = 10.0
     columns["angle_arcsec"][500:502] = COMPLIANCE * 10 + GAP / 2
@@ -133,13 +134,45 @@ def staircase(columns: Columns) -> None:
     columns["angle_arcsec"] = np.where(np.arange(ROWS) % 3 == 1, columns["angle_arcsec"], 0.1)
 
 
+def short_pulses(columns: Columns) -> None:
+    """Of torque that the gear feels: one row each, 4 N·m, and the angle goes with it."""
+    columns["torque_Nm"][FEW] += 4.0
+    columns["angle_arcsec"][FEW] += 4.0 * COMPLIANCE
+
+
+def stuck_turns(columns: Columns) -> None:
+    """Twelve rows a cycle, and a bearing that sticks at each turn: the angle stays while torque turns."""
+    i = np.arange(ROWS)
+    torque = 10 * (1 - 4 * np.abs(((i + 0.5) / 12 + 0.25) % 1 - 0.5))
+    stuck = play(torque, 4.0)
+    columns["torque_Nm"] = torque
+    columns["angle_arcsec"] = COMPLIANCE * stuck + GAP / 2 * np.sign(stuck)
+
+
+def play(torque: np.ndarray, width: float) -> np.ndarray:
+    out = np.zeros(len(torque))
+    for i in range(1, len(torque)):
+        out[i] = np.clip(out[i - 1], torque[i] - width, torque[i] + width)
+    return out
+
+
 def noisy_angle(columns: Columns) -> None:
     """Spikes of the size that noise tests look at later."""
     columns["angle_arcsec"][FEW] += 150.0
 
 
 @pytest.mark.parametrize(
-    "change", [few_large_cycles, slipped_teeth, hot_cycle, other_zeros, staircase, noisy_angle]
+    "change",
+    [
+        few_large_cycles,
+        slipped_teeth,
+        hot_cycle,
+        other_zeros,
+        staircase,
+        noisy_angle,
+        short_pulses,
+        stuck_turns,
+    ],
 )
 def test_what_a_gear_or_a_programme_does_stays(change, tmp_path: Path) -> None:
     columns = record()
@@ -147,6 +180,19 @@ def test_what_a_gear_or_a_programme_does_stays(change, tmp_path: Path) -> None:
     sweep = read(columns, tmp_path)
     assert sweep.wrong == ()
     assert len(sweep) == ROWS
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_torques_that_the_angle_does_not_follow_are_wrong(tmp_path: Path, seed: int) -> None:
+    """A motor's switching in the cable of the load cell: single rows of 1 to 8 N·m, of a record to 10 N·m."""
+    columns, rng = record(seed), np.random.default_rng(seed)
+    rows = np.sort(rng.choice(np.arange(5, ROWS - 5, 3), 12, replace=False))
+    columns["torque_Nm"][rows] += rng.choice([-1, 1], 12) * rng.uniform(1.5, 8, 12)
+    sweep = read(columns, tmp_path)
+    (wrong,) = sweep.wrong
+    assert wrong.lines == tuple(rows + 2)
+    found = diagnose_file(load_design(EXAMPLES / "xb1-40.toml"), written(columns, tmp_path), *GIVEN)
+    assert [c.id for c in found.causes] == ["friction_hysteresis"]
 
 
 def test_the_verdict_is_that_of_the_record_without_them(tmp_path: Path) -> None:
