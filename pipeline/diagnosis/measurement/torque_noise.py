@@ -17,6 +17,8 @@ FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
 STEP_SHARE = 0.01
 """Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
+RESTLESS_SHARE = 0.3
+"""Of the rows, at which what is rounded changes its pace: two at each step, of seven rows and fewer."""
 TORQUE_NOISE = ("torque_noise", 0.0)
 """Key of a history's torque noise."""
 
@@ -67,7 +69,7 @@ def _torque_noise_Nm(history: History) -> float:
 def _rounding_Nm(history: History) -> float:
     """Deviation of what rounding does to a torque that is read in coarse steps, 0 where it is not.
 
-    A programme of stairs has larger steps.
+    A programme of stairs has larger steps, and stays on each; ramps of equal steps change at their ends only.
     """
     levels = np.unique(history.torque_Nm)
     if len(levels) < FEWEST_LEVELS or history.readings is not None:
@@ -76,4 +78,6 @@ def _rounding_Nm(history: History) -> float:
     step = float(np.median(steps))
     coarse = COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest
     alike = np.abs(steps / step - np.round(steps / step)) < STEP_SHARE
-    return step / np.sqrt(12) if coarse and alike.all() else 0.0
+    bends = [np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices]
+    restless = np.mean(np.abs(np.concatenate(bends)) > step / 2) > RESTLESS_SHARE
+    return step / np.sqrt(12) if coarse and alike.all() and restless else 0.0
