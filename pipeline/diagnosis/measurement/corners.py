@@ -47,7 +47,7 @@ def corners_of(history: History) -> list[Corner]:
         if len(rows) < FEWEST_ROWS_OF_UNIT:
             continue
         time, torque = history.time_s[rows], history.torque_Nm[rows]
-        noise = torque_noise_Nm(history) / fast
+        noise = torque_noise_Nm(history, rows) / fast
         width = rates_of(history, rows).width
         cycle = len(rows) / (int(history.cycle[rows].max()) + 1)
         longest = max(width, int(cycle / LONGEST_PARTS))

@@ -44,14 +44,13 @@ def _holds(history: History) -> list[np.ndarray]:
     fast = ramp_rate(history)
     if fast == 0:
         return []
-    noise = torque_noise_Nm(history)
     span = HOLD_RANGE_SHARE * float(np.abs(history.torque_Nm).max())
     found = []
     for rows in history.unit_slices:
         if len(rows) < 2 * FEWEST_HOLD_ROWS:
             continue
         assert history.time_s is not None
-        rates = rates_of(history, rows)
+        rates, noise = rates_of(history, rows), torque_noise_Nm(history, rows)
         width, rate = rates.width, np.abs(rates.values)
         t = history.time_s[rows]
         floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], LEAST_TIME_S)

@@ -41,7 +41,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     """Rates along a unit's or a cycle's rows, over the fewest in which a ramp moves clear of torque noise."""
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
-    noise = torque_noise_Nm(history)
+    noise = torque_noise_Nm(history, rows)
     widest = max(1, len(rows) // 20)
     # a ramp's step, from moves over a small part of a cycle
     cycles = int(np.ptp(history.cycle[rows])) + 1

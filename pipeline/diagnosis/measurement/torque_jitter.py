@@ -9,7 +9,10 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
-from flexspline.pipeline.diagnosis.measurement.torque_noise import TORQUE_NOISE, torque_noise_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import (
+    TORQUE_NOISE,
+    torque_noise_of_rows_Nm,
+)
 from flexspline.pipeline.diagnosis.robust import rms
 
 FAR_SIGMAS = 4.0
@@ -63,8 +66,8 @@ def jitter(history: History, width: int) -> np.ndarray:
         for way in known_ways(history):
             if way.held or width >= widest(history):
                 out[way.rows] = way.noise_Nm
-        # beyond its noise it is a corner that was not seen
-        history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * torque_noise_Nm(history), out, 0.0)
+        own = torque_noise_of_rows_Nm(history)  # beyond that it is a corner that was not seen
+        history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * own, out, 0.0)
     return history.memo[key]
 
 
@@ -79,7 +82,7 @@ def less_jitter(history: History) -> History:
     if key not in history.memo:
         torque = history.torque_Nm - jitter(history, widest(history))
         cleared = replace(history, torque_Nm=torque)
-        cleared.memo[TORQUE_NOISE] = _left_Nm(reading_of(history))
+        cleared.memo[TORQUE_NOISE] = np.full(len(history), _left_Nm(reading_of(history)))
         history.memo[key] = cleared
     found: History = history.memo[key]
     return found
@@ -104,7 +107,7 @@ def _left_Nm(history: History) -> float:
     key = ("left", 0.0)
     if key not in history.memo:
         rows = 2 * widest(history) + 1
-        left = np.full(len(history), PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_Nm(history))
+        left = PARABOLA_MIDDLE / np.sqrt(rows) * torque_noise_of_rows_Nm(history)
         for way in known_ways(history):
             left[way.rows] = np.sqrt((way.doubt_Nm**2).sum(axis=1))
         history.memo[key] = rms(left)

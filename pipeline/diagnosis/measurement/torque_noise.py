@@ -17,6 +17,9 @@ FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""
 STEP_SHARE = 0.01
 """Of a step, within which two levels are whole steps apart: decimals differ by their last bit."""
+UNLIKE, LEAST_OF_TYPICAL = 2.0, 0.05
+"""Times the typical noise from which cycles have their own: by chance one of 24 rows has 1.5 times as much;
+and of the typical one at least: a way of few rows is not known better."""
 RESTLESS_SHARE = 0.3
 """Of the rows, at which what is rounded changes its pace: two at each step, of seven rows and fewer."""
 TORQUE_NOISE = ("torque_noise", 0.0)
@@ -28,20 +31,25 @@ def deadband_Nm(history: History) -> float:
     return DEADBAND_SIGMAS * torque_noise_Nm(history)
 
 
-def torque_noise_Nm(history: History) -> float:
-    """White noise of the torque [N·m], the typical unit's, in rows of the usual number of readings."""
+def torque_noise_Nm(history: History, rows: np.ndarray | None = None) -> float:
+    """White noise of the torque [N·m] in rows of the usual number of readings.
+
+    Of the whole record or of some `rows`, those of a unit; the noisiest cycle's where cycles are unlike.
+    """
     if TORQUE_NOISE not in history.memo:
         history.memo[TORQUE_NOISE] = _torque_noise_Nm(history)
-    return float(history.memo[TORQUE_NOISE])
+    noise: np.ndarray = history.memo[TORQUE_NOISE]
+    return float(noise.max() if rows is None else noise[rows].max())
 
 
 def torque_noise_of_rows_Nm(history: History) -> np.ndarray:
     """(n,) of each row [N·m]: a mean of more readings has less."""
-    usual = torque_noise_Nm(history)
+    torque_noise_Nm(history)
+    noise: np.ndarray = history.memo[TORQUE_NOISE]
     if history.readings is None:
-        return np.full(len(history), usual)
+        return noise
     of_usual = np.median(history.readings[_usual(history)])
-    return np.asarray(usual * np.sqrt(of_usual / history.readings))
+    return np.asarray(noise * np.sqrt(of_usual / history.readings))
 
 
 def _usual(history: History) -> np.ndarray:
@@ -51,19 +59,32 @@ def _usual(history: History) -> np.ndarray:
     return np.asarray(2 * history.readings > np.median(history.readings))
 
 
-def _torque_noise_Nm(history: History) -> float:
+def _torque_noise_Nm(history: History) -> np.ndarray:
+    """(n,) the typical unit's; each cycle's own where one has UNLIKE times as much."""
+    none = np.zeros(len(history))
     if history.exact:
-        return 0.0
+        return none
     usual = _usual(history)
-    each = (
-        white_noise(history.torque_Nm[rows], history.time_or_rows(rows))
-        for rows in (unit[usual[unit]] for unit in history.unit_slices)
-    )
-    found = [noise for noise in each if noise is not None]
-    largest = float(np.abs(history.torque_Nm).max())
-    if not found:
-        return 0.0
-    return min(max(float(np.median(found)), _rounding_Nm(history)), LARGEST_NOISE * largest)
+
+    def of(parts: list[np.ndarray]) -> list[float | None]:
+        own = (rows[usual[rows]] for rows in parts)
+        return [white_noise(history.torque_Nm[rows], history.time_or_rows(rows)) for rows in own]
+
+    units = [noise for noise in of(history.unit_slices) if noise is not None]
+    if not units:
+        return none
+    most = LARGEST_NOISE * float(np.abs(history.torque_Nm).max())
+    typical = max(float(np.median(units)), _rounding_Nm(history))
+    cycles = history.cycle_slices
+    each = [
+        typical if noise is None else max(noise, LEAST_OF_TYPICAL * typical) for noise in of(cycles)
+    ]
+    if max(each) < UNLIKE * typical:
+        each = [typical] * len(each)
+    found = none
+    for rows, noise in zip(cycles, each, strict=True):
+        found[rows] = min(noise, most)
+    return found
 
 
 def _rounding_Nm(history: History) -> float:
