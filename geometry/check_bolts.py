@@ -32,6 +32,8 @@ def bolt_faults(
         )
         return
     if hole is None or hole > most:
+        if circle is not None and (on_circle := _room_on(circle, n, inner[1], outer[1], alone)):
+            holes, land = on_circle, f"{land} on bolt_circle_diameter_mm = {circle:g}"
         verb = "give a number" if hole is None else "must be"
         needs = f"bolt_count = {n} needs it; " if hole is None else ""
         yield DesignError(
@@ -59,6 +61,13 @@ def bolt_faults(
             f"must be from 0 to {_most_holes(circle, hole)}: beyond, holes of bolt_hole_diameter_mm = "
             f"{hole:g} touch on bolt_circle_diameter_mm = {circle:g}{also}",
         )
+
+
+def _room_on(circle: float, count: int, inner: float, outer: float, alone: bool) -> str | None:
+    """Diameters of holes that fit on a circle; None where it leaves no room for any."""
+    inside = outer if alone else circle - inner
+    apart = circle * sin(pi / count) if count > 1 else outer
+    return lengths(0, below(min(inside, outer - circle, apart)))
 
 
 def _most_holes(circle: float, hole: float) -> int:

@@ -66,7 +66,12 @@ def _ring_faults(f: Flexspline, teeth: Interval) -> Iterator[DesignError]:
             yield fault(f, "teeth", reason)
             return
         why = ""
-        if is_step(rise):
+        if rise < 0:
+            why = (
+                f": not thinner than wall_thickness_mm = {wall:g}; or make that at most "
+                f"{f.ring_thickness_mm:g}"
+            )
+        elif is_step(rise):
             why = (
                 f": its 45° shoulder rises over ring_thickness_mm - wall_thickness_mm within {tube}"
             )

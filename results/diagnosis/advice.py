@@ -10,7 +10,7 @@ from flexspline.pipeline.diagnosis.diagnose import MeasurementKind
 from flexspline.pipeline.diagnosis.end_points.next_measurement import TIMES_OVER
 from flexspline.pipeline.diagnosis.outcome import Doing, DoingKind, NextMeasurement
 from flexspline.pipeline.diagnosis.specimens.cause_ids import LOAD_ZONE, YOUNGS_MODULUS
-from flexspline.pipeline.diagnosis.sweep.next_measurement import MORE_CYCLES, WARMER_K
+from flexspline.pipeline.diagnosis.sweep.next_measurement import LARGER, MORE_CYCLES, WARMER_K
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.diagnosis.structure_words import words_of
 from flexspline.results.diagnosis.words import title_of
@@ -99,6 +99,8 @@ def _of_sweep(after: NextMeasurement) -> str:
     cause = known_causes()[after.causes[0]]
     if after.aim == "confirm":
         doing = cause.reveals if after.doing is None else doing_words(after.doing)
+        if after.vary != cause.vary and after.doing == LARGER:
+            return f"the record shows {cause.title} well; how it goes on at other torques: {doing}"
         return f"to confirm {cause.title}: {doing}"
     titles = _one_from_others(after)
     if after.doing is None or not after.separation:  # nothing was computed

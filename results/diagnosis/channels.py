@@ -37,8 +37,8 @@ class ChannelWords:
 
 CHANNELS: Mapping[str, ChannelWords] = {
     "torque_Nm": ChannelWords("torque", "N·m", axis="output torque"),
-    "angle": ChannelWords("the angle itself"),
-    "angle_arcsec": ChannelWords("the angle itself", "arcsec"),
+    "angle": ChannelWords("output angle"),
+    "angle_arcsec": ChannelWords("output angle", "arcsec"),
     "specimen": ChannelWords("further specimens", many="specimens"),
     "specimen_order": ChannelWords("the order of the specimens"),
     "repeat": ChannelWords("repetition"),

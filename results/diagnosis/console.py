@@ -58,12 +58,14 @@ def _errors(outcome: DiagnosisOutcome) -> list[str]:
     if gain is not None:
         held_out = left_out_words(gain.held_out)
         lines += row((f"Error on {held_out}, not used for fitting, in {gain.unit} rms:",))
-        for words, value in (
-            ("simulation as it stands", gain.rmse_before),
-            (calibrated_words(gain), gain.rmse_calibrated),
-            ("with the causes found", gain.rmse_after),
-            (noise_words(gain), gain.noise_floor),
-        ):
+        errors = {
+            "simulation as it stands": gain.rmse_before,
+            calibrated_words(gain): gain.rmse_calibrated,
+        }
+        if outcome.causes:
+            errors["with the causes found"] = gain.rmse_after
+        errors[noise_words(gain)] = gain.noise_floor
+        for words, value in errors.items():
             lines += row((words, figures_text(value)), (60,), "    ")
     if outcome.gains_at_levels:
         head = "Error where a whole level was left out, in arcsec rms, without and with the causes:"

@@ -137,7 +137,18 @@ def _linear(content: ReportContent, limit: LinearLimit) -> str:
         f"Stiffness, stress and backlash are linear in the torque. Beyond {least} they are not valid: there "
         f"{reason(limit)}. T_L is {100 * torque / limit.torque_Nm:.2g} % of that. Buckling, the teeth and "
         "the bolts may end it earlier, and so may the wave generator's stress, which exists without torque; "
-        "none of these is included."
+        f"none of these is included.{_buckles(content, limit)}"
+    )
+
+
+def _buckles(content: ReportContent, limit: LinearLimit) -> str:
+    """Where the tube is estimated to buckle below that limit, the torque; else ""."""
+    torque = content.gear.buckling_torque_Nm if content.gear else None
+    if torque is None or torque >= limit.torque_Nm:
+        return ""
+    return (
+        f" The flexspline's tube buckles earlier, at about "
+        f"{quantity('buckling_torque_Nm').with_unit(torque)} by estimate."
     )
 
 

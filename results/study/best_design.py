@@ -38,8 +38,8 @@ def best_warnings(result: StudyResult) -> Iterable[str]:
         yield from (f"design {slot}: {line}" for line in lines)
     if others := [str(slot) for slot, lines in said[1:] if lines]:
         yield (
-            f"design {', '.join(others)}: warnings too; to read them, put that row's values of "
-            "study.csv into a design file, and run flexspline run on it"
+            f"other listed designs with warnings: {', '.join(others)}; to read them, put a design's row of "
+            "study.csv into a design file and run flexspline run on it"
         )
 
 

@@ -94,12 +94,15 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
     """Fit the named causes anew on the rest of the record, and predict what was held out.
 
     The shapes are searched and tuned anew as well, on the training rows alone. Rows in the gap's crossing are
-    judged no more than they are fitted: their side of the gap is not known.
+    judged no more than they are fitted: their side of the gap is not known. With friction ahead of the teeth
+    the simulation has its crossing elsewhere, and is not judged there either.
     """
     prepared = explained.prepared
     sweep, history, out = prepared.sweep, prepared.rig.history, split.rows
     train = prepared.kept & ~out
-    test = out & ~prepared.outlier & (np.abs(history.torque_Nm) > prepared.band_Nm)
+    test = out & ~prepared.outlier
+    for crossed in (history, true_history(sweep, prepared.offset_Nm)):
+        test &= np.abs(crossed.torque_Nm) > prepared.band_Nm
     test &= ~turning(history)  # what a row there shows is a matter of sampling
     test &= ~settling(history)  # nor is known what friction remembers from before the record
     if train.sum() < FEWEST_RMS_ROWS or test.sum() < FEWEST_RMS_ROWS:

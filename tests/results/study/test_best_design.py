@@ -72,8 +72,8 @@ def test_a_ring_whose_teeth_do_not_fit_is_said_of_the_best() -> None:
     """19.2 + 0.9 mm is 0.35 mm outside the tooth root, 19.75 mm."""
     tooth, others = best_warnings(result_of((0.55, 400.0), (0.9, 400.0), (0.85, 400.0)))
     assert tooth.startswith("design 1: tooth-root radius")
-    assert "others" not in tooth
-    assert others.startswith("design 2: warnings too; ")
+    assert "other listed" not in tooth
+    assert others.startswith("other listed designs with warnings: 2; ")
     assert not list(best_warnings(result_of((0.55, 400.0))))
 
 
