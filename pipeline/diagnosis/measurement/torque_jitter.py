@@ -57,6 +57,9 @@ def jitter(history: History, width: int) -> np.ndarray:
     less its mean.
     """
     history = reading_of(history)
+    own = torque_noise_of_rows_Nm(history)
+    if not own.any():  # a calculated course
+        return np.zeros(len(history))
     key = ("jitter", float(width))
     if key not in history.memo:
         out = np.zeros(len(history))
@@ -66,7 +69,7 @@ def jitter(history: History, width: int) -> np.ndarray:
         for way in known_ways(history):
             if way.held or width >= widest(history):
                 out[way.rows] = way.noise_Nm
-        own = torque_noise_of_rows_Nm(history)  # beyond that it is a corner that was not seen
+        # beyond its noise it is a corner that was not seen
         history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * own, out, 0.0)
     return history.memo[key]
 

@@ -76,7 +76,7 @@ def identify(search: Search, beside: bool = False) -> Identification:
         best = _best_of_owners(evidence, weak[min(weak, key=lambda c: nats[c])])
     fit = fit_regressors(evidence, best.terms)
     ahead = {FRICTION} if evidence.columns.ahead else set()
-    rms = owner_rms(fit, sorted(best.owners(evidence) | ahead))
+    rms = owner_rms(fit, sorted(best.owners | ahead))
     held = best.named(evidence) | ahead
     largest = max((rms[c] for c in held if not known_causes()[c].exact), default=0.0)
     doubt = SizeDoubt.of(fit)
@@ -169,8 +169,8 @@ def _unnamed_or(causes: Collection[str]) -> Callable[[Regressor], bool]:
 
 def _best_of_owners(evidence: GaussianEvidence, known: Candidate) -> Candidate:
     """The best set of the same owners: where others were let in, theirs had not the whole beam."""
-    owners = known.owners(evidence)
+    owners = known.owners
     search = Search(evidence, owned_by(owners))
     found = search.run([known.terms, ()], most=max(len(known.terms), 1))
-    same = found.owners(evidence) == owners and not fits_noise(evidence, found)
+    same = found.owners == owners and not fits_noise(evidence, found)
     return found if same and found.score > known.score else known

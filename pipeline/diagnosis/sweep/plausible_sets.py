@@ -47,7 +47,7 @@ def plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Ca
 
 def fits_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
     """Whether a set's effects nearly cancel, or one is the torque's noise through a memory."""
-    owners = c.owners(evidence)
+    owners = c.owners
     nuisance = any(o.startswith("?") for o in owners)
     driven = sorted(owners & {*DRIVEN})
     if not nuisance and not driven:

@@ -215,12 +215,12 @@ def _by_other_laws(search: Search, best: Candidate) -> list[tuple[int, ...]]:
     def laws(c: Candidate) -> set[tuple[object, ...]]:
         return {terms[i].law for i in c.terms}
 
-    owners, known = best.owners(search.evidence), [laws(best)]
+    owners, known = best.owners, [laws(best)]
     found: list[tuple[int, ...]] = []
     for c in sorted(search.tried, key=lambda c: -c.score):
         if len(found) == TUNED_LAWS:
             break
-        if c.owners(search.evidence) == owners and laws(c) not in known:
+        if c.owners == owners and laws(c) not in known:
             known.append(laws(c))
             found.append(c.terms)
     return found

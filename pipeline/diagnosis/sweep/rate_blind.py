@@ -52,7 +52,7 @@ def loop_tells(evidence: GaussianEvidence, best: Candidate, timed: bool) -> bool
     history = evidence.columns.rig.history
     if _rates_or_holds(history):
         return True
-    owners = best.owners(evidence)
+    owners = best.owners
     rubs = FRICTION in owners or evidence.columns.ahead is not None
     if RATE in owners and rates_apart_within(history) < RATES_WITHIN:
         return False
@@ -78,7 +78,7 @@ def follows_rate(evidence: GaussianEvidence, best: Candidate) -> bool:
     steady = at_one_rate(history)
     if steady is None:
         return True
-    owners = best.owners(evidence)
+    owners = best.owners
     columns = evidence.columns.all.copy()
     for term in evidence.terms:
         if term.owner == RATE and term.cause is not None:

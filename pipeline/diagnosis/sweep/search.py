@@ -27,16 +27,14 @@ WORTH_NATS = 0.5
 """Nats that a larger set must gain for the search to go on."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Candidate:
-    """A set of terms; `log_evidence` in nats beyond the base, `score` with the set's prior."""
+    """A set of terms, and their owners; `log_evidence` [nats] beyond the base, `score` with its prior."""
 
     terms: tuple[int, ...]
+    owners: frozenset[str]
     log_evidence: float
     score: float
-
-    def owners(self, evidence: GaussianEvidence) -> frozenset[str]:
-        return frozenset(evidence.terms[i].owner for i in self.terms)
 
     def log_evidence_with_shapes(self, search: Search) -> float:
         """Evidence with the shapes' prior, but not the costs of naming."""
@@ -84,8 +82,7 @@ class Search:
         """
         while True:
             best = self.top
-            owners = sorted(self._owners(best))
-            starts = [[i for i in best.terms if self._owner[i] != o] for o in owners]
+            starts = [[i for i in best.terms if self._owner[i] != o] for o in sorted(best.owners)]
             if not starts or self.run(starts).score < best.score + WORTH_NATS:
                 return self.top
 
@@ -103,12 +100,13 @@ class Search:
         """Evidence and score of one set."""
         at = column_indices(self.evidence, terms)
         if len(at) == 0:
-            return Candidate((), 0.0, 0.0)
+            return Candidate((), frozenset(), 0.0, 0.0)
         matrix = self.evidence.gram[np.ix_(at, at)] + np.eye(len(at))
         right = self.evidence.right[at]
         gain = right @ np.linalg.solve(matrix, right) / 2
         nats = float(gain - np.linalg.slogdet(matrix)[1] / 2)
-        return Candidate(tuple(terms), nats, nats + self.prior(terms))
+        owners = frozenset(self._owner[i] for i in terms)
+        return Candidate(tuple(terms), owners, nats, nats + self.prior(terms))
 
     def prior(self, terms: Sequence[int]) -> float:
         """Log prior of a set: costs of its owners and of its shapes."""
@@ -123,14 +121,10 @@ class Search:
                 seen.add(term.cause.id)
         return total
 
-    def _owners(self, c: Candidate) -> frozenset[str]:
-        return frozenset([self._owner[i] for i in c.terms])
-
     def _remember(self, c: Candidate) -> None:
         self.tried.append(c)
-        owners = self._owners(c)
-        if owners not in self.best or self.best[owners].score < c.score:
-            self.best[owners] = c
+        if c.owners not in self.best or self.best[c.owners].score < c.score:
+            self.best[c.owners] = c
 
     def _grown(self, beam: Sequence[Candidate]) -> list[Candidate]:
         """Sets with one term more: of each set the best few of each owner."""
@@ -146,7 +140,8 @@ class Search:
                     if key not in self._seen:
                         self._seen.add(key)
                         found.append(Candidate(
-                            (*c.terms, term), c.log_evidence + float(gain[j]), c.score + float(score[j])
+                            (*c.terms, term), c.owners | {self._owner[term]},
+                            c.log_evidence + float(gain[j]), c.score + float(score[j]),
                         ))  # fmt: skip
         for f in found:
             self._remember(f)
@@ -180,10 +175,9 @@ class Search:
         kept: list[Candidate] = []
         count: dict[frozenset[str], int] = {}
         for c in sorted(grown, key=lambda c: -c.score):
-            owners = self._owners(c)
-            single = len(owners) == 1 and len(c.terms) == 1
-            if count.get(owners, 0) < (PER_SINGLE if single else PER_OWNERS):
-                count[owners] = count.get(owners, 0) + 1
+            single = len(c.owners) == 1 and len(c.terms) == 1
+            if count.get(c.owners, 0) < (PER_SINGLE if single else PER_OWNERS):
+                count[c.owners] = count.get(c.owners, 0) + 1
                 kept.append(c)
             if len(kept) == BEAM:
                 break

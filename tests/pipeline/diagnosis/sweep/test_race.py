@@ -153,7 +153,7 @@ def test_an_owner_may_give_way_once_the_set_is_whole() -> None:
     wrong = next(i for i, t in enumerate(now.terms) if t.owner == "stiffness_hardening")
     search = Search(now, lambda t: t.cause is not None)
     search.run([[wrong]], most=1)
-    assert search.exchanged().owners(now) == {"direction_asymmetry"}
+    assert search.exchanged().owners == {"direction_asymmetry"}
 
 
 def test_no_offset_from_torque_one_way() -> None:
