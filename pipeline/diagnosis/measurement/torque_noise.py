@@ -99,6 +99,6 @@ def _rounding_Nm(history: History) -> float:
     step = float(np.median(steps))
     coarse = COARSE_STEP[0] * largest < step < COARSE_STEP[1] * largest
     alike = np.abs(steps / step - np.round(steps / step)) < STEP_SHARE
-    bends = [np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices]
-    restless = np.mean(np.abs(np.concatenate(bends)) > step / 2) > RESTLESS_SHARE
+    bends = np.concatenate([np.diff(history.torque_Nm[rows], 2) for rows in history.unit_slices])
+    restless = (np.abs(bends) > step / 2).sum() > RESTLESS_SHARE * len(history)
     return step / np.sqrt(12) if coarse and alike.all() and restless else 0.0

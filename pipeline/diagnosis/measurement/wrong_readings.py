@@ -11,23 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.ranges import Range
 from flexspline.pipeline.diagnosis.measurement.outliers import LONGEST_OUTLIER
 from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
-from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
+from flexspline.pipeline.diagnosis.measurement.torque_spikes import torque_spikes
 
 FAR = 3.0
 """Times as far from the median as every other reading: a programme goes to its largest torque by steps, and a
 gear by its slope. Only what stands alone or repeats itself is asked, and only against another channel."""
-SPIKE_SIGMAS, SPIKE_SHARE, SPIKE_STEPS = 10.0, 0.05, 4.0
-"""What a torque must stand out by, to be no torque where the angle does not follow: in deviations of the rows
-about it, as a share of the largest torque, and in steps between the rows beside it."""
-FOLLOWS = 0.25
-"""Of the twist that such a torque would make."""
-BESIDE = 3
-"""Rows on either side that are asked."""
 LEAP_K = 50.0
 """From one row to the next and back: an oven needs minutes for it, a gear hours."""
 GEAR_C = Range(-197.0, 400.0)
@@ -68,9 +60,8 @@ def without_wrong(table: MeasuredTable) -> tuple[MeasuredTable, tuple[WrongReadi
             table = table.rows(~wrong)
     spikes = np.zeros(len(table), bool)
     for rows in _units(table):
-        spikes[rows] = _spikes(
-            *(table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
-        )
+        torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
+        spikes[rows] = torque_spikes(torque, angle)
     if spikes.any():
         found.append(_told(table, "torque_Nm", spikes))
         table = table.rows(~spikes)
@@ -146,38 +137,6 @@ def _alone(far: np.ndarray, values: np.ndarray | None = None) -> np.ndarray:
         repeats = values is not None and np.ptp(values[a:b]) == 0
         out[a:b] = b - a <= LONGEST_OUTLIER or repeats
     return out
-
-
-def _spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """(n,) torques, one or two in a row, that stand out and that the angle does not follow: a gear would."""
-    if len(torque) <= 2 * BESIDE:
-        return np.zeros(len(torque), bool)
-    off, moved = (values - _median_about(values) for values in (torque, angle))
-    sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
-    largest = np.quantile(np.abs(torque), 0.95)
-    far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
-    felt = np.abs(moved) > FOLLOWS * _softness(torque, angle) * np.abs(off)
-    spikes = _alone(far & ~felt)
-    for a, b in runs(spikes):
-        sides = torque[max(0, a - BESIDE) : a], torque[b : b + BESIDE]
-        step = max((np.abs(np.diff(side)).max(initial=0.0) for side in sides), default=0.0)
-        spikes[a:b] &= np.abs(off[a:b]).min() > SPIKE_STEPS * step
-    return spikes
-
-
-def _softness(torque: np.ndarray, angle: np.ndarray) -> float:
-    """Angle per torque beside the gap: the smaller slope of the two sides."""
-    slopes = []
-    for side in (torque > 0, torque < 0):
-        off = torque[side] - torque[side].mean() if side.any() else np.zeros(0)
-        slopes.append(float(off @ angle[side]) / max(float(off @ off), ABOVE_ZERO))
-    return max(min(slopes), 0.0)
-
-
-def _median_about(values: np.ndarray) -> np.ndarray:
-    """(n,) medians of each row and two on either side."""
-    padded = np.pad(values, 2, mode="edge")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1))
 
 
 def _beside_torque(table: MeasuredTable, rows: np.ndarray) -> Judge:

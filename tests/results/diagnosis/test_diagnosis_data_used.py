@@ -9,11 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosed_file import diagnose_file
 from example_files import EXAMPLES
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from flexspline.geometry.load import load_design
 from flexspline.results.cli import app
+from flexspline.results.diagnosis.record import diagnosis_record
 
 CUP = EXAMPLES / "xb1-40.toml"
 END_POINTS = EXAMPLES / "measured" / "size-40-end-points.csv"
@@ -149,14 +152,19 @@ def test_end_points_give_the_gap_common_to_all_units(tmp_path: Path) -> None:
     assert "rows" not in said
 
 
+def record_of(measured: Path) -> dict:
+    """diagnosis.json without its files."""
+    return diagnosis_record(diagnose_file(load_design(CUP), measured, 31329, 43339))
+
+
 def sizes(said: dict) -> dict[str, float]:
     return {cause["id"]: cause["magnitude"] for cause in said["causes"]}
 
 
 @pytest.fixture(scope="module")
-def right(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
+def right() -> dict[str, float]:
     """Of the sweep as it is."""
-    said = json.loads(diagnosed(SWEEP, tmp_path_factory.mktemp("right"), "--json"))
+    said = record_of(SWEEP)
     assert said["verdict"] == "named"
     return sizes(said)
 
@@ -174,7 +182,7 @@ def test_wrong_readings_of_any_size_change_no_verdict(
         lines[header + 1 + row] = ",".join([*words[:-1], f"{reading}"])
     path = tmp_path / "wrong.csv"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    said = json.loads(diagnosed(path, tmp_path / "out", "--json"))
+    said = record_of(path)
     assert said["verdict"] == "named"
     assert sizes(said) == pytest.approx(right, rel=0.02)
     assert said["rows"]["left_out"].get("outlier", 0) >= len(rows) - 1  # a turn may take one

@@ -1,0 +1,54 @@
+"""Torques that stand out in a row or two and that the angle does not follow: no gear felt them.
+
+A motor switches beside the load cell's cable, say. Whatever has a memory would remember such a torque.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexspline.geometry.above_zero import ABOVE_ZERO
+from flexspline.pipeline.diagnosis.measurement.outliers import LONGEST_OUTLIER
+from flexspline.pipeline.diagnosis.measurement.runs import runs
+from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
+
+SPIKE_SIGMAS, SPIKE_SHARE, SPIKE_STEPS = 10.0, 0.05, 4.0
+"""What a torque must stand out by, to be no torque where the angle does not follow: in deviations of the rows
+about it, as a share of the largest torque, and in steps between the rows beside it."""
+FOLLOWS = 0.25
+"""Of the twist that such a torque would make."""
+BESIDE = 3
+"""Rows on either side that are asked."""
+
+
+def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """(n,) torques, one or two in a row, that stand out and that the angle does not follow: a gear would."""
+    if len(torque) <= 2 * BESIDE:
+        return np.zeros(len(torque), bool)
+    off, moved = (values - _median_about(values) for values in (torque, angle))
+    sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
+    largest = np.quantile(np.abs(torque), 0.95)
+    far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
+    felt = np.abs(moved) > FOLLOWS * _softness(torque, angle) * np.abs(off)
+    spikes = far & ~felt
+    for a, b in runs(spikes):
+        sides = torque[max(0, a - BESIDE) : a], torque[b : b + BESIDE]
+        step = max((np.abs(np.diff(side)).max(initial=0.0) for side in sides), default=0.0)
+        alone = b - a <= LONGEST_OUTLIER
+        spikes[a:b] = alone and np.abs(off[a:b]).min() > SPIKE_STEPS * step
+    return spikes
+
+
+def _softness(torque: np.ndarray, angle: np.ndarray) -> float:
+    """Angle per torque beside the gap: the smaller slope of the two sides."""
+    slopes = []
+    for side in (torque > 0, torque < 0):
+        off = torque[side] - torque[side].mean() if side.any() else np.zeros(0)
+        slopes.append(float(off @ angle[side]) / max(float(off @ off), ABOVE_ZERO))
+    return max(min(slopes), 0.0)
+
+
+def _median_about(values: np.ndarray) -> np.ndarray:
+    """(n,) medians of each row and two on either side."""
+    padded = np.pad(values, 2, mode="edge")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1))
