@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.causes.operators import dahl, steadied, stops
 from flexspline.pipeline.diagnosis.causes.sliding import carried_share
 from flexspline.pipeline.diagnosis.causes.square_loop import SQUARE, square_loops
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import CLEARED, less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
@@ -213,7 +214,9 @@ class FrictionHysteresis(Cause):
                     history, e.amplitudes[0], e.shape[AHEAD], e.shape["deadband_Nm"]
                 )
                 carried += e.amplitudes[0] * share
-        return replace(history, torque_Nm=history.torque_Nm - carried) if carried.any() else history
+        if not carried.any():
+            return history
+        return turning_like(history, replace(history, torque_Nm=history.torque_Nm - carried))
 
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """Full width at T = 0 of the closed loop at the largest amplitude.

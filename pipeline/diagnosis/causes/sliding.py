@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.causes.operators import last_way, steadied
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
 from flexspline.pipeline.diagnosis.robust import rms
 
 
@@ -26,7 +27,7 @@ def _held_still(history: History) -> History:
         for hold in holds(history):
             torque[hold] = torque[hold].mean()
         history.memo[key] = torque
-    return replace(history, torque_Nm=history.memo[key])
+    return turning_like(history, replace(history, torque_Nm=history.memo[key]))
 
 
 WAY, STRAIGHT = 5, 0.02

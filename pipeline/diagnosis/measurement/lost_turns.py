@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -21,44 +22,64 @@ STRAIGHT = 0.01
 from its top over an eighth of the cycle is 0.06."""
 
 
+TURNS = ("lost_turns", 0.0)
+"""Key of a history's lost turns: those of the reading, where its torque was made of one."""
+
+
+@dataclass(frozen=True)
+class LostTurns:
+    """Turns between two rows: the row before each (k,), and how much further torque went [N·m] (k,)."""
+
+    rows: np.ndarray
+    further_Nm: np.ndarray
+
+
 def turned_unseen(history: History) -> np.ndarray:
     """(n,) torque [N·m], at the row before a loss of rows that of the turn that was lost with them.
 
-    For what has a memory: it is driven to the turn, though nobody has written it. The straight ways on either
-    side are followed to where they meet.
+    For what has a memory: it is driven to the turn, though nobody has written it.
     """
-    key = ("turned_unseen", 0.0)
-    if key not in history.memo:
-        history.memo[key] = _turned_unseen(history)
-    found: np.ndarray = history.memo[key]
-    return found
-
-
-def _turned_unseen(history: History) -> np.ndarray:
-    torque = history.torque_Nm
-    if history.time_s is None or history.exact:
-        return torque
-    lost = {
-        unit: losses(history.time_s[rows], torque[rows])
-        for unit, rows in enumerate(history.unit_slices)
-    }
-    if not any(map(len, lost.values())):
-        return torque
-    torque = torque.copy()
-    for (unit, rows), edges in zip(
-        enumerate(history.unit_slices), programme_edges(history), strict=True
-    ):
-        for (first, turn), (_, last) in pairwise(pairwise(edges.tolist())):
-            if turn - 1 in lost[unit]:
-                before = rows[max(first + AT_CORNER, turn - WAY_ROWS) : turn]
-                after = rows[turn : min(last - AT_CORNER, turn + WAY_ROWS)]
-                met = _met(history, before, after)
-                torque[rows[turn - 1]] = met if met is not None else torque[rows[turn - 1]]
+    turns = lost_turns(history)
+    if not len(turns.rows):
+        return history.torque_Nm
+    torque = history.torque_Nm.copy()
+    torque[turns.rows] += turns.further_Nm
     return torque
 
 
-def _met(history: History, before: np.ndarray, after: np.ndarray) -> float | None:
-    """Torque [N·m] where two straight ways meet between their rows; None where they do not, or go on."""
+def turning_like(history: History, made: History) -> History:
+    """`made`, of the same rows, whose torque was made of the history's and turns where that does."""
+    made.memo[TURNS] = lost_turns(history)
+    return made
+
+
+def lost_turns(history: History) -> LostTurns:
+    """Where the straight ways on either side of a loss of rows, followed between them, meet."""
+    if TURNS not in history.memo:
+        history.memo[TURNS] = _lost_turns(history)
+    found: LostTurns = history.memo[TURNS]
+    return found
+
+
+def _lost_turns(history: History) -> LostTurns:
+    found: dict[int, float] = {}
+    if history.time_s is not None and not history.exact:
+        units = history.unit_slices
+        lost = [losses(history.time_s[rows], history.torque_Nm[rows]) for rows in units]
+        edges = programme_edges(history) if any(map(len, lost)) else []
+        for rows, after, ways in zip(units, lost, edges, strict=False):
+            for (first, turn), (_, last) in pairwise(pairwise(ways.tolist())):
+                if turn - 1 in after:
+                    way = rows[max(first + AT_CORNER, turn - WAY_ROWS) : turn]
+                    back = rows[turn : min(last - AT_CORNER, turn + WAY_ROWS)]
+                    further = _further(history, way, back)
+                    if further is not None:
+                        found[int(rows[turn - 1])] = further
+    return LostTurns(np.array([*found], int), np.array([*found.values()]))
+
+
+def _further(history: History, before: np.ndarray, after: np.ndarray) -> float | None:
+    """How far beyond its last row a straight way meets the next [N·m]; None where they go on, or apart."""
     assert history.time_s is not None
     if min(len(before), len(after)) < FEWEST_ROWS:
         return None
@@ -74,4 +95,4 @@ def _met(history: History, before: np.ndarray, after: np.ndarray) -> float | Non
         return None
     at = (later - level) / (slope - back)
     inside = 0 < at < history.time_s[after[0]] - history.time_s[before[-1]]
-    return float(level + slope * at) if inside else None
+    return float(slope * at) if inside else None

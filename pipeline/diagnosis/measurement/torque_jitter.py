@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
+from flexspline.pipeline.diagnosis.measurement.lost_turns import turning_like
 from flexspline.pipeline.diagnosis.measurement.torque_noise import (
     TORQUE_NOISE,
     torque_noise_of_rows_Nm,
@@ -38,7 +39,7 @@ READING = ("reading", 0.0)
 
 def behind(reading: History, carried_Nm: np.ndarray) -> History:
     """The history with the torque that is left behind friction: its noise is the reading's, row by row."""
-    found = replace(reading, torque_Nm=reading.torque_Nm - carried_Nm)
+    found = turning_like(reading, replace(reading, torque_Nm=reading.torque_Nm - carried_Nm))
     found.memo[READING] = reading
     return found
 
@@ -84,7 +85,7 @@ def less_jitter(history: History) -> History:
     key = ("less_jitter", 0.0)
     if key not in history.memo:
         torque = history.torque_Nm - jitter(history, widest(history))
-        cleared = replace(history, torque_Nm=torque)
+        cleared = turning_like(history, replace(history, torque_Nm=torque))
         cleared.memo[TORQUE_NOISE] = np.full(len(history), _left_Nm(reading_of(history)))
         history.memo[key] = cleared
     found: History = history.memo[key]
