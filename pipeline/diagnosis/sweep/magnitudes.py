@@ -64,8 +64,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
         std[THERMAL] = hypot(std[THERMAL], lag_std(identified, best[THERMAL]))
     if SERIES in std:
         std[SERIES] = hypot(std[SERIES], _spring_std(identified, best[SERIES]))
-    # a loop in proportion to load has no width at T = 0 by its shape alone
-    if FRICTION in std:
+    # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
+    if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
     return best, std
 

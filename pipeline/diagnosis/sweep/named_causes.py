@@ -14,7 +14,6 @@ from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
-from flexspline.pipeline.diagnosis.model.doubt import CARRIED_UNSURE
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
@@ -27,6 +26,9 @@ from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on
 SLOPE_OPEN_SHARE, SLOPE_NARROWED_SHARE = 0.8, 0.5
 """Of the simulated compliance's deviation, what is left beside friction and without it: friction then stands
 for the elastic twist. Of 26 made-up records of friction alone none leaves more than 0.51."""
+LAW_UNSURE = 0.02
+"""Of the torque that friction ahead of the gap carries, by the law by which it slides. Of 24 made-up records
+68 % of the sizes were within 2.2 % of the truth, 95 % within 4.4 %, the noise's share in it."""
 
 
 def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
@@ -111,7 +113,7 @@ def _std_ahead_arcsec(explained: ExplainedSweep) -> float:
     if ahead is None:
         return 0.0
     beside = FRICTION in explained.identified.best.named(fit.evidence)
-    of_law = CARRIED_UNSURE * _ahead_Nm(explained, FRICTION)
+    of_law = LAW_UNSURE * _ahead_Nm(explained, FRICTION)
     return 2 * fit.measured_rig().compliance * hypot(0.0 if beside else ahead.torque_std_Nm, of_law)
 
 
