@@ -22,6 +22,9 @@ STRAIGHT = 0.01
 from its top over an eighth of the cycle is 0.06."""
 
 
+BEYOND = 1.05
+"""Times the largest torque that was read, which a turn does not pass: a rig that stood still between two
+rows, and turned then, would seem to have gone on."""
 TURNS = ("lost_turns", 0.0)
 """Key of a history's lost turns: those of the reading, where its torque was made of one."""
 
@@ -95,4 +98,5 @@ def _further(history: History, before: np.ndarray, after: np.ndarray) -> float |
         return None
     at = (later - level) / (slope - back)
     inside = 0 < at < history.time_s[after[0]] - history.time_s[before[-1]]
-    return float(slope * at) if inside else None
+    most = BEYOND * float(np.abs(history.torque_Nm).max())
+    return float(slope * at) if inside and abs(level + slope * at) < most else None

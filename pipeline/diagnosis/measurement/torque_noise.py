@@ -11,7 +11,7 @@ DEADBAND_SIGMAS = 2.0
 """Half a reversal that may be noise: two rows of noise differ by more than twice this once in 210 times."""
 LARGEST_NOISE = 0.02
 """Of the largest torque: what looks like more is no noise."""
-COARSE_STEP = (1e-3, 0.03)
+COARSE_STEP = (1e-3, 0.035)
 """Of the largest torque: what is read in smaller steps is not seen to be, larger ones are a programme's."""
 FEWEST_LEVELS = 30
 """Of torque: a reading in such steps has 60 to 2000 of them, a programme of stairs fewer."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -68,6 +69,13 @@ def test_a_bent_way_and_a_hold_tell_no_turn(programme: Callable[[np.ndarray], np
 def test_a_pause_on_a_ramp_is_no_turn() -> None:
     paused = without(whole(triangle, 0.02), TURN + 40, TURN + 70)
     assert (turned_unseen(paused) == paused.torque_Nm).all()
+
+
+def test_a_rig_that_stood_still_at_its_turn_has_not_gone_on() -> None:
+    history = whole(triangle, 0.02)
+    time = history.time_s + 400.0 * (np.arange(ROWS) >= TURN)  # type: ignore[operator]
+    stood = replace(history, time_s=time)
+    assert (turned_unseen(stood) == stood.torque_Nm).all()
 
 
 @pytest.mark.parametrize("seed", range(4))
