@@ -61,7 +61,8 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, LEAST_TORQUE_Nm)), 1, widest))
     width = 1  # a ramp may be shorter than that part
     while width < fewest:
-        if by_travel(moved(width), beyond(moved(width)), 0.5) >= CLEAR_SIGMAS * noise:
+        steps = moved(width)
+        if by_travel(steps, beyond(steps), 0.5) >= CLEAR_SIGMAS * noise:
             break
         width = min(2 * width, fewest)
     span = np.maximum(t[width:] - t[:-width], LEAST_TIME_S)

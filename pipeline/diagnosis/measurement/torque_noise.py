@@ -36,20 +36,25 @@ def torque_noise_Nm(history: History, rows: np.ndarray | None = None) -> float:
 
     Of the whole record or of some `rows`, those of a unit; the noisiest cycle's where cycles are unlike.
     """
-    if TORQUE_NOISE not in history.memo:
-        history.memo[TORQUE_NOISE] = _torque_noise_Nm(history)
-    noise: np.ndarray = history.memo[TORQUE_NOISE]
+    noise = _noise_Nm(history)
     return float(noise.max() if rows is None else noise[rows].max())
 
 
 def torque_noise_of_rows_Nm(history: History) -> np.ndarray:
     """(n,) of each row [N·m]: a mean of more readings has less."""
-    torque_noise_Nm(history)
-    noise: np.ndarray = history.memo[TORQUE_NOISE]
+    noise = _noise_Nm(history)
     if history.readings is None:
         return noise
     of_usual = np.median(history.readings[_usual(history)])
     return np.asarray(noise * np.sqrt(of_usual / history.readings))
+
+
+def _noise_Nm(history: History) -> np.ndarray:
+    """(n,) in rows of the usual number of readings; found once."""
+    if TORQUE_NOISE not in history.memo:
+        history.memo[TORQUE_NOISE] = _torque_noise_Nm(history)
+    noise: np.ndarray = history.memo[TORQUE_NOISE]
+    return noise
 
 
 def _usual(history: History) -> np.ndarray:

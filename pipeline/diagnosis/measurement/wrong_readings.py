@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -53,18 +54,15 @@ def without_wrong(table: MeasuredTable) -> tuple[MeasuredTable, tuple[WrongReadi
     straight line between the readings before and after.
     """
     found = []
-    for name, judge_of in (("angle_arcsec", _beside_torque), ("torque_Nm", _beside_angle)):
-        wrong = _wrong(table, name, judge_of)
+    for name, wrong_in in (
+        ("angle_arcsec", partial(_wrong, name="angle_arcsec", judge_of=_beside_torque)),
+        ("torque_Nm", partial(_wrong, name="torque_Nm", judge_of=_beside_angle)),
+        ("torque_Nm", _spikes),
+    ):
+        wrong = wrong_in(table)
         if wrong.any():
             found.append(_told(table, name, wrong))
             table = table.rows(~wrong)
-    spikes = np.zeros(len(table), bool)
-    for rows in _units(table):
-        torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
-        spikes[rows] = torque_spikes(torque, angle)
-    if spikes.any():
-        found.append(_told(table, "torque_Nm", spikes))
-        table = table.rows(~spikes)
     if "temperature_C" in table.numbers:
         wrong = _wrong(table, "temperature_C", _beyond_gears)
         if wrong.any():
@@ -81,6 +79,15 @@ def _wrong(
     for rows in _units(table):
         wrong[rows] = _wrong_in_unit(table.numbers[name][rows], judge_of(table, rows))
     return wrong
+
+
+def _spikes(table: MeasuredTable) -> np.ndarray:
+    """(n,) torques that no gear felt; each unit by itself."""
+    found = np.zeros(len(table), bool)
+    for rows in _units(table):
+        torque, angle = (table.numbers[name][rows] for name in ("torque_Nm", "angle_arcsec"))
+        found[rows] = torque_spikes(torque, angle)
+    return found
 
 
 def _bridged(table: MeasuredTable, wrong: np.ndarray) -> MeasuredTable:
