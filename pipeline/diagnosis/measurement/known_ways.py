@@ -13,11 +13,13 @@ from math import ceil
 
 import numpy as np
 from numpy.linalg import norm
+from scipy.special import bdtr
 
 from flexspline.pipeline.diagnosis.measurement.corners import corners_of
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
+from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.moving_mean import moving_mean
 from flexspline.pipeline.diagnosis.measurement.torque_noise import (
     torque_noise_Nm,
@@ -40,8 +42,9 @@ BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
 """What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
 END_ROWS, END_SIGMAS = (3, 6, 12, 24), 2.5
 """The same of the first and the last rows: a corner that the drive rounds."""
-KNOWN_SHARE = 0.8
-"""Of the ways that must be known: chance refuses 6 in 100."""
+REFUSED_BY_CHANCE, RECORDS = 0.06, 0.98
+"""Share of straight ways whose ends or middle chance lets stand out (eight ends, four of them apart); and of
+records, in which it refuses no more ways than are allowed."""
 FEWEST_ROWS_PER_NUMBER = 20
 """A parabola about each row knows torque to 0.23 of its noise amid 41 rows; so does a polynomial then."""
 
@@ -67,13 +70,21 @@ class KnownWay:
 
 
 def programme_edges(history: History) -> list[np.ndarray]:
-    """Of each unit: the first row, within it, of each way between two corners, and the last one's end."""
+    """Of each unit: the first row, within it, of each way between two corners, and the last one's end.
+
+    A corner beside a loss of rows lies in it: by the rows alone it is misplaced, and a way would reach over
+    it. Losses side by side are a slower logger's rows.
+    """
     key = ("programme_edges", 0.0)
     if key not in history.memo:
         corners, found = corners_of(history), []
         for unit, rows in enumerate(history.unit_slices):
             t = history.time_or_rows(rows)
             turned = np.searchsorted(t, [c.time_s for c in corners if c.unit == unit])
+            lost = losses(t, history.torque_Nm[rows]) + 1
+            apart = np.diff(lost, prepend=-np.inf, append=np.inf) > 2 * AT_CORNER
+            for after in lost[apart[:-1] & apart[1:]]:
+                turned[np.abs(turned - after) <= AT_CORNER] = after
             found.append(np.unique([0, *turned, len(rows)]))
         history.memo[key] = found
     edges: list[np.ndarray] = history.memo[key]
@@ -106,7 +117,9 @@ def known_ways(history: History) -> list[KnownWay]:
                 for way in _ways(history)
             ]
             known = [way for way in each if way is not None]
-            found = known if len(known) >= KNOWN_SHARE * len(each) else []
+            up_to = bdtr(np.arange(len(each)), len(each), REFUSED_BY_CHANCE)
+            by_chance = int((up_to < RECORDS).sum())
+            found = known if len(each) - len(known) <= by_chance else []
             left = np.ones(len(history), bool)
             for way in found:
                 left[way.rows] = False
@@ -147,7 +160,8 @@ def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
             left = torque / noise - told @ along[:count]
             if _bends(left, told, inner):
                 return None
-            return KnownWay(way, noise * left, noise[:, None] * told)
+            known = norm(told, axis=1) < 1  # a pause may lie between the last rows and the others
+            return KnownWay(way[known], (noise * left)[known], noise[known, None] * told[known])
     return None
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-LOST_STEPS = 4.0
-"""Usual steps of time from one row to the next, beyond which others are missing between them."""
+USUAL, LOST_STEPS = 0.95, 4.0
+"""Quantile of the steps of time from one row to the next, and how many times that others are missing between
+two rows: of steps at random, which are exponential, one in 160 000 is as long."""
 LOST_SHARE = 0.5
 """Of the travel: where more of it lies between rows that are far apart, a logger writes what changes."""
 
@@ -16,7 +17,7 @@ def losses(t: np.ndarray, torque_Nm: np.ndarray, step: int = 1) -> np.ndarray:
     Parameters: times (n,) and torques (n,); and over how many rows, a `step`, the travel is taken.
     """
     spans = np.diff(t)
-    usual = np.median(spans) if len(spans) else 0.0
+    usual = np.quantile(spans, USUAL) if len(spans) else 0.0
     if usual <= 0:  # a clock of whole seconds
         return np.zeros(0, int)
     lost = spans > LOST_STEPS * usual

@@ -23,8 +23,10 @@ from its top over an eighth of the cycle is 0.06."""
 
 
 BEYOND = 1.05
-"""Times the largest torque that was read, which a turn does not pass: a rig that stood still between two
-rows, and turned then, would seem to have gone on."""
+"""Times the largest torque of its cycles that was read, which a turn does not pass."""
+MOVED_STEPS, MOVED_SIGMAS = 2.0, 3.0
+"""Usual steps of torque, and deviations of what two ways say, beyond which a rig has moved between two rows:
+one that stood there, and turned then, would seem to have gone on."""
 TURNS = ("lost_turns", 0.0)
 """Key of a history's lost turns: those of the reading, where its torque was made of one."""
 
@@ -96,7 +98,15 @@ def _further(history: History, before: np.ndarray, after: np.ndarray) -> float |
     (level, slope), (later, back) = (np.pad(line.coef, (0, 2 - len(line.coef))) for line in lines)
     if slope * back >= 0:
         return None
-    at = (later - level) / (slope - back)
-    inside = 0 < at < history.time_s[after[0]] - history.time_s[before[-1]]
-    most = BEYOND * float(np.abs(history.torque_Nm).max())
-    return float(slope * at) if inside and abs(level + slope * at) < most else None
+    at, until = (
+        (later - level) / (slope - back),
+        history.time_s[after[0]] - history.time_s[before[-1]],
+    )
+    step = max(np.median(np.abs(np.diff(history.torque_Nm[rows]))) for rows in (before, after))
+    doubt = torque_noise_Nm(history) * np.sqrt(4 / len(before) + 4 / len(after))  # at a line's end
+    moved = abs(later + back * until - level) > MOVED_STEPS * step + MOVED_SIGMAS * doubt
+    cycles = np.isin(history.cycle, history.cycle[[before[-1], after[0]]])
+    alike = cycles & (history.unit == history.unit[before[-1]])
+    most = BEYOND * float(np.abs(history.torque_Nm[alike]).max())
+    turned = 0 < at < until and abs(level + slope * at) < most
+    return float(slope * at) if moved and turned else None

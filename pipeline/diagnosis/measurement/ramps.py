@@ -21,6 +21,8 @@ CYCLE_PARTS = 60
 """Of a cycle."""
 FAST_QUANTILE = 0.95
 """Quantile of rates, or of steps, of rows that move, that is a ramp's."""
+NOISE_OF_FAST = 2.33
+"""Times its noise, by which the difference of two rows exceeds the torque's at that quantile: 1.645·√2."""
 NOISE_MOVES = 5.7
 """Times its noise that torque moves between two rows of a hold once in 18 000: 4σ of a difference."""
 
@@ -43,7 +45,6 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history, rows)
     widest = max(1, len(rows) // 20)
-    # a ramp's step, from moves over a small part of a cycle
     cycles = int(np.ptp(history.cycle[rows])) + 1
     coarse = max(1, len(rows) // (CYCLE_PARTS * cycles))
     part = np.searchsorted(losses(t, torque, coarse), np.arange(len(rows)))
@@ -57,7 +58,8 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
 
     far = moved(coarse)
     far = far[far > NOISE_MOVES * noise]
-    step = np.quantile(far, FAST_QUANTILE) / coarse if len(far) else 0.0
+    fast = np.quantile(far, FAST_QUANTILE) - NOISE_OF_FAST * noise if len(far) else 0.0
+    step = fast / coarse
     fewest = int(np.clip(np.ceil(CLEAR_SIGMAS * noise / max(step, LEAST_TORQUE_Nm)), 1, widest))
     width = 1  # a ramp may be shorter than that part
     while width < fewest:

@@ -19,6 +19,8 @@ FOLLOWS = 0.25
 """Of the twist that such a torque would make."""
 BESIDE = 3
 """Rows on either side that are asked."""
+LATE = 2
+"""Rows by which two channels of a logger may be apart."""
 
 
 def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -29,8 +31,8 @@ def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
     sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
     largest = np.quantile(np.abs(torque), 0.95)
     far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
-    felt = np.abs(moved) > FOLLOWS * _softness(torque, angle) * np.abs(off)
-    spikes = far & ~felt
+    least_moved = FOLLOWS * _softness(torque, angle) * np.abs(off)
+    spikes = far & (_largest_about(np.abs(moved)) < least_moved)
     for a, b in runs(spikes):
         sides = torque[max(0, a - BESIDE) : a], torque[b : b + BESIDE]
         step = max((np.abs(np.diff(side)).max(initial=0.0) for side in sides), default=0.0)
@@ -46,6 +48,12 @@ def _softness(torque: np.ndarray, angle: np.ndarray) -> float:
         off = torque[side] - torque[side].mean() if side.any() else np.zeros(0)
         slopes.append(float(off @ angle[side]) / max(float(off @ off), ABOVE_ZERO))
     return max(min(slopes), 0.0)
+
+
+def _largest_about(values: np.ndarray) -> np.ndarray:
+    """(n,) largest of each row and `LATE` on either side."""
+    padded = np.pad(values, LATE, mode="edge")
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * LATE + 1).max(axis=1))
 
 
 def _median_about(values: np.ndarray) -> np.ndarray:

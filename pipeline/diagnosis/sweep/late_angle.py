@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.decision import is_rival
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import FINEST_ARCSEC
+from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.structure import LateAngle
@@ -67,7 +68,7 @@ def late_angle_of(
     torque reading, or a twist that lags. What a race `explained` by causes may be there in any size.
     """
     history = less_jitter(prepared.sweep.history)
-    if history.time_s is None or not both_ways(history.torque_Nm):
+    if ramp_s(history) == 0 or not both_ways(history.torque_Nm):
         return None
     gap = prepared.prediction.gap_arcsec
     angle, noise = prepared.sweep.angle_arcsec, prepared.noise.std_arcsec

@@ -135,3 +135,17 @@ def test_rows_of_one_time_have_no_polynomial_over_time() -> None:
     assert history.time_s is not None
     coarse = replace(history, time_s=np.floor(history.time_s / 60.0) * 60.0)
     assert known_ways(coarse) == []
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_pause_at_a_turn_is_no_way(seed: int) -> None:
+    """Rests of a hundred ramps at each turn, not written: no way reaches over one, by however few rows."""
+    history, _ = read(triangle, 1600, seed, noise_Nm=0.2)
+    half = (np.arange(1600) + 100) // 200
+    assert history.time_s is not None
+    rested = replace(history, time_s=history.time_s + 300.0 * half)
+    found = known_ways(rested)
+    assert len(found) >= 6  # of nine; chance refuses 6 in 100
+    for way in found:
+        assert len(np.unique(half[way.rows])) == 1
+        assert (np.linalg.norm(way.doubt_Nm, axis=1) < 0.21).all()

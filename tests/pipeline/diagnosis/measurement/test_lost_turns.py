@@ -78,6 +78,36 @@ def test_a_rig_that_stood_still_at_its_turn_has_not_gone_on() -> None:
     assert (turned_unseen(stood) == stood.torque_Nm).all()
 
 
+@pytest.mark.parametrize("rest_s", [0.5, 4.0, 60.0])
+def test_a_rig_that_stood_at_a_small_turn_has_not_gone_on(rest_s: float) -> None:
+    """Cycles of 30 and 12 N·m; no row is written while torque rests, as by a logger that compresses."""
+    turn = np.arange(ROWS) * CYCLES / ROWS
+    amplitude = np.where(turn.astype(int) % 2, 0.4, 1.0)
+    history = whole(triangle, 0.02)
+    rests = rest_s * np.floor(2 * turn + 0.5)
+    stood = replace(
+        history, torque_Nm=amplitude * history.torque_Nm, time_s=STEP_s * np.arange(ROWS) + rests
+    )
+    assert len(losses(stood.time_s, stood.torque_Nm)) == 2 * CYCLES  # type: ignore[arg-type]
+    assert (turned_unseen(stood) == stood.torque_Nm).all()
+
+
+def test_a_rest_that_is_lost_with_what_is_about_it_has_not_gone_on() -> None:
+    """Of a small cycle's trapezoid: the ways beside it meet above what its other rest says."""
+    turn = np.arange(ROWS) * CYCLES / ROWS
+    amplitude = np.where(turn.astype(int) % 2, 0.4, 1.0)
+    trapezoid = np.clip(1.5 * whole(triangle, 1e-6).torque_Nm, -LARGEST_Nm, LARGEST_Nm)
+    history = replace(whole(triangle, 1e-6), torque_Nm=amplitude * trapezoid)
+    paused = without(history, TURN - 40, TURN + 55)  # the rest takes 33 rows on either side
+    assert (turned_unseen(paused) == paused.torque_Nm).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_times_lose_no_rows(seed: int) -> None:
+    t = np.cumsum(np.random.default_rng(seed).exponential(0.1, 2000))
+    assert len(losses(t, np.sin(t))) == 0
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_pauses_say_nothing_of_how_fast_torque_moves(seed: int) -> None:
     history = whole(triangle, 0.4, seed)
