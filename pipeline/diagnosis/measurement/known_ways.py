@@ -42,6 +42,9 @@ BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
 """What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
 END_ROWS, END_SIGMAS = (3, 6, 12, 24), 2.5
 """The same of the first and the last rows: a corner that the drive rounds."""
+SHORTEST_WAY, ONE_STEP = 4, 0.7
+"""Rows; and how much of what torque moves over fewer of them, noise and all, is a step if it lies between
+two."""
 REFUSED_BY_CHANCE, RECORDS = 0.06, 0.98
 """Share of straight ways whose ends or middle chance lets stand out (eight ends, four of them apart); and of
 records, in which it refuses no more ways than are allowed."""
@@ -85,10 +88,26 @@ def programme_edges(history: History) -> list[np.ndarray]:
             apart = np.diff(lost, prepend=-np.inf, append=np.inf) > 2 * AT_CORNER
             for after in lost[apart[:-1] & apart[1:]]:
                 turned[np.abs(turned - after) <= AT_CORNER] = after
-            found.append(np.unique([0, *turned, len(rows)]))
+            found.append(_stepped(np.unique([0, *turned, len(rows)]), history.torque_Nm[rows]))
         history.memo[key] = found
     edges: list[np.ndarray] = history.memo[key]
     return edges
+
+
+def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
+    """The edges of ways; a step from one row to the next has one edge and no way of its own.
+
+    Its two corners lie a row or two apart; the rows between them are those of the rests beside it.
+    """
+    kept = np.ones(len(edges), bool)
+    at = edges.copy()
+    for i in np.flatnonzero(np.diff(edges) < SHORTEST_WAY):
+        if 0 < i < len(edges) - 2 and kept[i]:
+            moves = np.diff(torque_Nm[edges[i] - 1 : edges[i + 1] + 1])
+            most = int(np.abs(moves).argmax())
+            if abs(moves[most]) > ONE_STEP * np.abs(moves).sum():
+                at[i], kept[i + 1] = edges[i] + most, False
+    return at[kept]
 
 
 def still(history: History) -> list[np.ndarray]:
@@ -106,28 +125,29 @@ def still(history: History) -> list[np.ndarray]:
 def known_ways(history: History) -> list[KnownWay]:
     """What lies between two corners, in parts of 3/4 of a cycle at the most, and holds of few rows.
 
-    Where many ways bend, as a drive that rounds its corners makes them, only holds are known.
+    Where more ways bend than chance lets, as with a drive that rounds its corners, only holds are known.
     """
     key = ("known_ways", 0.0)
     if key not in history.memo:
         found: list[KnownWay] = []
         if torque_noise_Nm(history) > 0:
-            each = [
-                _known(history, way, len(way) // FEWEST_ROWS_PER_NUMBER - 1)
-                for way in _ways(history)
-            ]
-            known = [way for way in each if way is not None]
+            ways = list(_ways(history))
+            each = [_known(history, way, END_SIGMAS) for way in ways]
             up_to = bdtr(np.arange(len(each)), len(each), REFUSED_BY_CHANCE)
-            by_chance = int((up_to < RECORDS).sum())
-            found = known if len(each) - len(known) <= by_chance else []
+            if sum(own is None for own in each) <= (up_to < RECORDS).sum():  # chance refused these
+                each = [
+                    own or _known(history, way, BUMP_SIGMAS)
+                    for way, own in zip(ways, each, strict=True)
+                ]
+                found = [own for own in each if own is not None]
             left = np.ones(len(history), bool)
             for way in found:
                 left[way.rows] = False
-            holds_alone = (_known(history, h, 0) for h in still(history) if left[h].all())
+            holds_alone = (_held(history, h) for h in still(history) if left[h].all())
             found += [way for way in holds_alone if way is not None]
         history.memo[key] = found
-    ways: list[KnownWay] = history.memo[key]
-    return ways
+    known: list[KnownWay] = history.memo[key]
+    return known
 
 
 def _ways(history: History) -> Iterator[np.ndarray]:
@@ -139,15 +159,25 @@ def _ways(history: History) -> Iterator[np.ndarray]:
             yield from (way for way in parts if len(way) >= FEWEST_ROWS_PER_NUMBER)
 
 
-def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
-    """By the fewest polynomials over a way that leave noise, `most` the highest; None where none do."""
+def _held(history: History, rest: np.ndarray) -> KnownWay | None:
+    """By its mean, where that leaves noise."""
+    return _known(history, rest, END_SIGMAS, most=0)
+
+
+def _known(
+    history: History, way: np.ndarray, end_sigmas: float, most: int = MOST_DEGREE
+) -> KnownWay | None:
+    """By the fewest polynomials over a way that leave noise, `most` the highest; None where none do.
+
+    A way's first and last rows may be off by `end_sigmas` of their deviations.
+    """
     torque, noise = history.torque_Nm[way], torque_noise_of_rows_Nm(history)[way]
     t = history.time_or_rows(way)
     x = 2 * (t - t[0]) / max(float(np.ptp(t)), LEAST_TIME_S) - 1
     tested = TESTED if len(way) >= FEWEST_ROWS_PER_NUMBER else 0
     if tested and len(np.unique(t)) < FEWEST_ROWS_PER_NUMBER:  # a clock of whole minutes
         return None
-    most = min(most, MOST_DEGREE)
+    most = min(most, max(len(way) // FEWEST_ROWS_PER_NUMBER - 1, 0))
     polynomials = np.polynomial.legendre.legvander(x, most + tested) / noise[:, None]
     inner = slice(AT_CORNER, len(way) - AT_CORNER) if tested else slice(None)
     basis, change = np.linalg.qr(polynomials[inner])
@@ -158,14 +188,14 @@ def _known(history: History, way: np.ndarray, most: int) -> KnownWay | None:
             count = 1 + (degree if degree <= 1 else min(degree + TESTED, most + tested))
             told = np.linalg.solve(change[:count, :count].T, polynomials[:, :count].T).T
             left = torque / noise - told @ along[:count]
-            if _bends(left, told, inner):
+            if _bends(left, told, inner, end_sigmas):
                 return None
             known = norm(told, axis=1) < 1  # a pause may lie between the last rows and the others
             return KnownWay(way[known], (noise * left)[known], noise[known, None] * told[known])
     return None
 
 
-def _bends(left: np.ndarray, told: np.ndarray, inner: slice) -> bool:
+def _bends(left: np.ndarray, told: np.ndarray, inner: slice, end_sigmas: float) -> bool:
     """Whether what polynomials (m, k) leave (m,), in rows' deviations, is no noise, amid it or at an end."""
     mean, rows = moving_mean(left[inner], BUMP_ROWS // 2)
     if (np.abs(mean) * np.sqrt(rows)).max() > BUMP_SIGMAS:
@@ -175,4 +205,4 @@ def _bends(left: np.ndarray, told: np.ndarray, inner: slice) -> bool:
     off = [
         left[e].mean() / np.hypot(len(left[e]) ** -0.5, norm(told[e].mean(axis=0))) for e in ends
     ]
-    return bool(np.abs(off).max(initial=0.0) > END_SIGMAS)
+    return bool(np.abs(off).max(initial=0.0) > end_sigmas)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erf, ndtr
+from scipy.special import ndtr
 
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 
@@ -34,7 +34,10 @@ _weights /= _weights.sum()
 
 @dataclass(frozen=True)
 class Blur:
-    """What blurs a crossing, in deviations of the torque's noise: the reading, and soft ends of the gap."""
+    """What blurs a crossing, in deviations of the torque's noise: the reading, and soft ends of the gap.
+
+    Soft ends have the form of `crossing_forms.softly`: a hyperbolic tangent of the torque over their width.
+    """
 
     reading: float
     ends: float = 0.0
@@ -116,15 +119,31 @@ class CrossingRows:
         """Density of rows so far beyond the place."""
         half, beyond = gap / 2, beyond_Nm / self.width_Nm
         if blur.ends:
-            true = (beyond[..., None] - blur.reading * _nodes) / blur.ends
-            mean = half[..., None] * erf(true / np.sqrt(2))
-            return self._near(mean, left[..., None]) @ _weights
+            return self._behind_soft_ends(beyond, left, half, blur)
         z = beyond / blur.reading
         up, in_gap = ndtr(z), IN_GAP * np.exp(-(z**2) / 2)
         either = up * self._near(half, left) + (1 - up) * self._near(-half, left)
         noise = self.noise_arcsec
         anywhere = (ndtr((left + half) / noise) - ndtr((left - half) / noise)) / gap
         return np.asarray((1 - in_gap) * either + in_gap * anywhere)
+
+    def _behind_soft_ends(
+        self, beyond: np.ndarray, left: np.ndarray, half: np.ndarray, blur: Blur
+    ) -> np.ndarray:
+        """Density of rows `beyond` the place in widths: at each true torque the gap has a share of its step.
+
+        In single precision, which takes a tenth of the time and is good to 1e-6 of a density.
+        """
+        in_noise = self.noise_arcsec * np.sqrt(2)
+        true = np.single(beyond / blur.ends)[..., None] - np.single(
+            blur.reading / blur.ends * _nodes
+        )
+        off = (
+            np.single(half / in_noise)[..., None] * np.tanh(true)
+            - np.single(left / in_noise)[..., None]
+        )
+        likely = np.exp(-off * off) @ np.single(_weights)
+        return np.asarray(likely / (np.sqrt(np.pi) * in_noise))
 
     def _near(self, mean: np.ndarray, left: np.ndarray) -> np.ndarray:
         """Normal density of angles about a mean."""

@@ -12,6 +12,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
 )
 from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmonic
 from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.robust import SIGMA_PER_MAD
 from flexspline.pipeline.diagnosis.sweep.basis_functions import to_one
@@ -40,9 +41,12 @@ TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
 
 
 def looped_functions(history: History) -> np.ndarray:
-    """(n, k) zeros, a stiffness of each position, smooth functions of torque, friction elements, lags."""
+    """(n, k) zeros, a stiffness of each position, smooth functions of torque, friction elements, lags.
+
+    Of the torque without its noise: a lag is smoother than the reading, and would stand in for it.
+    """
     largest = float(np.abs(history.torque_Nm).max())
-    x = history.torque_Nm / largest
+    x = less_jitter(history).torque_Nm / largest
     limits = np.array(TRIED_THRESHOLDS) * largest
     torque = steadied(history, deadband_Nm(history))
     beside = stops(history, torque, limits, np.zeros(len(limits))) / limits
@@ -106,12 +110,15 @@ def step_misfit(
 ) -> float:
     """Sum of squares [arcsec²] that smooth functions (n, k) and a step leave; infinite without a step.
 
+    Rows so near the step that they may lie on either side count as the mean of the others: else a place that
+    many rows are near would have the least.
+
     `beyond_Nm` (n,) is how far the torque of each row lies beyond the step's place. The step's height is
     free, but one below `least` times the gap is none. `heights` (n, m), each of mean 0: what it may also
     be in proportion to.
     """
-    every = max(1, len(beyond_Nm) // MOST_FIRST_ROWS)
-    rows = np.flatnonzero(np.abs(beyond_Nm) > BESIDE_BAND * band_Nm)[::every]
+    looked = np.arange(0, len(beyond_Nm), max(1, len(beyond_Nm) // MOST_FIRST_ROWS))
+    rows = looked[np.abs(beyond_Nm[looked]) > BESIDE_BAND * band_Nm]
     side = np.sign(beyond_Nm[rows])
     changing = np.empty((len(rows), 0)) if heights is None else heights[rows] * side[:, None]
     basis = np.column_stack([smooth[rows], changing, side])
@@ -124,7 +131,7 @@ def step_misfit(
         weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
     if found[-1] < least * gap_arcsec:
         return np.inf
-    return float(np.mean(np.minimum(np.abs(left), 2 * gap_arcsec) ** 2)) * len(rows)
+    return float(np.mean(np.minimum(np.abs(left), 2 * gap_arcsec) ** 2)) * len(looked)
 
 
 def weighted_fit(basis: np.ndarray, values: np.ndarray, weight: np.ndarray) -> np.ndarray:

@@ -14,8 +14,8 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     steadied,
     stops,
 )
+from flexspline.pipeline.diagnosis.measurement.programme_levels import levelled_torque_Nm
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s, shortest_lag_s
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.structure import UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.basis_functions import smooth, wave
@@ -35,7 +35,7 @@ Made = Iterator[tuple[str, UnnamedForm, np.ndarray]]
 
 def _steady(rig: Rig) -> np.ndarray:
     """(n,) torque relative to the largest, without its noise: a ripple of the raw reading would fit that."""
-    return less_jitter(rig.history).torque_Nm / rig.torque_Nm
+    return levelled_torque_Nm(rig.history) / rig.torque_Nm
 
 
 def over_torque(rig: Rig) -> Made:

@@ -1,0 +1,58 @@
+"""Stairs of torque in noise: their steps, their rests, and the levels that come again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexspline.pipeline.diagnosis.measurement.history import History
+from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
+from flexspline.pipeline.diagnosis.measurement.programme_levels import levelled_torque_Nm
+
+ROWS, NOISE_Nm, CYCLES = 60, 0.3, 3
+LEVELS_Nm = np.tile([5.0, 15.0, 25.0, 15.0, 5.0, -5.0, -15.0, -25.0, -15.0, -5.0], CYCLES)
+
+
+def stairs(levels_Nm: np.ndarray, seed: int) -> History:
+    torque = np.repeat(levels_Nm, ROWS)
+    noise = NOISE_Nm * np.random.default_rng(seed).normal(size=len(torque))
+    none = np.zeros(len(torque), int)
+    cycle = np.arange(len(torque)) * CYCLES // len(torque)
+    return History(torque + noise, none, cycle, 0.5 * np.arange(len(torque)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_step_from_one_row_to_the_next_is_one_edge(seed: int) -> None:
+    (edges,) = programme_edges(stairs(LEVELS_Nm, seed))
+    assert edges.tolist() == list(range(0, len(LEVELS_Nm) * ROWS + 1, ROWS))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_rest_is_known_where_chance_alone_refuses_some(seed: int) -> None:
+    """An end that stands out by 2.5 deviations is refused only where many do."""
+    found = known_ways(stairs(LEVELS_Nm, seed))
+    # one number each; at three deviations a second one is seen in 1 of 40
+    assert sum(way.held for way in found) >= len(LEVELS_Nm) - 4
+    assert sum(len(way.rows) for way in found) == len(LEVELS_Nm) * ROWS
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rests_at_one_level_have_one_torque(seed: int) -> None:
+    history = stairs(LEVELS_Nm, seed)
+    torque = levelled_torque_Nm(history)
+    true = np.repeat(LEVELS_Nm, ROWS)
+    held = np.concatenate([way.rows for way in known_ways(history) if way.held])
+    for level in np.unique(LEVELS_Nm):
+        rows = held[true[held] == level]
+        assert np.ptp(torque[rows]) == 0
+        # six rests of 60 rows, three at the ends of the range
+        assert torque[rows[0]] == pytest.approx(level, abs=4 * NOISE_Nm / np.sqrt(3 * ROWS))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_programme_of_a_hundred_close_levels_keeps_them(seed: int) -> None:
+    """A hundredth of the noise apart: no two neighbours differ, but the first and the last do."""
+    close = np.linspace(-15.0, 15.0, 400)
+    history = stairs(close, seed)
+    true = np.repeat(close, ROWS)
+    assert np.std(levelled_torque_Nm(history) - true) < NOISE_Nm / np.sqrt(ROWS) * 1.3
