@@ -8,12 +8,14 @@ from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
 from flexspline.pipeline.diagnosis.measurement.dropped_out import constant_lines
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Sweep
 from flexspline.pipeline.diagnosis.measurement.repeated import copied_rows
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.specimens.cause_ids import YOUNGS_MODULUS
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
+from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.results.diagnosis.data_used import row_notes
 from flexspline.results.diagnosis.end_point_notes import end_point_notes
@@ -116,12 +118,26 @@ def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> lis
     prepared = explained.prepared
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
+    found += _encoder_notes(prepared)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
+
+
+def _encoder_notes(prepared: PreparedSweep) -> list[str]:
+    """That the encoder is coarse, where its rounding is more than the readings' noise."""
+    angle, white = prepared.sweep.angle_arcsec, prepared.noise.white
+    rounding = rounding_arcsec(angle, white)
+    if rounding**2 < white / 2:
+        return []
+    return [
+        f"the angle is read in steps of {encoder_step(angle):.3g} arcsec: what rounding leaves, "
+        f"{rounding:.2g} arcsec rms, cannot be told from an effect of the angle; more noise, or a finer "
+        "encoder, would show less of it"
+    ]
 
 
 def _race_notes(analysis: EndPointAnalysis, points: EndPoints) -> list[str]:

@@ -34,6 +34,7 @@ from math import hypot
 import numpy as np
 
 from flexspline.pipeline.diagnosis.decision import Decision, decided
+from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
@@ -68,7 +69,7 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
 )
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
-from flexspline.pipeline.diagnosis.sweep.unexplained import unexplained_of
+from flexspline.pipeline.diagnosis.sweep.unexplained import made_by_rounding, unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
 
 CONSTANT_SHARE = 0.1
@@ -109,7 +110,12 @@ def diagnose_sweep(
     if (hidden := drowned(explained)) is not None:
         return _insufficient(hidden), None
     causes = named_causes(explained)
-    tests = channel_tests(explained.prepared, identified.fit)
+    rounding = rounding_arcsec(sweep.angle_arcsec, explained.prepared.noise.white)
+    tests = [
+        test
+        for test in channel_tests(explained.prepared, identified.fit)
+        if test.rms_arcsec > rounding
+    ]
     jumps = largest(
         *(
             test(explained.prepared, identified.fit)
@@ -118,6 +124,8 @@ def diagnose_sweep(
     )
     again = repeated_misfit(explained.prepared, identified.fit)
     told = {name for c in causes for name in (c.id, *c.alternatives)}
+    if not causes:  # beside one, which may be a part of the saw-tooth, it stays unexplained
+        told |= made_by_rounding(identified, rounding)
     named_rms = hypot(*(c.rms_arcsec for c in causes))
     unnamed_rms = hypot(
         identified.unnamed_rms(told), *(s.rms_arcsec for s in (jumps, again) if s is not None)

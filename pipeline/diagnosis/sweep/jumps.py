@@ -8,6 +8,11 @@ import numpy as np
 from scipy.special import ndtr
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.measurement.encoder_step import (
+    ROUNDING_RATIO,
+    encoder_step,
+    undithered,
+)
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -15,10 +20,6 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 
 JUMP_BLOCK_ROWS = (1, 2, 4, 8)
 """Rows whose means are compared: a jump stands for longer than noise does."""
-FINEST_ARCSEC = 1e-4
-"""Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
-ROUNDING_RATIO = 12.0
-"""A step's square over the variance of what is rounded to it."""
 FEWEST_JUMP_STEPS = 20
 """Steps: of so few large ones the test reaches 4.5 deviations at the most, and `STRUCTURE_P_VALUE` asks for
 4.1."""
@@ -59,26 +60,6 @@ def jumps_of(prepared: PreparedSweep, fit: SweepFit) -> Jumps | None:
     if saw_tooth**2 < ROUNDING_RATIO * undithered(prepared.noise.white, step):
         return None
     return Jumps(p_value, saw_tooth)
-
-
-def undithered(variance: float, step: float) -> float:
-    """Variance [arcsec²] of an encoder's rounding that follows the angle, among readings of this variance.
-
-    All of step²/12 without noise. With normal noise of deviation σ the saw-tooth's harmonics, the first
-    foremost, are smaller by exp(−2π²σ²/step²), and the rest of the rounding is noise as well.
-    Source: Widrow, Kollár, Quantization Noise (2008), chapter 4.
-    """
-    if step <= 0:
-        return 0.0
-    rounding = step**2 / ROUNDING_RATIO
-    noise = max(variance - rounding, 0.0)
-    return rounding * float(np.exp(-4 * np.pi**2 * noise / step**2))
-
-
-def encoder_step(angle_arcsec: np.ndarray) -> float:
-    """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too."""
-    apart = np.diff(np.unique(np.round(angle_arcsec / FINEST_ARCSEC))) * FINEST_ARCSEC
-    return float(apart.min()) if len(apart) else 0.0
 
 
 def _skewness(left: np.ndarray, motion: np.ndarray, pieces: list[slice], rows: int) -> float:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
-from flexspline.pipeline.diagnosis.sweep.jumps import encoder_step, undithered
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     STEADY_SIGMAS,

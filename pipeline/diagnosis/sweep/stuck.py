@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import fdtrc, ndtr
 
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
 from flexspline.pipeline.diagnosis.measurement.noise import stretches_of
 from flexspline.pipeline.diagnosis.measurement.slow_runs import resting
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
-from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
+from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 
 STUCK_BLOCK_ROWS = (1, 2, 4, 8, 16)

@@ -7,17 +7,17 @@ from scipy.special import ndtr
 
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.pipeline.diagnosis.causes.operators import steadied
+from flexspline.pipeline.diagnosis.measurement.encoder_step import (
+    ROUNDING_RATIO,
+    encoder_step,
+    undithered,
+)
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import still
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
-from flexspline.pipeline.diagnosis.sweep.jumps import (
-    ROUNDING_RATIO,
-    Jumps,
-    encoder_step,
-    undithered,
-)
+from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from math import hypot
 
 from flexspline.pipeline.diagnosis.outcome import Unexplained
 from flexspline.pipeline.diagnosis.structure import Trace, UnnamedForm
@@ -12,9 +13,18 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE
 
 NUISANCE_P = 1e-6
 """Said of a nuisance term in the best set: it had to gain more than this over chance to get there."""
+RIPPLED = ("?angle_arcsec", "?torque_Nm")
+"""What is a function of angle or torque alone, as a saw-tooth over the encoder's steps is."""
 JUMPS = (UnnamedForm("jumps"),)
 COMES_BACK = (UnnamedForm("comes_back"),)
 REMAINDER = (UnnamedForm("remainder"),)
+
+
+def made_by_rounding(identified: Identification, rounding_arcsec: float) -> frozenset[str]:
+    """Owners of the best set's ripples, where they are together no more than an encoder's rounding leaves."""
+    ripples = [owner for owner in RIPPLED if owner in identified.rms]
+    together = hypot(*(identified.rms[owner] for owner in ripples))
+    return frozenset(ripples if together < rounding_arcsec else ())
 
 
 def unexplained_of(

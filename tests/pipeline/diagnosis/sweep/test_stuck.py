@@ -10,10 +10,11 @@ import pytest
 from histories import PREDICTION, sweep
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.jumps import Jumps, encoder_step, undithered
+from flexspline.pipeline.diagnosis.sweep.jumps import Jumps
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import run_race
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of

@@ -1,0 +1,38 @@
+"""The steps in which an encoder reads the angle, and what rounding to them leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+FINEST_ARCSEC = 1e-4
+"""Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
+ROUNDING_RATIO = 12.0
+"""A step's square over the variance of what is rounded to it."""
+
+
+def undithered(variance: float, step: float) -> float:
+    """Variance [arcsec²] of an encoder's rounding that follows the angle, among readings of this variance.
+
+    All of step²/12 without noise. With normal noise of deviation σ the saw-tooth's harmonics, the first
+    foremost, are smaller by exp(−2π²σ²/step²), and the rest of the rounding is noise as well.
+    Source: Widrow, Kollár, Quantization Noise (2008), chapter 4.
+    """
+    if step <= 0:
+        return 0.0
+    rounding = step**2 / ROUNDING_RATIO
+    noise = max(variance - rounding, 0.0)
+    return rounding * float(np.exp(-4 * np.pi**2 * noise / step**2))
+
+
+def encoder_step(angle_arcsec: np.ndarray) -> float:
+    """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too."""
+    apart = np.diff(np.unique(np.round(angle_arcsec / FINEST_ARCSEC))) * FINEST_ARCSEC
+    return float(apart.min()) if len(apart) else 0.0
+
+
+def rounding_arcsec(angle_arcsec: np.ndarray, variance: float) -> float:
+    """Rms [arcsec] of what an encoder's rounding leaves, among readings of this variance.
+
+    It is a saw-tooth over the angle, the same at every pass: no effect of the angle can be told below it.
+    """
+    return float(undithered(variance, encoder_step(angle_arcsec)) ** 0.5)

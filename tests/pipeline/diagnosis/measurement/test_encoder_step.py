@@ -1,0 +1,30 @@
+"""What rounding to an encoder's steps leaves, against readings that were rounded."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, rounding_arcsec
+
+
+@pytest.mark.parametrize("step", [2.0, 20.0])
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.6])
+def test_a_ramp_s_rounding_leaves_that_rms_at_every_pass(step: float, share: float) -> None:
+    """Of 400 passes of one ramp the mean is the saw-tooth; noise of 0.6 steps hides all of it."""
+    ramp = np.linspace(-60, 60, 3001)
+    noise = share * step * np.random.default_rng(5).normal(size=(400, len(ramp)))
+    read = step * np.round((ramp + noise) / step)
+    assert encoder_step(read.ravel()) == pytest.approx(step, rel=1e-6)
+    left = read - ramp
+    saw_tooth = np.sqrt(np.mean(left.mean(axis=0) ** 2))
+    # a mean of 400 is off by 1/20 of the readings' deviation, which adds in squares
+    by_chance = left.std() / 20
+    found = rounding_arcsec(read.ravel(), float(left.var()))
+    # the first harmonic's decay is taken for all: the jumps' edges, of many harmonics, are 6 % of the rms
+    assert found == pytest.approx(saw_tooth, rel=0.08, abs=1.2 * by_chance)
+
+
+def test_readings_of_many_digits_are_not_rounded() -> None:
+    angle = np.random.default_rng(1).normal(0, 50, 3000)
+    assert rounding_arcsec(angle, 0.04) < 1e-3
