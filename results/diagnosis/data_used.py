@@ -88,6 +88,8 @@ def calibrated_sentences(
     if elastic and calibration.compliance is not None:
         titles = " and ".join(title_of(c.id, c.magnitude) for c in elastic)
         said += f" The measured slope is this compliance and the effect of: {titles}."
+    if calibration.gap_arcsec.value < 0:
+        said += " No gap is negative: this model is not that of the record, or a reading is wrong."
     if outcome.unexplained:
         said += " An effect is unexplained and may have moved them by more than ± says."
     return said

@@ -20,6 +20,9 @@ STEP_SHARE = 0.01
 UNLIKE, LEAST_OF_TYPICAL = 2.0, 0.05
 """Times the typical noise from which cycles have their own: by chance one of 24 rows has 1.5 times as much;
 and of the typical one at least: a way of few rows is not known better."""
+LEVELS_APART, LEVEL_WIDTH, FEWEST_OF_LEVEL = 10.0, 0.3, 3
+"""Levels lie this many times as far apart as neighbouring readings typically do; none is wider than this part
+of the least distance between two; and readings of each, on the average."""
 RESTLESS_SHARE = 0.3
 """Of the rows, at which what is rounded changes its pace: two at each step, of seven rows and fewer."""
 TORQUE_NOISE = ("torque_noise", 0.0)
@@ -79,7 +82,14 @@ def _torque_noise_Nm(history: History) -> np.ndarray:
     if not units:
         return none
     most = LARGEST_NOISE * float(np.abs(history.torque_Nm).max())
-    typical = max(float(np.median(units)), _rounding_Nm(history))
+    scatter = [_about_levels(history.torque_Nm[rows[usual[rows]]]) for rows in history.unit_slices]
+    about_levels, rounding = (
+        [noise for noise in scatter if noise is not None],
+        _rounding_Nm(history),
+    )
+    if len(about_levels) == len(scatter) and not rounding:
+        return np.full(len(history), min(float(np.median(about_levels)), most))
+    typical = max(float(np.median(units)), rounding)
     cycles = history.cycle_slices
     each = [
         typical if noise is None else max(noise, LEAST_OF_TYPICAL * typical) for noise in of(cycles)
@@ -90,6 +100,23 @@ def _torque_noise_Nm(history: History) -> np.ndarray:
     for rows, noise in zip(cycles, each, strict=True):
         found[rows] = min(noise, most)
     return found
+
+
+def _about_levels(torque_Nm: np.ndarray) -> float | None:
+    """Scatter of readings about their levels [N·m]; None where they do not lie at few levels, far apart.
+
+    A rig with weights, read once at each: from row to row torque moves by whole weights.
+    """
+    in_order = np.sort(torque_Nm)
+    apart = np.diff(in_order)
+    edges = np.flatnonzero(apart > LEVELS_APART * np.median(apart)) + 1
+    levels = np.split(in_order, edges)
+    if len(edges) == 0 or len(levels) * FEWEST_OF_LEVEL > len(torque_Nm):
+        return None
+    if max(map(np.ptp, levels)) > LEVEL_WIDTH * apart[edges - 1].min():
+        return None
+    off = np.concatenate([level - level.mean() for level in levels])
+    return float(np.sqrt((off**2).sum() / (len(off) - len(levels))))
 
 
 def _rounding_Nm(history: History) -> float:

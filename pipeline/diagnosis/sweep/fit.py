@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -30,6 +31,9 @@ LINEAR = {SERIES: 0, CLEARANCE: 1}
 
 LEAST_GAP_ARCSEC = 1e-3
 """Of a row's own: no angle reading resolves less, and a gap is never negative."""
+GAP_BESIDE_WIND_UP = 0.03
+"""Of a soft wind-up from one side to the other, by which a gap beside it is doubted: its law near zero is not
+seen. Of 17 records made up by another law, 1 − e^(−T/w), 68 % were off by 0.022 of it or less, 90 % by 0.07."""
 SLOPE_STEP = 0.3
 """Of a standard deviation, for slopes of magnitudes: near enough to the mean to be first order."""
 
@@ -66,8 +70,12 @@ class SweepFit:
         """Gap and compliance without the effects found, by the posterior."""
         p, mean, k = self.rig.prediction, self.posterior.mean, self.units
         std = np.sqrt(np.diag(self.posterior.covariance))
+        wind_up = 2 * float(np.abs(self.added(HARDENING)).max(initial=0.0))
         return Calibration(
-            Estimate(p.gap_arcsec + float(mean[k + 1]), float(std[k + 1])),
+            Estimate(
+                p.gap_arcsec + float(mean[k + 1]),
+                hypot(std[k + 1], GAP_BESIDE_WIND_UP * wind_up),
+            ),
             bool(self.posterior.terms),
             Estimate(p.compliance + float(mean[k]), float(std[k])),
         )

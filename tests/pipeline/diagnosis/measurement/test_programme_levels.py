@@ -8,6 +8,7 @@ import pytest
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways, programme_edges
 from flexspline.pipeline.diagnosis.measurement.programme_levels import levelled_torque_Nm
+from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 ROWS, NOISE_Nm, CYCLES = 60, 0.3, 3
 LEVELS_Nm = np.tile([5.0, 15.0, 25.0, 15.0, 5.0, -5.0, -15.0, -25.0, -15.0, -5.0], CYCLES)
@@ -56,3 +57,21 @@ def test_a_programme_of_a_hundred_close_levels_keeps_them(seed: int) -> None:
     history = stairs(close, seed)
     true = np.repeat(close, ROWS)
     assert np.std(levelled_torque_Nm(history) - true) < NOISE_Nm / np.sqrt(ROWS) * 1.3
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_weights_that_are_read_once_each_scatter_about_their_levels(seed: int) -> None:
+    """Three weights and a tray, put on and taken off three times: no reading repeats the one before."""
+    way = np.array([1.0, 5.0, 10.0, 15.0, 10.0, 5.0, 1.0])
+    true = np.tile(np.r_[way, -way], 3)
+    read = true + 0.02 * np.random.default_rng(seed).normal(size=len(true))
+    none, cycle = np.zeros(len(true), int), np.arange(len(true)) // 14
+    history = History(read, none, cycle, 20.0 * np.arange(len(true)))
+    # 34 degrees of freedom: to 12 % each, three deviations
+    assert torque_noise_Nm(history) == pytest.approx(0.02, rel=0.36)
+
+
+def test_stairs_read_without_noise_have_none() -> None:
+    true = np.tile([5.0, 10.0, 5.0, -5.0, -10.0, -5.0], 4)
+    none = np.zeros(len(true), int)
+    assert torque_noise_Nm(History(true, none, none)) == 0
