@@ -39,9 +39,9 @@ def report(tmp_path_factory):
     torque = field(mesh, twisted(mesh.nodes), (OUTER, 0.0, LENGTH))
     ellipse = field(mesh, oval(mesh.nodes), (OUTER, 0.0, LENGTH))
     views = {
-        name: turning_torque_stress(name, torque, part, 0.5)
+        name: turning_torque_stress(torque, part, 0.5)
         for name, part in (("flexspline_torque", "Flexspline"), ("shaft_torque", "Output shaft"))
-    } | {"wave_generator": turning_ellipse("wave_generator", ellipse, 0.2)}
+    } | {"wave_generator": turning_ellipse(ellipse, 0.2)}
     images = {n: png(p) for n, p in made.pictures.items()}
     path = folder / "report.html"
     path.write_bytes(page_of(run_document(made), images, views))
