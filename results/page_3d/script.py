@@ -48,7 +48,9 @@ def in_function(name: str, module: str) -> str:
         return ""
 
     body = _DECLARED.sub(declared, _NAMES.sub(bound, module))
-    return f"const {_constant(name)} = (() => {{\n{body}\nreturn {{ {', '.join(given)} }};\n}})();\n"
+    return (
+        f"const {_constant(name)} = (() => {{\n{body}\nreturn {{ {', '.join(given)} }};\n}})();\n"
+    )
 
 
 def _constant(name: str) -> str:
