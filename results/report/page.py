@@ -69,7 +69,8 @@ def page_of(
     """
     from markupsafe import Markup
 
-    found: dict[str, dict[str, Any]] = {n: json.loads(v) for n, v in (views or {}).items()}
+    # sorted: they are drawn side by side, and come in the order in which they are ready
+    found: dict[str, dict[str, Any]] = {n: json.loads(v) for n, v in sorted((views or {}).items())}
     script, style = _script() if found else "", _file(STYLE)
     shown = {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()}
     text = (

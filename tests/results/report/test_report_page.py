@@ -115,6 +115,15 @@ def test_nothing_comes_from_outside(tmp_path):
         assert [s[:8] for s in policy["script-src"]] == (["'sha256-"] if views else ["'none'"])
 
 
+def test_views_in_any_order_give_the_same_page(tmp_path):
+    made = content(pictures=blank_pictures(tmp_path))
+    names = ("shaft_torque", "flexspline_torque", "wave_generator")
+    one, other = (
+        page(made, {n: json.dumps(VIEW).encode() for n in order}) for order in (names, names[::-1])
+    )
+    assert one == other
+
+
 def policy_of(attributes):
     text = next(v for t, n, v in attributes if t == "meta" and v.startswith("default-src"))
     return {name: values for name, *values in (rule.split() for rule in text.split(";"))}
