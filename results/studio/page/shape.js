@@ -26,8 +26,8 @@ export function revolved(shape, { open, deformed }) {
   for (let s = 0; s < steps; s++) {
     for (let e = 0; e < edges; e++) {
       const a = s * row + 2 * e;
-      out.triangle(a, a + 1, a + row);
-      out.triangle(a + 1, a + row + 1, a + row);
+      out.triangle(a, a + row, a + 1); // counter-clockwise from outside: WebGL turns the normals of the others round
+      out.triangle(a + 1, a + row, a + row + 1);
     }
   }
   if (caps) {
@@ -37,7 +37,7 @@ export function revolved(shape, { open, deformed }) {
       for (let i = 0; i < caps; i++) out.add(at, i, 0, 0, side);
       for (let t = 0; t < shape.triangles.length; t += 3) {
         const [a, b, c] = shape.triangles.subarray(t, t + 3);
-        out.triangle(first + a, first + b, first + c);
+        out.triangle(first + a, first + (side < 0 ? b : c), first + (side < 0 ? c : b));
       }
     }
   }
