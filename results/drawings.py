@@ -31,7 +31,7 @@ from flexspline.results.renders.webp import write_webp
 TITLES: Mapping[PartName, str] = {"flexspline": "Flexspline", "shaft": "Output shaft"}
 DRAWING = 10
 """Raise when a drawing changes, so that kept pictures are drawn anew."""
-TURNING = 2
+TURNING = 3
 """The same of the 3-D views."""
 
 
@@ -67,7 +67,7 @@ def of_field(context: AnalysisContext, name: str, field: SolidField) -> Iterator
         w0 = context.design.w0_mm
         inputs: dict[str, Any] = {**context.part("flexspline").torsion_key, "w0_mm": w0}
         yield Drawing(name, "part", inputs, write_ellipse_picture, (field, w0))
-        yield Drawing(name, "view", turning | inputs, write_turning_ellipse, (name, field, w0))
+        yield Drawing(name, "view", turning | inputs, write_turning_ellipse, (field, w0))
         return
     part = next(part for part in TITLES if name == f"{part}_torque")
     title, torque, solved = (
@@ -79,7 +79,7 @@ def of_field(context: AnalysisContext, name: str, field: SolidField) -> Iterator
     inputs = {**solved, "torque_Nm": torque}
     shown = field, title, torque
     yield Drawing(name, "part", inputs, write_torque_stress, shown)
-    yield Drawing(name, "view", turning | inputs, write_turning_torque_stress, (name, *shown))
+    yield Drawing(name, "view", turning | inputs, write_turning_torque_stress, shown)
 
 
 def small(png: bytes) -> Drawing:

@@ -55,6 +55,14 @@ _RC: dict[str, Any] = {
 }
 
 
+def colour_scale() -> list[int]:
+    """The colours of stress from 0 up, 256 of three bytes each, as pages take them."""
+    import matplotlib as mpl
+
+    rows: list[int] = mpl.colormaps[COLOUR_MAP](range(256), bytes=True)[:, :3].ravel().tolist()
+    return rows
+
+
 def styled() -> AbstractContextManager[None]:
     """The style as a context: nothing of it outlives the figure."""
     import matplotlib as mpl

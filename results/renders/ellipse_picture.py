@@ -58,19 +58,19 @@ def write_ellipse_picture(path: Path, field: SolidField, amplitude_mm: float) ->
     )
 
 
-def turning_ellipse(name: str, field: SolidField, amplitude_mm: float) -> bytes:
+def turning_ellipse(field: SolidField, amplitude_mm: float) -> bytes:
     """The same as a view that turns in a browser (`results.renders.turntable`)."""
     scene = _scene(field, amplitude_mm)
     whole, main = scene.whole, scene.main
     drawn = Drawn(
         main.points, whole.mises, main.shown, main.view, field.peak, scene.before, whole.nodes
     )
-    return turning(name, drawn, scene.said)
+    return turning(drawn, scene.said)
 
 
-def write_turning_ellipse(path: Path, name: str, field: SolidField, amplitude_mm: float) -> None:
+def write_turning_ellipse(path: Path, field: SolidField, amplitude_mm: float) -> None:
     """Write that view."""
-    path.write_bytes(turning_ellipse(name, field, amplitude_mm))
+    path.write_bytes(turning_ellipse(field, amplitude_mm))
 
 
 @dataclass(frozen=True)

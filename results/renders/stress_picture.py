@@ -44,18 +44,18 @@ def write_torque_stress(path: Path, field: SolidField, part_name: str, torque_Nm
     )
 
 
-def turning_torque_stress(name: str, field: SolidField, part_name: str, torque_Nm: float) -> bytes:
+def turning_torque_stress(field: SolidField, part_name: str, torque_Nm: float) -> bytes:
     """The same as a view that turns in a browser (`results.renders.turntable`)."""
     whole, main, inset = _seen(field)
     drawn = Drawn(whole.nodes, whole.mises, main.shown, main.view, field.peak)
-    return turning(name, drawn, _said(field, whole, main, inset, part_name, torque_Nm))
+    return turning(drawn, _said(field, whole, main, inset, part_name, torque_Nm))
 
 
 def write_turning_torque_stress(
-    path: Path, name: str, field: SolidField, part_name: str, torque_Nm: float
+    path: Path, field: SolidField, part_name: str, torque_Nm: float
 ) -> None:
     """Write that view."""
-    path.write_bytes(turning_torque_stress(name, field, part_name, torque_Nm))
+    path.write_bytes(turning_torque_stress(field, part_name, torque_Nm))
 
 
 def _seen(field: SolidField) -> tuple[WholePart, Seen, Seen]:

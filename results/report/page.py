@@ -1,7 +1,7 @@
-"""Sets a document as one HTML file: one fixed template, its pictures, views and scripts inside.
+"""Sets a document as one HTML file: one fixed template, its pictures, views and script inside.
 
 The content enters through jinja2's automatic escaping, or as JSON that it escapes. A policy in the
-page allows the scripts written here, by their SHA-256, and nothing else: no other script, no request.
+page allows the script written here, by its SHA-256, and nothing else: no other script, no request.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -18,8 +17,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexspline.geometry.errors import readable
+from flexspline.results.page_3d.script import in_function, script_3d
 from flexspline.results.report.document import Document
 from flexspline.results.report.payload import payload_of
+from flexspline.results.style import colour_scale
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -33,14 +34,6 @@ WORDS = {
     "+ and −.",
 }
 """What only a page needs to say."""
-
-_UNWANTED = (
-    (re.compile(r"https?://[\w./-]*favicon-[^`\"']*"), "data:,"),  # its icons, from the network
-    (re.compile(r'__vtkStyle\.textContent = "(?:[^"\\]|\\.)*";'), ""),  # for a page of its own
-    (re.compile(r"\(document\.head \|\| [^;]*\.appendChild\(__vtkStyle\);"), ""),
-    (re.compile(r"console\.log\(Object\.keys\(\w+\)\),"), ""),  # a word for each scene
-)
-"""What the viewer's script does that a report must not, and what stands there instead."""
 
 
 @dataclass(frozen=True)
@@ -76,12 +69,10 @@ def page_of(
     """
     from markupsafe import Markup
 
-    viewer = _viewer() if views else ""
-    found: dict[str, dict[str, Any]] = (
-        {n: json.loads(v) for n, v in views.items()} if views and viewer else {}
-    )
-    driver, style = _file(SCRIPT), _file(STYLE)
-    shown = {n: {k: v[k] for k in ("camera", "mark", "ramp")} for n, v in found.items()}
+    # sorted: they are drawn side by side, and come in the order in which they are ready
+    found: dict[str, dict[str, Any]] = {n: json.loads(v) for n, v in sorted((views or {}).items())}
+    script, style = _script() if found else "", _file(STYLE)
+    shown = {n: {k: v[k] for k in ("camera", "mark")} for n, v in found.items()}
     text = (
         _environment()
         .get_template(TEMPLATE)
@@ -90,11 +81,10 @@ def page_of(
             pictures=pictures,
             attached=document.attached,
             views=found,
-            shown=shown,
-            viewer=Markup(viewer),
-            driver=Markup(driver),
+            shown={"scale": colour_scale(), "views": shown},
+            script=Markup(script),
             css=Markup(style),
-            policy=_policy([viewer, driver] if found else [], style),
+            policy=_policy([script] if found else [], style),
             ui=WORDS,
         )
     )
@@ -113,19 +103,9 @@ def _policy(scripts: Sequence[str], style: str) -> str:
 
 
 @cache
-def _viewer() -> str:
-    """The script of trame-vtk's static viewer (vtk.js, BSD), without the page around it.
-
-    "" where a version ships none (2.11.0 did not): the report then shows its pictures.
-    """
-    page = files("trame_vtk").joinpath("tools/static_viewer.html").read_text(encoding="utf-8")
-    found = re.search(r'<script type="module">(.*?)</script>', page, re.S)
-    if found is None or "OfflineLocalView" not in found.group(1):
-        return ""
-    script = found.group(1)
-    for unwanted, instead in _UNWANTED:
-        script = unwanted.sub(instead, script)
-    return script
+def _script() -> str:
+    """What turns the views: three.js and `SCRIPT`, in one."""
+    return script_3d() + in_function(SCRIPT, _file(SCRIPT))
 
 
 def _file(name: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from flexspline.geometry.shapes import KINDS
 from flexspline.pipeline.stress_limits import StressCase
-from flexspline.results.style import ACCENT, COLOUR_MAP, PALETTE
+from flexspline.results.style import ACCENT, PALETTE, colour_scale
 
 VIEW_TITLES: Mapping[StressCase, str] = {
     "wave_generator": "On the wave generator",
@@ -20,13 +20,10 @@ VIEW_TITLES: Mapping[StressCase, str] = {
 @cache
 def page_style() -> dict[str, Any]:
     """Kinds; views by name, in order; palette as hex; the stress scale as 256 colours of three bytes each."""
-    from matplotlib import colormaps
-
-    scale = colormaps[COLOUR_MAP](range(256), bytes=True)[:, :3]
     return {
         "kinds": list(KINDS),
         "views": dict(VIEW_TITLES),
         "palette": list(PALETTE),
         "accent": ACCENT,
-        "scale": scale.ravel().tolist(),
+        "scale": colour_scale(),
     }

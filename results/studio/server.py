@@ -71,8 +71,8 @@ async def _workers(app: web.Application) -> AsyncIterator[None]:
 def _page() -> dict[str, tuple[bytes, str]]:
     """Every file of the page by name, read once: a request picks from these and reads no disk."""
     found = {}
-    page = files("flexspline.results.studio") / "page"
-    for folder in (page, page / "vendor"):
+    shared = files("flexspline.results.page_3d")
+    for folder in (files("flexspline.results.studio") / "page", shared, shared / "vendor"):
         for entry in folder.iterdir():
             kind = _TYPES.get(entry.name.rpartition(".")[2])
             if kind and entry.is_file():

@@ -1,17 +1,11 @@
-"""A meridian field as bytes for the page, which turns it about the axis itself.
-
-A message is the length of a JSON head (uint32, little endian), the head padded to four bytes, then the
-arrays that it lists, each float32 or uint32, little endian.
-"""
+"""A meridian field as bytes for the page, which turns it about the axis itself."""
 
 from __future__ import annotations
-
-import json
-from typing import Any
 
 import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.picture_elements import magnification
 from flexspline.results.studio.simplify import simplified
 
@@ -53,7 +47,7 @@ def field_message(view: str, field: RevolvedField) -> bytes:
         "triangles": _one_way(field.places, cells),
         "rim": simplified(_rim(field.places, cells), _seen(field, around, size)),
     }
-    return _packed(head, arrays)
+    return packed(head, arrays)
 
 
 def _seen(field: RevolvedField, around: list[np.ndarray], size: float) -> np.ndarray:
@@ -71,7 +65,7 @@ def profile_message(view: str, polygon: np.ndarray) -> bytes:
     count = len(polygon)
     rim = np.column_stack([np.arange(count), (np.arange(count) + 1) % count])
     head = {"is": "profile", "view": view}
-    return _packed(head, {"places": polygon, "rim": _off_axis(polygon, rim)})
+    return packed(head, {"places": polygon, "rim": _off_axis(polygon, rim)})
 
 
 def _one_way(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -94,14 +88,3 @@ def _rim(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 def _off_axis(places: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return edges[(places[edges][:, :, 0] > _ON_AXIS_MM).any(axis=1)]
-
-
-def _packed(head: dict[str, Any], arrays: dict[str, np.ndarray]) -> bytes:
-    kinds = {n: "uint32" if a.dtype.kind in "iu" else "float32" for n, a in arrays.items()}
-    listed = [[name, kinds[name], list(a.shape)] for name, a in arrays.items()]
-    text = json.dumps({**head, "arrays": listed}, allow_nan=False).encode()
-    text += b" " * (-len(text) % 4)
-    body = b"".join(
-        np.ascontiguousarray(a, f"<{kinds[n][0]}4").tobytes() for n, a in arrays.items()
-    )
-    return len(text).to_bytes(4, "little") + text + body

@@ -41,7 +41,7 @@ def draw_best_stress(folder: Path, best: BestField | None) -> BestStress:
         try:
             write_bytes(path, process.draw(write_ellipse_picture, best.field, best.w0_mm))
             picture = path
-            view = process.draw(write_turning_ellipse, VIEW, best.field, best.w0_mm)
+            view = process.draw(write_turning_ellipse, best.field, best.w0_mm)
             return BestStress(path, view)
         except NotDrawnError as error:
             if picture is None:

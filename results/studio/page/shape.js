@@ -4,20 +4,7 @@ const AROUND = 144; // steps about the axis
 const SMOOTH = Math.cos((35 * Math.PI) / 180); // flatter corners of the meridian are shaded as round
 const OPEN = (3 * Math.PI) / 2; // cut open: a quarter is taken away
 
-// The bytes of results/studio/shape.py: a head, then its arrays.
-export function unpacked(buffer) {
-  const length = new DataView(buffer).getUint32(0, true);
-  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  let at = 4 + length;
-  for (const [name, kind, shape] of head.arrays) {
-    const count = shape.reduce((a, b) => a * b, 1);
-    head[name] = kind === "uint32" ? new Uint32Array(buffer, at, count) : new Float32Array(buffer, at, count);
-    at += 4 * count;
-  }
-  return head;
-}
-
-// Positions, normals, stress over the peak, and triangles; `open` leaves a quarter out and closes the cut.
+// Positions, normals, place on the colour scale, and triangles; `open` leaves a quarter out and closes the cut.
 export function revolved(shape, { open, deformed }) {
   const steps = open ? (AROUND * 3) / 4 : AROUND;
   const full = open ? OPEN : 2 * Math.PI;
@@ -39,8 +26,8 @@ export function revolved(shape, { open, deformed }) {
   for (let s = 0; s < steps; s++) {
     for (let e = 0; e < edges; e++) {
       const a = s * row + 2 * e;
-      out.triangle(a, a + 1, a + row);
-      out.triangle(a + 1, a + row + 1, a + row);
+      out.triangle(a, a + row, a + 1); // counter-clockwise from outside: WebGL turns the normals of the others round
+      out.triangle(a + 1, a + row, a + row + 1);
     }
   }
   if (caps) {
@@ -50,7 +37,7 @@ export function revolved(shape, { open, deformed }) {
       for (let i = 0; i < caps; i++) out.add(at, i, 0, 0, side);
       for (let t = 0; t < shape.triangles.length; t += 3) {
         const [a, b, c] = shape.triangles.subarray(t, t + 3);
-        out.triangle(first + a, first + b, first + c);
+        out.triangle(first + a, first + (side < 0 ? b : c), first + (side < 0 ? c : b));
       }
     }
   }
@@ -61,7 +48,7 @@ class Mesh {
   constructor(vertices, indices) {
     this.position = new Float32Array(3 * vertices);
     this.normal = new Float32Array(3 * vertices);
-    this.uv = new Float32Array(2 * vertices);
+    this.along = new Float32Array(2 * vertices);
     this.index = new Uint32Array(indices);
     this.count = 0;
     this.filled = 0;
@@ -75,8 +62,8 @@ class Mesh {
     this.normal[3 * i] = nr * cos - side * sin;
     this.normal[3 * i + 1] = nr * sin + side * cos;
     this.normal[3 * i + 2] = nz;
-    this.uv[2 * i] = at.stress(node);
-    this.uv[2 * i + 1] = 0.5;
+    this.along[2 * i] = at.stress(node);
+    this.along[2 * i + 1] = 0.5;
   }
 
   triangle(a, b, c) {

@@ -1,7 +1,8 @@
 // What stands around the 3-D part: which case, the colour scale, what was left out, and its PNG.
 
+import { unpacked } from "./arrays.js";
+import { colourBar } from "./colour_bar.js";
 import { el, grouped } from "./dom.js";
-import { unpacked } from "./shape.js";
 import { state } from "./state.js";
 import { View } from "./view.js";
 
@@ -109,12 +110,8 @@ export class Stage {
     const peak = shape.peak_MPa;
     const places = Math.max(0, 2 - Math.floor(Math.log10(peak)));
     const marks = Array.from({ length: TICKS + 1 }, (_, i) => grouped((peak * i) / TICKS, places)).reverse();
-    const bar = el("canvas", { width: 1, height: 256, class: "bar" });
-    const pen = bar.getContext("2d");
-    for (let i = 0; i < 256; i++) {
-      pen.fillStyle = `rgb(${this.style.scale.slice(3 * i, 3 * i + 3).join()})`;
-      pen.fillRect(0, 255 - i, 1, 1);
-    }
+    const bar = colourBar(this.style.scale);
+    bar.className = "bar";
     this.scale.replaceChildren(el("p", { class: "unit" }, "von Mises, MPa"),
       el("div", { class: "bars" }, bar, el("ol", {}, ...marks.map((mark) => el("li", {}, mark)))),
       el("p", { class: "peak", title: shape.excluded }, "● peak"));

@@ -1,42 +1,18 @@
 // The middle: the part in 3-D. It is drawn here, in the browser, so it turns without asking anybody.
 
-import { OrbitControls } from "./OrbitControls.js";
+import { PartScene } from "./part_scene.js";
 import { creases, mover, revolved } from "./shape.js";
-import * as THREE from "./three.module.min.js";
 
-const STEEL = 0xaeb7bf;
+const INK = "#1f2429";
+const EYE = [0.45, -1.1, 0.85];
 
-export class View {
+export class View extends PartScene {
   constructor(root, style) {
-    this.root = root;
+    super(root, style.scale);
     this.options = { open: false, deformed: true };
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
-    this.renderer.setPixelRatio(window.devicePixelRatio);
-    root.append(this.renderer.domElement);
-    this.scene = new THREE.Scene();
-    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1000, 1000);
-    this.camera.up.set(0, 0, 1);
-    this.scene.add(this.camera, new THREE.HemisphereLight(0xffffff, 0xb9c0c8, 1.9));
-    const key = new THREE.DirectionalLight(0xffffff, 1.5);
-    key.position.set(-0.6, 0.8, 1);
-    this.camera.add(key);
-    const scale = new Uint8Array(1024).map((_, i) => (i % 4 === 3 ? 255 : style.scale[3 * (i >> 2) + (i % 4)]));
-    const map = new THREE.DataTexture(scale, 256, 1);
-    Object.assign(map, { colorSpace: THREE.SRGBColorSpace, magFilter: THREE.LinearFilter, needsUpdate: true });
-    const side = THREE.DoubleSide;
-    const back = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-    this.coloured = new THREE.MeshLambertMaterial({ map, side, ...back });
-    this.plain = new THREE.MeshLambertMaterial({ color: STEEL, side, ...back });
-    this.part = new THREE.Mesh(new THREE.BufferGeometry(), this.plain);
-    this.lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f2429, transparent: true, opacity: 0.55 }));
-    this.mark = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14), new THREE.MeshBasicMaterial({ color: style.accent }));
+    this.edge = this.lineOf(INK, 0.55);
+    this.mark = this.addDot(style.accent);
     this.mark.visible = false;
-    this.scene.add(this.part, this.lines, this.mark);
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    Object.assign(this.controls, { enableDamping: true, dampingFactor: 0.12 });
-    this.controls.addEventListener("change", () => (this.due = true));
-    new ResizeObserver(() => this.resize()).observe(root);
-    this.renderer.setAnimationLoop(() => this.step());
   }
 
   // A field or a bare profile; the camera keeps its place unless the size has changed much.
@@ -53,20 +29,10 @@ export class View {
   }
 
   rebuild() {
-    const mesh = revolved(this.shape, this.options);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(mesh.position, 3));
-    geometry.setAttribute("normal", new THREE.BufferAttribute(mesh.normal, 3));
-    geometry.setAttribute("uv", new THREE.BufferAttribute(mesh.uv, 2));
-    geometry.setIndex(new THREE.BufferAttribute(mesh.index, 1));
-    this.part.geometry.dispose();
-    this.part.geometry = geometry;
-    this.part.material = this.shape.direct ? this.coloured : this.plain;
-    this.lines.geometry.dispose();
-    this.lines.geometry = new THREE.BufferGeometry();
-    this.lines.geometry.setAttribute("position", new THREE.BufferAttribute(creases(this.shape, this.options), 3));
+    for (const former of [this.part, this.lines]) if (former) this.remove(former);
+    this.part = this.addSurface(revolved(this.shape, this.options), this.shape.direct ? this.coloured : this.plain);
+    this.lines = this.addLines({ position: creases(this.shape, this.options) }, this.edge);
     this.markPeak();
-    this.due = true;
   }
 
   // A dot at the peak, moved along with the node next to it.
@@ -101,34 +67,11 @@ export class View {
 
   reset() {
     this.framed = this.size();
-    const d = this.framed;
-    this.controls.target.set(0, 0, this.middle);
-    this.camera.position.set(0.45 * d, -1.1 * d, this.middle + 0.85 * d);
-    this.camera.zoom = 1;
-    this.resize();
-    this.controls.update();
-  }
-
-  resize() {
-    const { clientWidth: width, clientHeight: height } = this.root;
-    if (!width || !height) return;
-    this.renderer.setSize(width, height);
-    const half = (this.framed ?? 50) * 0.56;
-    const [x, y] = width > height ? [(half * width) / height, half] : [half, (half * height) / width];
-    Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y, near: -20 * half, far: 20 * half });
-    this.camera.updateProjectionMatrix();
-    this.due = true;
-  }
-
-  step() {
-    this.controls.update();
-    if (!this.due) return;
-    this.due = false;
-    this.renderer.render(this.scene, this.camera);
+    this.look({ centre: [0, 0, this.middle], eye: EYE, half: 0.56 * this.framed });
   }
 
   picture() {
-    this.renderer.render(this.scene, this.camera);
+    this.drawNow();
     return this.renderer.domElement;
   }
 }

@@ -55,6 +55,9 @@ def test_the_part_turns_and_is_coloured(tab: Page) -> None:
     # from the dark to the bright end of the scale: its ends are blue-violet and yellow
     assert ((before[..., 2] - before[..., 1]) > 30).any()
     assert ((before[..., 0] - before[..., 2]) > 60).any()
+    # as bright as the scale, whose yellow has 253 of red: lit from the eye, not from behind (below 210)
+    ring = before[100:, : before.shape[1] * 3 // 4]  # the scale lies right of it
+    assert ring[..., 0][ring[..., 2] < 90].max() > 225
     box = part.bounding_box()
     mouse = tab.tab.mouse
     mouse.move(box["x"] + 200, box["y"] + 300)

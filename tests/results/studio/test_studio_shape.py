@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 
 import numpy as np
 import pytest
+from read_arrays import read_arrays
 
 from flexspline.geometry.load import design_from
 from flexspline.geometry.template import template
@@ -55,14 +55,7 @@ def test_two_loops_stay_two() -> None:
 @pytest.mark.parametrize("view", ["wave_generator", "shaft_torque"])
 def test_a_cup_is_drawn_with_a_fraction_of_its_edges(view: StressCase) -> None:
     design = revolved(design_from(tomllib.loads(template("cup"))))
-    message = field_message(view, field(design, view))
-    length = int.from_bytes(message[:4], "little")
-    head = json.loads(message[4 : 4 + length])
-    at, arrays = 4 + length, {}
-    for name, kind, shape in head["arrays"]:
-        arrays[name] = np.frombuffer(message, kind, int(np.prod(shape)), at).reshape(shape)
-        at += arrays[name].nbytes
-    assert at == len(message)
+    arrays = read_arrays(field_message(view, field(design, view)))
     rim, places = arrays["rim"], arrays["places"].astype(float)
     assert (
         len(rim) < 260
