@@ -30,6 +30,7 @@ FormKind = Literal[
     "jumps",
     "comes_back",
     "remainder",
+    "slow_noise",
     "curve_of_totals",
     "trend",
     "bend",

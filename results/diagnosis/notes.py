@@ -28,6 +28,8 @@ from flexspline.results.numbers import grouped
 
 GUESSED_BY = {"overridden_keys": "the overridden keys", "stiffness": "its stiffness"}
 """What says which part a specimen is."""
+LONG_MEMORY, SLOW_RATIO = 0.8, 3.0
+"""Of noise from one row to the next, and slow noise's rms over the other's, from which a reader is told."""
 NOT_SOUGHT = (
     "which input of the gear explains the rest was not sought: that takes one unit, loaded and unloaded at "
     "both signs of torque at three sizes of torque at least"
@@ -119,12 +121,25 @@ def _sweep_notes(explained: ExplainedSweep, causes: Iterable[NamedCause]) -> lis
     found = row_notes(prepared)
     found += unseen_notes(prepared.sweep.history, prepared.band_Nm)
     found += _encoder_notes(prepared)
+    found += _noise_notes(explained)
     found += lag_notes(explained.identified)
     found += drift_notes(causes)
     found += _unit_notes(explained)
     if prepared.sweep.read_as.ignored:
         found.append(f"columns not used: {heads(prepared.sweep.read_as.ignored)}")
     return found
+
+
+def _noise_notes(explained: ExplainedSweep) -> list[str]:
+    """That most of the noise is slow, where it is: an effect without a form may pass for such."""
+    noise = explained.identified.search.evidence.noise
+    if noise.memory < LONG_MEMORY or noise.coloured < SLOW_RATIO**2 * noise.white:
+        return []
+    return [
+        f"the noise is {noise.std_arcsec:.2g} arcsec rms, and most of it is slow: it keeps its sign over "
+        f"some {1 / (1 - noise.memory):.0f} rows; an effect that has no form in torque, time or position "
+        "would look like that"
+    ]
 
 
 def _encoder_notes(prepared: PreparedSweep) -> list[str]:

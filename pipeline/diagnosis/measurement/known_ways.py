@@ -95,7 +95,7 @@ def programme_edges(history: History) -> list[np.ndarray]:
 
 
 def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
-    """The edges of ways; a step from one row to the next has one edge and no way of its own.
+    """The edges of ways; a step from one row to the next between two rests is one edge and no way.
 
     Its two corners lie a row or two apart; the rows between them are those of the rests beside it.
     """
@@ -103,9 +103,11 @@ def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
     at = edges.copy()
     for i in np.flatnonzero(np.diff(edges) < SHORTEST_WAY):
         if 0 < i < len(edges) - 2 and kept[i]:
-            moves = np.diff(torque_Nm[edges[i] - 1 : edges[i + 1] + 1])
-            most = int(np.abs(moves).argmax())
-            if abs(moves[most]) > ONE_STEP * np.abs(moves).sum():
+            moves = np.abs(np.diff(torque_Nm[edges[i] - 1 : edges[i + 1] + 1]))
+            most = int(moves.argmax())
+            beside = torque_Nm[edges[i - 1] : edges[i]], torque_Nm[edges[i + 1] : edges[i + 2]]
+            rests = max(float(np.ptp(way)) for way in beside) < moves[most]
+            if rests and moves[most] > ONE_STEP * moves.sum():
                 at[i], kept[i + 1] = edges[i] + most, False
     return at[kept]
 

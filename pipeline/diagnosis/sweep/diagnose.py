@@ -55,7 +55,7 @@ from flexspline.pipeline.diagnosis.sweep.credit import unnamed_share
 from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
-from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned
+from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned, slow_noise
 from flexspline.pipeline.diagnosis.sweep.named_causes import named_causes
 from flexspline.pipeline.diagnosis.sweep.next_measurement import after_late, next_measurement
 from flexspline.pipeline.diagnosis.sweep.offset_race import with_torque_offset
@@ -140,6 +140,8 @@ def diagnose_sweep(
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
         decision = Decision("unknown", (), (broken, *decision.unexplained))
+    if decision.verdict == "consistent" and (slow := slow_noise(explained)) is not None:
+        decision = Decision("unknown", (), (slow,))
     misread = _misread(prepared, explained, decision)
     if misread is not None:  # whatever else was found is what the race made of it
         late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)

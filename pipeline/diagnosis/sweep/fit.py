@@ -33,7 +33,7 @@ LEAST_GAP_ARCSEC = 1e-3
 """Of a row's own: no angle reading resolves less, and a gap is never negative."""
 GAP_BESIDE_WIND_UP = 0.03
 """Of a soft wind-up from one side to the other, by which a gap beside it is doubted: its law near zero is not
-seen. Of 17 records made up by another law, 1 − e^(−T/w), 68 % were off by 0.022 of it or less, 90 % by 0.07."""
+seen. Of 17 records made up by another law, 1 − e^(−T/w), 68 % were off by less than 0.022, 90 % than 0.07."""
 SLOPE_STEP = 0.3
 """Of a standard deviation, for slopes of magnitudes: near enough to the mean to be first order."""
 

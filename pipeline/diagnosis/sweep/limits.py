@@ -8,7 +8,7 @@ from flexspline.pipeline.diagnosis.outcome import NamedCause, Unexplained
 from flexspline.pipeline.diagnosis.plausibility import far_slope, slope_beyond
 from flexspline.pipeline.diagnosis.prediction import Prediction
 from flexspline.pipeline.diagnosis.shortage import Drowned, Leaping
-from flexspline.pipeline.diagnosis.structure import NegativeGap
+from flexspline.pipeline.diagnosis.structure import NegativeGap, UnnamedForm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.leaps import leaps_of
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
@@ -17,6 +17,8 @@ from flexspline.pipeline.diagnosis.sweep.slip import slip_of
 
 MOST_SLOPE_RATIO = 10.0
 """Times stiffer or softer than simulated: no part left out or stated wrongly does that."""
+SLOW_SHARE = 0.04
+"""Of the simulated twist from one end to the other: through slow noise that is larger nothing is compared."""
 NEGATIVE_GAP_DEVIATIONS = 3.0
 """Standard deviations below 0 at which a gap is negative: one in 740."""
 
@@ -39,6 +41,18 @@ def broken_limit(
     if gap + NEGATIVE_GAP_DEVIATIONS * std < 0:
         return Unexplained("torque_Nm", abs(gap) / 2, 0.0, NegativeGap(gap, std))
     return None
+
+
+def slow_noise(explained: ExplainedSweep) -> Unexplained | None:
+    """Noise with a memory, where it is too large for a record to agree with a simulation; None else."""
+    noise = explained.identified.search.evidence.noise
+    twist = simulated_twist_arcsec(
+        explained.prepared.rig.history.torque_Nm, explained.prepared.prediction
+    )
+    rms = noise.coloured**0.5
+    if rms <= max(SLOW_SHARE * twist, noise.white**0.5):
+        return None
+    return Unexplained("time_s", rms, 0.0, (UnnamedForm("slow_noise"),))
 
 
 def drowned(explained: ExplainedSweep) -> Drowned | Leaping | None:
