@@ -22,6 +22,8 @@ ARCSEC_PER_RAD = 180 * 3600 / pi
 """A half turn has π rad, and 180° of 3600 arcsec."""
 TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play")
 """Of the sum, in its order."""
+STD_KEY = "backlash_arcsec.std"
+"""Of the sum's standard deviation, in records and studies."""
 
 
 def series_compliance(K_b: float, K_e: float) -> float:

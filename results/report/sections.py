@@ -26,7 +26,17 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.picture_blocks import shown
-from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
+from flexspline.results.report.spans import (
+    NBSP,
+    Words,
+    alarm,
+    bold,
+    note,
+    plain,
+    ref,
+    symbol,
+    worded,
+)
 from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.whole_gear import whole_gear
 
@@ -34,7 +44,6 @@ ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
 they follow each other and the report stays within nine pages."""
 GUARANTEED = bounds_kind(True)
-NBSP = "\N{NO-BREAK SPACE}"
 
 
 def run_document(content: ReportContent) -> Document:

@@ -16,7 +16,8 @@ from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
 FINEST_ARCSEC = 0.005
-"""No instrument reads finer; a record without any noise would make every equation singular."""
+"""Least standard deviation of a reading: no instrument repeats better, and without any noise every equation
+would be singular."""
 LAGS = 24
 """Rows over which the residual's autocovariances are matched one by one; beyond, in groups."""
 LAGS_PER_MEMORY = 3.0
