@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexspline.results.diagnosis.command import register as register_diagnosis
-from flexspline.results.file_names import GEAR, ONE_RECORD, RUN, of_export
+from flexspline.results.file_names import FORMATS, GEAR, ONE_RECORD, RUN, of_export
 from flexspline.results.job import (
     RESUMES,
     answered,
@@ -186,8 +186,8 @@ def export(
         typer.Option(
             "--format",
             metavar="FORMAT",
-            help="Also write the whole parts' meshes with named patches: msh, med, bdf, inp, vtu,"
-            " xdmf; several separated by commas, or the option again.",
+            help="Also write the whole parts' meshes with named patches:"
+            f" {', '.join(FORMATS)}; several separated by commas, or the option again.",
         ),
     ] = None,
     json: Json = False,

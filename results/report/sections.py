@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
+from flexspline.results.file_names import CONVERGENCE
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.report import limits, tables
 from flexspline.results.report.budget import budget
@@ -233,7 +234,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
         )
     convergence = "Stiffness against the number of unknowns, as difference from the value reported."
-    yield from shown(content, roomy, Picture("convergence", convergence, 88))
+    yield from shown(content, roomy, Picture(CONVERGENCE, convergence, 88))
     stages = content.stage_seconds or {}
     if stages:
         each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())
