@@ -89,7 +89,7 @@ def calibrated_sentences(
         titles = " and ".join(title_of(c.id, c.magnitude) for c in elastic)
         said += f" The measured slope is this compliance and the effect of: {titles}."
     if outcome.unexplained:
-        said += " An effect is unexplained and may have moved them by more than ± says."
+        said += " An effect is unexplained; it may have changed them by more than the stated ±."
     return said
 
 

@@ -43,9 +43,7 @@ def predict_and_write(
     for line in (*model_warnings(file, design), *prediction_warnings(predicted)):
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
-        tell(
-            "note: no deviations: only a model of a torque sweep says what its angles may be off by"
-        )
+        tell("note: no standard deviations: only a model of a torque sweep contains them")
     angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
     added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})
     text = with_columns(torque, added, predicted.read_as.decimal_mark)
