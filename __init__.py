@@ -21,7 +21,8 @@ if TYPE_CHECKING:
         stress,
         study,
     )
-    from flexspline.pipeline.measured import diagnose, predict
+    from flexspline.pipeline.measured import diagnose
+    from flexspline.results.diagnosis.predicted import predict
 
     __version__: str
 
@@ -32,7 +33,7 @@ _PLACE = {
     "backlash": "pipeline.api",
     "diagnose": "pipeline.measured",
     "gear": "pipeline.api",
-    "predict": "pipeline.measured",
+    "predict": "results.diagnosis.predicted",
     "sensitivity": "pipeline.api",
     "stiffness": "pipeline.api",
     "stress": "pipeline.api",

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from math import pi, radians
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from flexspline.geometry import ranges
 from flexspline.geometry.circular_spline import DEEPEST, OUTER_SHARE
@@ -211,8 +211,25 @@ class Solver(DesignTable):
         return "K_b_lobes" if self.load_case == "lobes" else "K_b"
 
 
+def _without_examples(schema: dict[str, Any]) -> None:
+    """Readers of the JSON Schema write no Python."""
+    schema["description"] = schema["description"].partition("\n")[0]
+
+
 class Design(DesignTable):
-    """One strain wave gear: flexspline, output shaft, materials, gear, play, load."""
+    """One strain wave gear: flexspline, output shaft, materials, gear, play, load.
+
+    Examples
+    --------
+    >>> from flexspline import load_design
+    >>> design = load_design("examples/xb1-40.toml")
+    >>> design.gear.module_mm, design.gear.teeth_flexspline, design.gear.teeth_circular_spline
+    (0.2, 200, 202)
+    >>> design.flexspline.inner_radius, round(design.w0_mm, 3)
+    (19.2, 0.2)
+    """
+
+    model_config = ConfigDict(json_schema_extra=_without_examples)
 
     name: str = Field(min_length=1, max_length=200, description="of the design, for the report")
     flexspline: Annotated[Flexspline, Field(discriminator="kind")]

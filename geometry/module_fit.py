@@ -8,6 +8,7 @@ from flexspline.geometry.design import Design
 WRONG_MODULE_RATIO = 1.5
 """Times too large or too small: no ring's thickness mends that."""
 MM_PER_M = 1000.0
+"""The likeliest slip of a length: metres for millimetres."""
 
 
 def root_radius_mm(design: Design) -> float:

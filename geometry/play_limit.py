@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos
 
 ROUNDING_SHARE = 1e-12
-"""A play this share beyond c_max is c_max, written in another unit."""
+"""A length this share beyond its limit is at the limit: the two were computed, or written, in another way."""
 
 
 def play_limit(centre_distance: float, pressure_angle: float) -> float:

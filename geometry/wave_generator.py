@@ -13,6 +13,7 @@ from flexspline.geometry.assumed import Assumed, taken_from
 from flexspline.geometry.bounds import lengths, span
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.fields import DesignTable, Length
+from flexspline.geometry.play_limit import ROUNDING_SHARE
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -93,7 +94,7 @@ def largest_ball(room: float, count: int) -> float:
 def most_balls(room: float, diameter: float) -> int:
     """How many balls have room side by side inside a circle of radius `room` [mm]; 0 for none."""
     ratio = diameter / (2 * room - diameter) if 2 * room > diameter else 2.0
-    return int(pi / asin(ratio) * (1 + 1e-12)) if ratio <= 1 else 0
+    return int(pi / asin(ratio) * (1 + ROUNDING_SHARE)) if ratio <= 1 else 0
 
 
 def wave_generator_faults(design: Design) -> Iterator[DesignError]:
@@ -122,7 +123,7 @@ def wave_generator_faults(design: Design) -> Iterator[DesignError]:
     ball = given.ball_diameter_mm
     count = given.ball_count if given.ball_count is not None else FEWEST_BALLS
     smallest, largest = SMALLEST_BALL * radius, largest_ball(room, count)
-    if ball is not None and not smallest <= ball <= largest * (1 + 1e-12):
+    if ball is not None and not smallest <= ball <= largest * (1 + ROUNDING_SHARE):
         yield DesignError(
             "wave_generator.ball_diameter_mm",
             ball,

@@ -19,9 +19,11 @@ from flexspline.pipeline.bearing_play import (
 from flexspline.pipeline.play_spread import play_spread
 
 ARCSEC_PER_RAD = 180 * 3600 / pi
-
+"""A half turn has π rad, and 180° of 3600 arcsec."""
 TERMS = ("shaft", "flexspline", "flank_clearance", "bearing_play")
 """Of the sum, in its order."""
+STD_KEY = "backlash_arcsec.std"
+"""Of the sum's standard deviation, in records and studies."""
 
 
 def series_compliance(K_b: float, K_e: float) -> float:

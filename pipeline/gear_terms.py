@@ -18,6 +18,9 @@ TIGHT = "tight_gear"
 """The gap that is left without any clearance, for which the sum has no term."""
 FREE_ANGLE_TERMS = ("flank_clearance", "bearing_play", TIGHT)
 """Terms that make up the free angle."""
+LAST_SHARE = 0.1
+"""Of the play: small enough that its sign is that of the slope at the play that is drawn, and a tenth of the
+effect is still far above an equilibrium's rounding."""
 
 
 def small_torque(load_Nm: float, rated_Nm: float) -> float:
@@ -79,4 +82,4 @@ def play_effect(model: GearModel, start: Equilibrium) -> PlayEffect:
         return free_angle(model.with_gaps(model.mesh, bearing).like(start))
 
     as_drawn = free_angle(start)
-    return PlayEffect(as_drawn - with_play(0.0), as_drawn - with_play(0.9))
+    return PlayEffect(as_drawn - with_play(0.0), as_drawn - with_play(1 - LAST_SHARE))

@@ -1,4 +1,4 @@
-"""Up to which torque the linear model means anything: closed forms, linear in the torque."""
+"""Up to which torque the linear model is valid: closed forms, linear in the torque."""
 
 from __future__ import annotations
 

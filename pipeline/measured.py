@@ -11,7 +11,6 @@ from flexspline.pipeline.no_design import require_design
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
     from flexspline.pipeline.diagnosis.diagnose import Diagnosis
-    from flexspline.pipeline.diagnosis.model.predict import Predicted
     from flexspline.pipeline.parts import AnalysisContext
 
 
@@ -74,33 +73,3 @@ def diagnose(
         gear=against == "gear",
     )
     return found
-
-
-def predict(
-    model: Path | str, path: Path | str, *, counts_per_turn: float | None = None
-) -> Predicted:
-    """The angle for each row of a measured file, by an `extended_model.toml` that `diagnose` wrote.
-
-    Parameters
-    ----------
-    counts_per_turn : of the encoder, where the file's wave-generator angle is in counts.
-
-    Raises
-    ------
-    ModelFileError, MeasurementError
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from flexspline import FlexsplineError, predict
-    >>> try:
-    ...     predict("no-such-model.toml", "examples/measured/xb1-40-sweep.csv")
-    ... except FlexsplineError as fault:
-    ...     print(fault)
-    no-such-model.toml: no such file
-    """
-    from flexspline.pipeline.diagnosis.model.model_file import read_model_file
-    from flexspline.pipeline.diagnosis.model.predict import predict_file
-
-    return predict_file(read_model_file(Path(model)), Path(path), counts_per_turn)

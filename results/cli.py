@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from flexspline.results.diagnosis.command import register as register_diagnosis
-from flexspline.results.file_names import GEAR, ONE_RECORD, RUN, of_export
+from flexspline.results.diagnosis.command import diagnose, predict
+from flexspline.results.file_names import FORMATS, GEAR, ONE_RECORD, RUN, of_export
 from flexspline.results.job import (
     RESUMES,
     answered,
@@ -25,7 +25,7 @@ from flexspline.results.job import (
 from flexspline.results.options import DesignFile, Json, Kb, Ke, Out, stiffness_option
 from flexspline.results.streams import show
 from flexspline.results.studio.command import register as register_studio
-from flexspline.results.study.command import register as register_study
+from flexspline.results.study.command import sensitivity, study
 from flexspline.results.usage import Commands, named_file, number, whole_number
 
 app = typer.Typer(
@@ -186,8 +186,8 @@ def export(
         typer.Option(
             "--format",
             metavar="FORMAT",
-            help="Also write the whole parts' meshes with named patches: msh, med, bdf, inp, vtu,"
-            " xdmf; several separated by commas, or the option again.",
+            help="Also write the whole parts' meshes with named patches:"
+            f" {', '.join(FORMATS)}; several separated by commas, or the option again.",
         ),
     ] = None,
     json: Json = False,
@@ -206,7 +206,8 @@ def export(
         show(as_json(record) if json else "\n".join(record["files"]), json)
 
 
-register_diagnosis(app)
+app.command()(diagnose)
+app.command()(predict)
 
 
 @app.command()
@@ -256,7 +257,8 @@ def schema() -> None:
         show(as_json(json_schema()), json=True)
 
 
-register_study(app)
+app.command()(study)
+app.command()(sensitivity)
 register_studio(app)
 
 if __name__ == "__main__":

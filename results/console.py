@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from flexspline.pipeline.backlash import STD_KEY
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.numbers import grouped
 from flexspline.results.peaks import marked
 from flexspline.results.quantities import QUANTITIES
 from flexspline.results.terminal import row
 
-STD_KEY = "backlash_arcsec.std"
 NAMES = 64
 """Width of the column of names."""
 NO_NOTES: Mapping[str, str] = {}

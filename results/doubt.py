@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexspline.pipeline.backlash import Backlash
+from flexspline.pipeline.backlash import STD_KEY, Backlash
 from flexspline.results.quantities import quantity
 
 SOURCES = {
@@ -18,7 +18,7 @@ def spread_text(backlash: Backlash) -> str:
     """``± 12.9 (1σ)``, or that the design file states no uncertainty."""
     if backlash.std_arcsec is None:
         return f"1σ {NOT_STATED}"
-    return f"± {quantity('backlash_arcsec.std').text(backlash.std_arcsec)} (1σ)"
+    return f"± {quantity(STD_KEY).text(backlash.std_arcsec)} (1σ)"
 
 
 def missing(backlash: Backlash) -> tuple[str, ...]:
@@ -30,7 +30,7 @@ def spread_sentence(backlash: Backlash) -> str:
     """One standard deviation of the sum, and what it leaves out; without a full stop."""
     if backlash.std_arcsec is None:
         return "the design file states no uncertainty, so the sum has no standard deviation"
-    said = quantity("backlash_arcsec.std").with_unit(backlash.std_arcsec)
+    said = quantity(STD_KEY).with_unit(backlash.std_arcsec)
     left_out = missing(backlash)
     without = f", with {_listed(left_out)} {NOT_STATED}" if left_out else ""
     return f"one standard deviation of the sum is {said}{without}"

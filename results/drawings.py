@@ -19,7 +19,7 @@ from flexspline.results.figures.budget import write_budget
 from flexspline.results.figures.convergence import write_convergence
 from flexspline.results.figures.gear import write_gear_angle, write_gear_loads
 from flexspline.results.figures.torque_angle import drawn_branch, write_torque_angle
-from flexspline.results.file_names import CURVE, ELLIPSE, LOADS
+from flexspline.results.file_names import BUDGET, CONVERGENCE, CURVE, ELLIPSE, LOADS, TORQUE_ANGLE
 from flexspline.results.renders.ellipse_picture import write_ellipse_picture, write_turning_ellipse
 from flexspline.results.renders.mesh_picture import write_mesh_picture
 from flexspline.results.renders.stress_picture import (
@@ -88,7 +88,7 @@ def small(png: bytes) -> Drawing:
 
 
 def charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterator[Drawing]:
-    """The charts; without "convergence" where every stiffness was solved on one mesh."""
+    """The charts; without `CONVERGENCE` where every stiffness was solved on one mesh."""
     design, found, backlash = result.design, result.stiffnesses, result.backlash
     torque = design.load.torque_Nm
     K_b, K_e = found.in_sum(design).K_Nm_per_rad, found.K_e.K_Nm_per_rad
@@ -105,14 +105,14 @@ def charts(result: RunResult, extended: ExtendedBacklash | None) -> Iterator[Dra
 
     sums = {"backlash": asdict(backlash), "torque_Nm": torque}
     added = None if extended is None else asdict(extended)
-    yield chart("backlash_budget", {**sums, "extended": added}, write_budget, backlash, extended)
+    yield chart(BUDGET, {**sums, "extended": added}, write_budget, backlash, extended)
     branch = drawn_branch(angle, torque)
     yield chart(
-        "torque_angle", {**sums, "K": [K_b, K_e]}, write_torque_angle, branch, torque, backlash
+        TORQUE_ANGLE, {**sums, "K": [K_b, K_e]}, write_torque_angle, branch, torque, backlash
     )
     if result.gear is not None:
         for name, write in ((CURVE, write_gear_angle), (LOADS, write_gear_loads)):
             yield chart(name, {"curve": asdict(result.gear)}, write, result.gear)
     if settling:
         levels = {key: asdict(K) for key, K in settling.items()}
-        yield chart("convergence", levels, write_convergence, settling)
+        yield chart(CONVERGENCE, levels, write_convergence, settling)

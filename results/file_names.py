@@ -12,13 +12,15 @@ PREVIOUS = "result.previous.json"
 """An earlier result.json with figures that the present one lacks."""
 REPORT = "report"
 """Name of the reports of a run and of a study."""
-CURVE, LOADS = "gear_torque_angle", "gear_loads"
-"""Pictures of the whole gear."""
 ELLIPSE = "wave_generator"
 RENDERED = (*(f"{part}_{what}" for part in PART_NAMES for what in ("mesh", "torque")), ELLIPSE)
 """Pictures of a run that VTK draws."""
-CHARTS = ("backlash_budget", "torque_angle", "convergence", CURVE, LOADS)
-"""Pictures of a run that matplotlib draws; "convergence" where there is any."""
+CHARTS = BUDGET, TORQUE_ANGLE, CONVERGENCE, CURVE, LOADS = (
+    "backlash_budget", "torque_angle", "convergence", "gear_torque_angle", "gear_loads",
+)  # fmt: skip
+"""Pictures of a run that matplotlib draws, `CONVERGENCE` where there is any; two of the whole gear."""
+FORMATS = ("msh", "med", "bdf", "inp", "vtu", "xdmf")
+"""Of `export --format`, by suffix."""
 GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
 """The folder may hold the result.json of a run of the same design."""
 DIAGNOSIS = "diagnosis"
@@ -42,7 +44,7 @@ RUN = (*ONE_RECORD, *_reports(REPORT), *_pictures(*RENDERED, *CHARTS))
 GEAR = (GEAR_RECORD, GEAR_CSV, *_pictures(CURVE, LOADS))
 STUDY = (
     "study.db", "study.csv", "study.parquet", BEST_DESIGN, BEST_STRESS, *_reports(REPORT),
-    *_pictures("pareto", "best", "parallel", "convergence", "tolerance"),
+    *_pictures("pareto", "best", "parallel", CONVERGENCE, "tolerance"),
 )  # fmt: skip
 
 

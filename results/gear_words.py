@@ -68,7 +68,7 @@ def _warning(warning: GearWarning) -> str:
         case "play_closes_gap":
             return (
                 "more bearing play makes the free angle smaller here: it lowers the rim's stroke so far that "
-                "teeth beside the major axis touch first. The gear is no better for it: reduce the play"
+                "teeth beside the major axis touch first. This is no improvement: reduce the play"
             )
         case _:
             assert_never(warning)
@@ -124,8 +124,8 @@ def _note(note: GearNote) -> str:
         case LoadedLastPair(at):
             return (
                 f"the last pair of teeth within the working depth, {at:.0f}° from "
-                "the major axis, carries much: its force depends on gear.working_depth_mm and is no load to "
-                "design teeth for; K2 and K3 depend on it too"
+                "the major axis, carries much: its force depends on gear.working_depth_mm; do not size "
+                "teeth by it; K2 and K3 depend on it too"
             )
         case TwoTorques(load, lost_motion):
             return (

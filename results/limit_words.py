@@ -1,4 +1,4 @@
-"""Limits in words: what a peak stress passes, and up to which torque the linear model means anything."""
+"""Limits in words: what a peak stress passes, and up to which torque the linear model is valid."""
 
 from __future__ import annotations
 

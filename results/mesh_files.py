@@ -20,6 +20,7 @@ from flexspline.fea.solid.whole import FACES, whole_part
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.errors import DesignError
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
+from flexspline.results.file_names import FORMATS
 
 if TYPE_CHECKING:
     import meshio
@@ -99,10 +100,10 @@ def chosen_formats(words: Sequence[str]) -> tuple[str, ...]:
     asked = tuple(dict.fromkeys(f.strip() for word in words for f in word.split(",")))
     for name in asked:
         if name in ALWAYS:
-            others = f"for a mesh too, one of {', '.join(WRITERS)}"
+            others = f"for a mesh too, one of {', '.join(FORMATS)}"
             raise DesignError("--format", name, f"is written without this option; {others}")
-        if name not in WRITERS:
-            raise DesignError("--format", name, f"must be one of {', '.join(WRITERS)}")
+        if name not in FORMATS:
+            raise DesignError("--format", name, f"must be one of {', '.join(FORMATS)}")
         if name in NEED_H5PY and find_spec("h5py") is None:
             raise DesignError(
                 "--format",
@@ -196,4 +197,4 @@ WRITERS: dict[str, Callable[[PatchedMesh, Path], None]] = {
     "vtu": _vtu,
     "xdmf": _xdmf,
 }
-"""By suffix; gmsh, Salome and Code_Aster, Nastran, Abaqus and CalculiX, ParaView, FEniCS."""
+"""By suffix (`FORMATS`): gmsh, Salome and Code_Aster, Nastran, Abaqus and CalculiX, ParaView, FEniCS."""

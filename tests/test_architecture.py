@@ -24,7 +24,7 @@ ONLY_IN = {
 }  # fmt: skip
 FILES = sorted(p for room in ROOMS for p in (ROOT / room).rglob("*.py"))
 TINY = 1e-9
-"""Below every tolerance of the pipeline in any unit: a number that is less guards a division."""
+"""Below every tolerance of the pipeline in any unit: a number that is no larger stands for 0."""
 
 
 def room_of(module: str) -> str:
@@ -81,7 +81,7 @@ def tiny_numbers(text: str) -> set[float]:
     for node in ast.walk(parsed(text)):
         if isinstance(node, ast.FunctionDef | ast.Lambda):
             values = [n.value for n in ast.walk(node) if isinstance(n, ast.Constant)]
-            found |= {v for v in values if isinstance(v, float) and 0 < v < TINY}
+            found |= {v for v in values if isinstance(v, float) and 0 < v <= TINY}
     return found
 
 
@@ -92,8 +92,8 @@ def test_numbers_of_the_pipeline_that_stand_for_0_have_a_name() -> None:
 
 
 def test_the_check_sees_a_number_that_stands_for_0() -> None:
-    named, bare = "LEAST_S = 1e-12\n", "def f(x):\n    return 1 / max(x, 1e-12)\n"
-    assert tiny_numbers(named + bare) == {1e-12}
+    named, bare = "LEAST_S = 1e-12\n", "def f(x):\n    return 1 / max(x, 1e-12) + 1e-9\n"
+    assert tiny_numbers(named + bare) == {1e-12, TINY}
     assert not tiny_numbers(named)
 
 

@@ -109,6 +109,12 @@ def test_the_exceptions_are_all_needed() -> None:
         assert any(line.startswith(known) for line in lines), known
 
 
+def test_the_text_names_commands() -> None:
+    """The next test passes on a page without any."""
+    named = [line for page in PAGES for line in INLINE.findall(page.read_text(encoding="utf-8"))]
+    assert any(line.startswith("flexspline") for line in named)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
 def test_commands_named_in_the_text_exist(page: Path) -> None:
     """Commands and options in running text, with places for the reader's own files, exist."""
@@ -123,10 +129,15 @@ def test_commands_named_in_the_text_exist(page: Path) -> None:
 
 
 def test_links_and_pictures_of_the_pages_exist() -> None:
-    for page in PAGES:
-        for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
-            if "://" not in target:
-                assert (page.parent / target).exists(), f"{page.name}: {target}"
+    targets = [
+        (page, target)
+        for page in PAGES
+        for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8"))
+        if "://" not in target
+    ]
+    assert targets
+    for page, target in targets:
+        assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
 def test_the_comparison_sees_other_words_and_other_numbers() -> None:

@@ -34,6 +34,9 @@ PUSH = LinearForm(
     lambda v, w: -np.exp(-(((w.x[1] - w.lever) / w.spread) ** 2)) * (w.c * v[0] + w.s * v[1])
 )
 """Normal to the flank on the side of x > 0."""
+TILT, SHIFT, SHEAR_SHARE = 16.67 / pi, 1.534, 2.4
+"""Cornell's, of a tooth's root in an elastic half plane in plane strain (the paper above): its tilt under the
+bending moment, its shift under the shear force, and what the force along the tooth adds to that."""
 
 
 def tooth(
@@ -57,9 +60,9 @@ def tooth(
     plane = material.youngs_modulus_MPa / (1 - nu * nu)
     slender = lever / (thickness + 2 * lever * tan(pressure_angle))
     root = (
-        16.67 / pi * slender**2
+        TILT * slender**2
         + 2 * (1 - nu - 2 * nu**2) / (1 - nu**2) * slender
-        + 1.534 * (1 + tan(pressure_angle) ** 2 / (2.4 * (1 + nu)))
+        + SHIFT * (1 + tan(pressure_angle) ** 2 / (SHEAR_SHARE * (1 + nu)))
     )
     own = clamped(lever, thickness, pressure_angle, tip, material)
     return (own + cos(pressure_angle) ** 2 * root / plane) / width

@@ -42,6 +42,17 @@ class Decision:
     unexplained: tuple[Unexplained, ...] = ()
 
 
+CONSISTENT = Decision("consistent")
+"""Nothing beyond the noise and the stated uncertainty."""
+
+
+def overruled(
+    by: Unexplained, causes: Iterable[NamedCause] = (), beside: Iterable[Unexplained] = ()
+) -> Decision:
+    """What is decided where the data refute an explanation: `unknown`, with what refutes it first."""
+    return Decision("unknown", tuple(causes), (by, *beside))
+
+
 def is_rival(evidence_behind: float, likelihood_behind: float) -> bool:
     """Whether an explanation so many nats behind the best one explains the data as well."""
     return evidence_behind < RIVAL_EVIDENCE or likelihood_behind < RIVAL_LIKELIHOOD
@@ -54,6 +65,15 @@ def probability(cause: str, explanations: Iterable[Scored]) -> float:
     weight = np.exp(score - score.max())
     having = np.array([cause in causes for causes, _ in scored])
     return min(1.0, float(weight[having].sum() / weight.sum()))
+
+
+def probability_of_gain(nats: float) -> float:
+    """Of a cause outside of the race, by its gain in evidence: RIVAL_EVIDENCE nats count as even odds.
+
+    A shifted torque reading is such a cause, and friction ahead of the teeth: no set of the race has the same
+    rows without it.
+    """
+    return float(1 / (1 + np.exp(RIVAL_EVIDENCE - nats)))
 
 
 def chance(best: float, without: Iterable[float]) -> float:
@@ -101,6 +121,6 @@ def decided(
         # beside what has no name a mere suspicion is none
         return Decision("unknown", tuple(c for c in found if is_significant(c)), left)
     if not found:
-        return Decision("unknown", (), left) if structure else Decision("consistent")
+        return Decision("unknown", (), left) if structure else CONSISTENT
     open_ = not sure or any(c.alternatives for c in found)
     return Decision("ambiguous" if open_ else "named", found, left)

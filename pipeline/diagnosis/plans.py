@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.outcome import Doing
@@ -71,7 +72,7 @@ def _calibration_columns(
 ) -> np.ndarray:
     """(n, 3) zero, compliance and gap, each times its standard deviation [arcsec]."""
     torque, side = history.torque_Nm, history.sign / 2
-    free = FREE_ANGLE_RATIO * max(largest_arcsec, 1e-9)
+    free = FREE_ANGLE_RATIO * max(largest_arcsec, ROUNDING_ARCSEC)
     compliance, gap = calibration or (free / np.abs(torque).max(), free)
     zero = free if calibration is None else 10 * largest_arcsec
     return np.column_stack([np.full(len(torque), zero), compliance * torque, gap * side])

@@ -17,6 +17,7 @@ from flexspline.pipeline.diagnosis.absurd_size import (
 )
 from flexspline.pipeline.diagnosis.measurement.columns import ReadColumn
 from flexspline.pipeline.diagnosis.measurement.errors import MeasurementError
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.record import EndPoints, Specimens, Sweep
 from flexspline.pipeline.diagnosis.measurement.units import (
     ANGLE,
@@ -163,7 +164,9 @@ def _suspect(column: ReadColumn | None, unit: str) -> UnitSuspect | None:
 
 def _whole(readings: np.ndarray) -> bool:
     """Whether all readings are whole numbers; those that went through a factor to ours, nearly."""
-    return bool(np.all(np.abs(readings - np.round(readings)) <= 1e-9 * np.abs(readings)))
+    return bool(
+        np.all(np.abs(readings - np.round(readings)) <= ROUNDING_OF_SUMS * np.abs(readings))
+    )
 
 
 def _beyond(ratio: float) -> bool:

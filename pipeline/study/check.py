@@ -9,11 +9,11 @@ from flexspline.geometry.errors import MISSING
 from flexspline.geometry.keys import has_table_of, location_of, value_at
 from flexspline.geometry.near_key import nearest_key
 from flexspline.geometry.schema import allowed, dotted, node_at
+from flexspline.pipeline.backlash import STD_KEY
 from flexspline.pipeline.study.figures import FIGURES, not_a_figure
 from flexspline.pipeline.study.schema import WORDS, Spread, VariedSpan
 from flexspline.pipeline.study.study import Study, StudyError, is_whole
 
-STD_KEY = "backlash_arcsec.std"
 SMALLEST_SPREAD = 1e-6
 """Of the value: no gauge tells a part in a million, and differences of K drown in rounding."""
 

@@ -12,6 +12,8 @@ import numpy as np
 from flexspline.pipeline.study.study import Study
 
 Values = Mapping[str, float]
+ROOT_ROUNDING = 1e-9
+"""Steps of an axis: 125 ** (1 / 3) is 4.999…, short by 1e-15, and no other root is as near."""
 
 
 class StudyPlan(Protocol):
@@ -65,7 +67,7 @@ def grid(study: Study) -> GridPlan:
     taken = int(np.prod([n for n in fixed.values() if n] or [1]))
     open_keys = [k for k, n in fixed.items() if not n]
     share = (budget / taken) ** (1 / len(open_keys)) if open_keys else 0.0
-    each = max(2, int(share + 1e-9))  # 125 ** (1 / 3) is 4.999…
+    each = max(2, int(share + ROOT_ROUNDING))
     axes: dict[str, list[float]] = {}
     for key, span in spans.items():
         if span.values is not None:

@@ -12,8 +12,9 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from flexspline.pipeline.process_id import parsed
 from flexspline.pipeline.study.claims import CLAIM, ROW, Claim, Claims, Row, Try
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from optuna import Study as Trials
     from optuna.distributions import BaseDistribution
     from optuna.storages import RDBStorage
+    from optuna.trial import Trial
     from sqlalchemy import Connection
 
 BEAT_S = 10.0
@@ -61,9 +63,10 @@ class TrialStore:
     owner: str
     _known: Claims = field(default_factory=Claims, init=False)
 
-    @property
+    @cached_property
     def _tables(self) -> TrialTables:
-        return TrialTables(self.storage, self.trials._study_id)
+        study = self.storage.get_study_id_from_name(self.trials.study_name)
+        return TrialTables(self.storage, study)
 
     def _read(self, connection: Connection) -> None:
         known = self._known
@@ -137,7 +140,7 @@ class TrialStore:
 
         self.trials.get_trials(deepcopy=False)  # Optuna's cache hears of the trial
         trial = Trial(self.trials, job.trial_id)
-        values = {key: trial._suggest(key, span) for key, span in over.items()}
+        values = {key: _sampled(trial, key, span) for key, span in over.items()}
         known = self._known.tries[job.slot][job.trial_id]
         self._known.add_try(replace(known, values=values))
         return replace(job, values=values)
@@ -207,6 +210,20 @@ class TrialStore:
             return process.fate == "gone"
         beat = self.notes().get(f"beat {owner}", 0.0)
         return bool(time.time() - beat > SILENT_S)
+
+
+def _sampled(trial: Trial, key: str, span: BaseDistribution) -> float:
+    """The sampler's value of a key, within one of the spans that studies have (`source.py`)."""
+    from optuna.distributions import CategoricalDistribution, FloatDistribution, IntDistribution
+
+    match span:
+        case CategoricalDistribution():
+            return cast(float, trial.suggest_categorical(key, span.choices))
+        case IntDistribution():
+            return trial.suggest_int(key, span.low, span.high)
+        case FloatDistribution():
+            return trial.suggest_float(key, span.low, span.high)
+    raise TypeError(f"no span of a study: {span}")
 
 
 def _attempt(tries: Mapping[int, Try] | None) -> int:

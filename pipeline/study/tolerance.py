@@ -122,7 +122,7 @@ def _input(design: Design, key: str, std: float, half: float | None) -> Scattere
 def _range(design: Design, key: str) -> tuple[float, float]:
     """What the design file allows at a key, and for the play where its model ends."""
     node = node_at(location_of(key), design.flexspline.kind)
-    low, high = float(node.get("minimum", 1e-9)), float(node.get("maximum", np.inf))
+    low, high = float(node["minimum"]), float(node["maximum"])
     if key == PLAY and design.bearing.bearing_play_model == "involute":
         high = min(high, design.gear.bearing_play_limit_um)
     return low, high

@@ -17,8 +17,8 @@ from flexspline.results.diagnosis.words import title_of
 
 CONFIRMS = {
     YOUNGS_MODULUS: "a tensile or resonance test of the same bar gives E directly",
-    SERIES: "clamp a solid dummy in the same fixture: what twists is the fixture",
-    LOAD_ZONE: "specimens with another ring width, which the lobes feel most",
+    SERIES: "clamp a solid dummy in the same fixture: any twist is then the fixture's",
+    LOAD_ZONE: "specimens with another ring width, as the lobes' effect depends on it most",
 }
 """What confirms a cause that specimens show."""
 
@@ -27,19 +27,19 @@ COMPARE = (
     "repeat the sweep ten times slower: "
 )
 OTHER_ORDER = (
-    "repeat the sweep at the same temperatures in another order, soaked, wave generator untouched: what "
-    "comes with time does not follow the temperature"
+    "repeat the sweep at the same temperatures in another order, soaked, wave generator untouched: an "
+    "effect of time does not follow the temperature"
 )
 SHOWS_STRUCTURE = {
-    "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; what "
-    "repeats belongs to the gear, and how it grows with the amplitude says what it may be",
+    "torque_Nm": "sweep to a quarter, half and all of the largest torque, each twice without a pause; an "
+    "effect that repeats belongs to the gear, and its growth with the amplitude indicates the cause",
     "torque_amplitude": "sweep to a quarter, half and all of the largest torque, each twice",
     "torque_rate": "repeat the sweep ten times slower and ten times faster",
     "temperature_C": OTHER_ORDER,
     "input_angle_deg": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
     "time_s": "hold a constant torque as long as the whole record took, then repeat the first cycle",
     "row": "record time with every row, and repeat the sweep at once and after a pause as long as the "
-    "record: the pause changes what comes with time, and leaves what comes with the cycles",
+    "record: the pause changes an effect of time, and not an effect of the number of cycles",
     "cycle": "if the gear was clamped anew between cycles, give each clamp a name in a column unit and "
     "diagnose again; else run twenty further cycles at constant temperature, touching nothing",
     "unit": "measure the units again in another order, each clamped anew",
@@ -58,9 +58,9 @@ DOING: Mapping[DoingKind, str] = {
     "larger_torque": "sweep to a quarter, half, and one and a half times the largest torque",
     "other_positions": "repeat the sweep at seven wave generator angles 50° apart, in mixed order",
     "more_cycles": f"run {MORE_CYCLES} further cycles at constant temperature and repeat the sweep",
-    "compare_channels": f"{COMPARE}what a late reading does is then a tenth as large",
-    "compare_channels_and_cell": f"{COMPARE}what a late reading opens is then a tenth as wide, what a "
-    "hysteresis of the torque cell opens as wide as before",
+    "compare_channels": f"{COMPARE}the effect of a late reading is then a tenth as large",
+    "compare_channels_and_cell": f"{COMPARE}the loop of a late reading is then a tenth as wide, that of "
+    "a torque cell with hysteresis as wide as before",
     "weigh_torque_cell": "load and unload the torque cell against known weights, and compare its reading "
     "both ways",
     "read_torque_zero": "take the load off the torque cell before and after the record, and every few "
@@ -121,7 +121,7 @@ def _of_end_points(after: NextMeasurement) -> str:
     reveals = known_causes()[after.causes[0]].reveals
     here = f"on unit {after.unit}: {reveals if after.doing is None else doing_words(after.doing)}"
     if after.aim != "separate":
-        return f"{here}; it would confirm or clear the suspicion of {titles}"
+        return f"{here}; it would confirm or rule out {titles}"
     apart = (
         "the two of them that are nearest to each other then differ by "
         f"{after.separation:.0f} times the noise"

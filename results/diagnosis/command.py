@@ -67,12 +67,6 @@ def in_order(file: Path, other: Path, words: str) -> None:
         raise typer.Exit(REFUSED)
 
 
-def register(app: typer.Typer) -> None:
-    """Add the commands of this room."""
-    app.command()(diagnose)
-    app.command()(predict)
-
-
 def diagnose(
     design: DesignFile,
     measured: MeasuredFile,

@@ -91,7 +91,7 @@ def calibrated_sentences(
     if calibration.gap_arcsec.value < 0:
         said += " No gap is negative: this model is not that of the record, or a reading is wrong."
     if outcome.unexplained:
-        said += " An effect is unexplained and may have moved them by more than ± says."
+        said += " An effect is unexplained; it may have changed them by more than the stated ±."
     return said
 
 

@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.model.model_file import read_model_file
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.results.atomic import write_bytes
 from flexspline.results.diagnosis.model_notes import model_warnings
+from flexspline.results.diagnosis.prediction_words import prediction_warnings
 from flexspline.results.file_names import PREDICTION
 from flexspline.results.records import as_json
 
@@ -39,12 +40,10 @@ def predict_and_write(
     """
     file = read_model_file(model)
     predicted = predict_file(file, torque, counts_per_turn)
-    for line in (*model_warnings(file, design), *predicted.warnings):
+    for line in (*model_warnings(file, design), *prediction_warnings(predicted)):
         tell(f"warning: {one_line(line)}")
     if predicted.angle_std_arcsec is None:
-        tell(
-            "note: no deviations: only a model of a torque sweep says what its angles may be off by"
-        )
+        tell("note: no standard deviations: only a model of a torque sweep contains them")
     angle, std = predicted.angle_arcsec, predicted.angle_std_arcsec
     added = {COLUMN: angle} | ({STD_COLUMN: std} if std is not None else {})
     text = with_columns(torque, added, predicted.read_as.decimal_mark)

@@ -84,7 +84,7 @@ UNRECORDED = {
     "temperature_C": "a gap that shrinks as the gear warms within each load (temperature)",
     "input_angle_deg": "a wave generator that turns with the load (its angle)",
 }
-"""What an honest gear or rig may do that gives backward loops, by the channel that would show it."""
+"""What a gear or rig without faults may do that gives backward loops, by the channel that would show it."""
 
 
 def structure_words(unexplained: Unexplained) -> str:
@@ -103,7 +103,7 @@ def words_of(structure: Structure, channel: str) -> str:
             return (
                 f"the output slips: each time torque passes {percent(LOADED_SHARE)} of its largest value and "
                 f"comes back, the angle has gone on by {structure.way_arcsec:.0f} arcsec, "
-                f"{structure.times:.0f} times what springs there; a lock, a clamp or a friction joint "
+                f"{structure.times:.0f} times the elastic twist there; a lock, a clamp or a friction joint "
                 "gives way"
             )
         case FarSlope():
@@ -113,9 +113,9 @@ def words_of(structure: Structure, channel: str) -> str:
             return f"the best explanation needs a gap of {gap}, which no gear has"
         case MissedLevel():
             return (
-                f"what was found does not hold at {left_out_words(structure.held_out)}: learnt on the other "
-                f"rows it misses these by {structure.with_causes_arcsec:.3g} arcsec rms, the simulation "
-                f"without it by {structure.without_arcsec:.3g}"
+                f"the causes found do not predict {left_out_words(structure.held_out)}: fitted to the other "
+                f"rows, their error there is {structure.with_causes_arcsec:.3g} arcsec rms; the simulation "
+                f"alone {structure.without_arcsec:.3g}"
             )
         case BackwardLoop():
             return _backward(structure)
@@ -142,8 +142,8 @@ def _backward(loop: BackwardLoop) -> str:
     )  # fmt: skip
     said = (
         f"{which} backwards: in the mean of {loop.loops} the angle is {loop.width_arcsec:.3g} arcsec lower "
-        "while torque falls than while it rises, so that the gear would give energy, which none does; most "
-        f"likely {_likely(loop)}"
+        "while torque falls than while it rises, so that the loop would release energy, which a passive gear "
+        f"cannot; most likely {_likely(loop)}"
     )
     others = " and ".join(UNRECORDED[channel] for channel in loop.unrecorded)
     return f"{said}. Not recorded, and able to look like it: {others}" if others else said

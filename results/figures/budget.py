@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from flexspline.pipeline.backlash import TERMS, Backlash
+from flexspline.pipeline.backlash import STD_KEY, TERMS, Backlash
 from flexspline.pipeline.diagnosis.model.extended_backlash import ExtendedBacklash
 from flexspline.results.doubt import NOT_STATED, SOURCES
 from flexspline.results.figures.words import angle_title, fit, wrapped
@@ -64,7 +64,7 @@ def write_budget(path: Path, backlash: Backlash, extended: ExtendedBacklash | No
         deep = 0.66 * len(SOURCES)
         sources = figure.add_axes((0.855, 1 - (ABOVE + deep) / height, 0.07, deep / height))
         _sources(sources, backlash)
-        unit = quantity("backlash_arcsec.std").unit
+        unit = quantity(STD_KEY).unit
         figure.text(
             0.75,
             1 - 0.27 / height,
@@ -162,7 +162,7 @@ def _figures(axes: Axes, rows: Sequence[BudgetBar]) -> None:
 def _sources(axes: Axes, backlash: Backlash) -> None:
     """A bar for each source of doubt; which is not stated says so."""
     stds = backlash.std_by_source_arcsec
-    entry = quantity("backlash_arcsec.std")
+    entry = quantity(STD_KEY)
     said = []
     for row, source in enumerate(SOURCES):
         axes.barh(row, stds.get(source, 0.0), height=0.55, color=ACCENT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexspline.results.doubt import spread_sentence
+from flexspline.results.file_names import BUDGET, TORQUE_ANGLE
 from flexspline.results.quantities import quantity
 from flexspline.results.report import tables
 from flexspline.results.report.content import ReportContent
@@ -94,5 +95,5 @@ def budget(content: ReportContent, roomy: bool) -> Iterable[Block]:
         + (", the total with one standard deviation, and its sources." if stated else ".")
     )
     line = "The torque–angle line of the model. Within the gap the output lies anywhere."
-    yield from shown(content, roomy, Picture("backlash_budget", terms + plain(shown_below), 62))
-    yield from shown(content, roomy, Picture("torque_angle", line, 54))
+    yield from shown(content, roomy, Picture(BUDGET, terms + plain(shown_below), 62))
+    yield from shown(content, roomy, Picture(TORQUE_ANGLE, line, 54))

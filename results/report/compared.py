@@ -104,7 +104,7 @@ def _what_counts(p: Prediction) -> str:
         if not std
     ]
     if not missing:
-        return "A stiffness or gap that differs within these limits is no finding."
+        return "A stiffness or gap that differs within these limits is not a finding."
     return f"No uncertainty of {' or '.join(missing)} is stated, so any difference beyond the noise counts."
 
 

@@ -12,9 +12,7 @@ from flexspline.geometry.schema import key_words
 from flexspline.results.doubt import NOT_STATED
 from flexspline.results.quantities import quantity
 from flexspline.results.report.document import Block, Facts, Heading, Paragraph
-from flexspline.results.report.spans import Words, bold, plain
-
-NBSP = "\N{NO-BREAK SPACE}"
+from flexspline.results.report.spans import NBSP, Words, bold, plain
 
 
 def dimensions(design: Design) -> Iterable[Block]:

@@ -130,7 +130,7 @@ def _ellipse(content: ReportContent) -> str:
 
 
 def _linear(content: ReportContent, limit: LinearLimit) -> str:
-    """Up to which torque the figures mean anything."""
+    """Up to which torque the figures are valid."""
     torque = content.design.load.torque_Nm
     least = quantity("linear_torque_limit_Nm").with_unit(limit.torque_Nm)
     return (

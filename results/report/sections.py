@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
+from flexspline.results.file_names import CONVERGENCE
 from flexspline.results.quantities import bounds_kind, quantity
 from flexspline.results.report import limits, tables
 from flexspline.results.report.budget import budget
@@ -26,7 +27,17 @@ from flexspline.results.report.document import (
 )
 from flexspline.results.report.issued import issued
 from flexspline.results.report.picture_blocks import shown
-from flexspline.results.report.spans import Words, alarm, bold, note, plain, ref, symbol, worded
+from flexspline.results.report.spans import (
+    NBSP,
+    Words,
+    alarm,
+    bold,
+    note,
+    plain,
+    ref,
+    symbol,
+    worded,
+)
 from flexspline.results.report.totals import totals_and_terms
 from flexspline.results.report.whole_gear import whole_gear
 
@@ -34,7 +45,6 @@ ROOMY = 1200
 """Letters of free text (names, warnings, stages) up to which sections begin on new pages: beyond,
 they follow each other and the report stays within nine pages."""
 GUARANTEED = bounds_kind(True)
-NBSP = "\N{NO-BREAK SPACE}"
 
 
 def run_document(content: ReportContent) -> Document:
@@ -224,7 +234,7 @@ def _solver(content: ReportContent, roomy: bool) -> Iterable[Block]:
             worded("K_b and K_e were solved on one mesh each, so there is no convergence to show.")
         )
     convergence = "Stiffness against the number of unknowns, as difference from the value reported."
-    yield from shown(content, roomy, Picture("convergence", convergence, 88))
+    yield from shown(content, roomy, Picture(CONVERGENCE, convergence, 88))
     stages = content.stage_seconds or {}
     if stages:
         each = ", ".join(f"{name} {s:.1f} s" for name, s in stages.items())

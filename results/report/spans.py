@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
+NBSP = "\N{NO-BREAK SPACE}"
+"""Between a number and its unit: no line ends there."""
 Style = Literal["", "bold", "symbol", "note", "code", "break", "ref", "alarm"]
 
 

@@ -20,12 +20,6 @@ StudyPath = Annotated[
 NO_PARQUET = 'no study.parquet beside study.csv: pip install "flexspline[parquet]" for that'
 
 
-def register(app: typer.Typer) -> None:
-    """Add the commands of this room."""
-    app.command()(study)
-    app.command()(sensitivity)
-
-
 def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
     """Sweep, optimisation or tolerance analysis; can be resumed."""
     with answered(file, RESUMES):

@@ -45,7 +45,7 @@ def scatter_section(s: Scatter) -> Iterable[Block]:
 def source_words(s: Scatter) -> str:
     """Where indices come from and how well they are known, or why there are none."""
     if s.shares is None:
-        return "No input changes it, so there is nothing to share out."
+        return "No input changes it, so there are no shares."
     explained = s.shares.explained
     if s.surface and explained is not None:
         missed = 100 * (1 - explained)

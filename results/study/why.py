@@ -79,8 +79,8 @@ def disagreement(check: Check) -> str:
     """Why the fast and the solid model may differ by more than they should."""
     if check.fast_bounds and check.solid_bounds:
         return (
-            "they disagree beyond their bounds; the fast model knows the shaft's holes only as the nominal "
-            "design's"
+            "they disagree beyond their bounds; the fast model has the effect of the shaft's holes from "
+            "the nominal design"
         )
     return (
         f"they differ by more than {100 * STRESS_SHARE:g} %; without bounds of either: the fast model's "

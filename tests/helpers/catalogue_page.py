@@ -64,20 +64,20 @@ Soft wind-up with one shape for each ratio class, and T1 in proportion to size³
 |---|---|---|---|---|
 {shapes}
 
-Held out: each of {gain.held_out.each} sizes in turn, all its ratio classes at once. The size left out lends
-its straight stiffness (all that a simulation knows) and nothing else. Rms error of twist, over all
+Held out: each of {gain.held_out.each} sizes in turn, all its ratio classes at once. Of the size left out
+only its straight stiffness is used, as a simulation has no more. Rms error of twist, over all
 rows: straight line {gain.rmse_calibrated:.1f} %, soft wind-up {gain.rmse_after:.1f} %, rounding of the \
 printed K {gain.noise_floor:.1f} %; {100 * above:.0f} % of the
 squared error above the rounding is gone. The worst is size {worst.row.size} at ratio \
-{worst.row.ratio_class}, {worst.soft_pct:.1f} %: small sizes keep to
-the size³ line least.
+{worst.row.ratio_class}, {worst.soft_pct:.1f} %: small sizes deviate
+most from the size³ line.
 
 | size | ratio | straight K [N·m/rad] | too stiff below T1 [%] | line [%] | soft [%] | rounding [%] | \
-booked as gap [′] | lost motion allowed [′] |
+counted as gap [′] | lost motion allowed [′] |
 |---|---|---|---|---|---|---|---|---|
 {rows}
 
-## A straight line books wind-up as clearance
+## A straight line counts wind-up as clearance
 
 A line with the stiffness K3, drawn through the curve above T2, does not pass through 0: its two branches
 leave a gap, which the four-term sum would call clearance. For {len(refuted)} of the {len(limited)} rows \

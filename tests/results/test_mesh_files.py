@@ -22,6 +22,7 @@ from flexspline.fea.types import NMM_PER_NM, Elastic
 from flexspline.geometry.errors import DesignError
 from flexspline.results.cli import app
 from flexspline.results.export import ENDINGS
+from flexspline.results.file_names import FORMATS
 from flexspline.results.mesh_files import WRITERS, PatchedMesh, chosen_formats, write_mesh
 
 VOLUME = pi * (OUTER**2 - INNER**2) * LENGTH
@@ -213,6 +214,10 @@ def test_abaqus_elements_are_of_the_kind_that_calculix_knows(
     write_mesh(whole, tmp_path / "flexspline.inp")
     text = (tmp_path / "flexspline.inp").read_text(encoding="ascii")
     assert re.findall(r"\*ELEMENT, TYPE=(.*)", text) == ["C3D10"]
+
+
+def test_each_format_that_is_named_has_a_writer() -> None:
+    assert tuple(WRITERS) == FORMATS
 
 
 def test_formats_may_stand_in_one_word_or_in_several() -> None:

@@ -203,9 +203,6 @@ class FrictionHysteresis(Cause):
         each = -r * np.log1p(-level)
         return each, each / each.sum()
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
-        return self.spread_share * rig.scale_arcsec
-
     def at_teeth(self, elements: Sequence[Element], history: History) -> History:
         carried = np.zeros(len(history))
         for e in elements:

@@ -31,8 +31,5 @@ class KinematicError(PeriodicShapes, Cause):
     def columns(self, shape: Shape, history: History) -> np.ndarray:
         return harmonic(shape, history)
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
-        return self.spread_share * rig.scale_arcsec
-
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return largest_amplitude(elements)

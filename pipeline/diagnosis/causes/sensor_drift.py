@@ -71,8 +71,5 @@ class SensorDrift(Cause):
             grown = (t / shape["duration_s"]) ** shape["exponent"]
         return grown[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
-        return self.spread_share * rig.scale_arcsec
-
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         return sum(e.amplitudes[0] for e in elements) / (rig.duration_s / SECONDS_PER_HOUR)

@@ -106,12 +106,6 @@ class ThermalClearance(Cause):
             temperature = temperature + off * _still_there(history, shape["lag_s"], stages)
         return ((temperature - REFERENCE_C) * history.sign / 2)[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
-        return self.spread_share * rig.scale_arcsec
-
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        return sum(e.amplitudes[0] for e in elements)
-
 
 def _still_there(history: History, lag_s: float, stages: int) -> np.ndarray:
     """(n,) share of what housing and gear were off at each unit's first row that is left of the gear's.

@@ -39,8 +39,5 @@ class TorqueOffset(Cause):
     def spread(self, shape: Shape, rig: Rig) -> float:
         return self.spread_share * rig.torque_Nm
 
-    def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
-        return sum(e.amplitudes[0] for e in elements)
-
     def corrected(self, elements: Sequence[Element], history: History) -> History:
         return history.shifted(sum(e.amplitudes[0] for e in elements))

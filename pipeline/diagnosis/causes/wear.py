@@ -68,9 +68,6 @@ class Wear(Cause):
             cycle = cycle + within_cycle(history)
         return (self._growth(shape, cycle) * history.sign / 2)[:, None]
 
-    def spread(self, shape: Shape, rig: Rig) -> float:
-        return self.spread_share * rig.scale_arcsec
-
     def magnitude(self, elements: Sequence[Element], rig: Rig) -> float:
         """Growth over the record, on the law's own clock, per cycle elapsed."""
         total = 0.0

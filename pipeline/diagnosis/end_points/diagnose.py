@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.geometry.design import Design
-from flexspline.pipeline.diagnosis.decision import Decision
+from flexspline.pipeline.diagnosis.decision import CONSISTENT
 from flexspline.pipeline.diagnosis.end_points.decide import NAMING_NATS, decide
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.evidence import UnitDeviations, unit_evidence
@@ -65,7 +65,7 @@ def diagnose_end_points(
     suspects = [raced.index(names[u]) for u in furthest[:SUSPECTS]]
     hypotheses = race(some, rig, racing, suspects)
     best = next(h for h in hypotheses if h.causes)
-    decision = Decision("consistent")
+    decision = CONSISTENT
     plans: tuple[PlanSeparation, ...] = ()
     if best.score > NAMING_NATS or not all(u.within for u in units):
         beyond = [u for u in units if not u.within]

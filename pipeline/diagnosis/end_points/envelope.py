@@ -16,6 +16,7 @@ from flexspline.pipeline.backlash import (
     clearance_angle,
     play_clearance,
 )
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.play_spread import play_distribution
 
 ENVELOPE_SIGMAS = 6.0
@@ -114,7 +115,7 @@ class Envelope:
         j, c = design.gear.flank_clearance_um, design.bearing.radial_clearance_um
         off = total_arcsec - self.total_arcsec
         if self.straight_std_arcsec == 0:
-            return Explanation(j, c, 0.0 if abs(off) < 1e-9 else inf)
+            return Explanation(j, c, 0.0 if abs(off) < ROUNDING_ARCSEC else inf)
         rest = off - self.play_arcsec
         steps = np.zeros_like(rest)
         if doubt.radial_clearance_um > 0:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-FINEST_ARCSEC = 1e-4
-"""Readings that differ by less differ by the digits of a conversion: no encoder is finer."""
+ONE_READING_ARCSEC = 1e-4
+"""Readings that differ by less are one, written after a conversion of units: steps of encoders are larger."""
 ROUNDING_RATIO = 12.0
 """A step's square over the variance of what is rounded to it."""
 
@@ -26,7 +26,7 @@ def undithered(variance: float, step: float) -> float:
 
 def encoder_step(angle_arcsec: np.ndarray) -> float:
     """Least difference between two readings [arcsec]: an encoder's readings jump with the motion too."""
-    apart = np.diff(np.unique(np.round(angle_arcsec / FINEST_ARCSEC))) * FINEST_ARCSEC
+    apart = np.diff(np.unique(np.round(angle_arcsec / ONE_READING_ARCSEC))) * ONE_READING_ARCSEC
     return float(apart.min()) if len(apart) else 0.0
 
 

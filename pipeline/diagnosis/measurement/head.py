@@ -12,6 +12,10 @@ from flexspline.pipeline.diagnosis.measurement.units import QUANTITIES
 
 HEAD_LINES = 300
 """Lines in which the head is looked for: programs write some 50 above it, one for each channel the most."""
+A_UNIT, SURE_NAME = 0.5, 1.0
+"""What a cell is worth as part of a head: a unit alone is half of a sure name."""
+OUR_NAME = A_UNIT + SURE_NAME
+"""A name as this program writes it says both."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ def head_of(count: int, split: Split, separators: tuple[str, ...]) -> Head:
             below = split(i + 1, separator) if i + 1 < count else []
             units = below if _are_units(cells, below) else []
             score = sum(_worth(with_unit(*pair)) for pair in paired(cells, units))
-            if score >= max(best.score, 0.5):
+            if score >= max(best.score, A_UNIT):
                 # of equals in one line the first separator stays
                 if score == best.score and best.at == i:
                     continue
@@ -68,8 +72,8 @@ def _worth(head: str) -> float:
     if name is None:
         return 0.0
     if name.ours:
-        return 1.5
-    return (1.0 if name.sure else 0.0) + (0.5 if name.unit else 0.0)
+        return OUR_NAME
+    return (SURE_NAME if name.sure else 0.0) + (A_UNIT if name.unit else 0.0)
 
 
 def _are_units(head: list[str], below: list[str]) -> bool:

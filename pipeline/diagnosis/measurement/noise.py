@@ -9,13 +9,15 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.optimize import nnls
 
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.recursion import first_order
 
 LONGEST_OF_CYCLE = 0.1
 """The noise's correlation time is kept below this share of a cycle: longer, and it eats drift and wear."""
 FINEST_ARCSEC = 0.005
-"""No instrument reads finer; a record without any noise would make every equation singular."""
+"""Least standard deviation of a reading: no instrument repeats better, and without any noise every equation
+would be singular."""
 LAGS = 24
 """Rows over which the residual's autocovariances are matched one by one; beyond, in groups."""
 LAGS_PER_MEMORY = 3.0
@@ -65,7 +67,7 @@ class Noise:
         moving-average root θ, are e_t = x_t − ρ x_{t−1} + θ e_{t−1}. Each stretch starts anew.
         """
         rho, total = self.memory, self.variance
-        if self.coloured <= 1e-9 * total:
+        if self.coloured <= ROUNDING_OF_SUMS * total:
             return values / np.sqrt(total)
         # (1 + θ²)s² and −θs² are the moving average's covariances at lags 0 and 1
         zero = total * (1 + rho**2) - 2 * rho * rho * self.coloured

@@ -12,13 +12,15 @@ from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 MOVING = 0.3
-"""and just before and after it at more than this."""
+"""Of the fast rate: slower rows lie in a hold or a turn, not on a ramp."""
 FEWEST_HOLD_ROWS = 3
 """Rows of a hold: two are a turn between samples."""
 CLEAR_SIGMAS = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
 CYCLE_PARTS = 60
-"""Of a cycle."""
+"""Of a cycle: steps over one of them say first how fast a ramp is."""
+FEWEST_STEPS = 20
+"""Of a unit's rows, side by side: the widest of them, over which rates are taken, leaves so many."""
 FAST_QUANTILE = 0.95
 """Quantile of rates, or of steps, of rows that move, that is a ramp's."""
 NOISE_OF_FAST = 2.33
@@ -44,7 +46,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     assert history.time_s is not None
     torque, t = history.torque_Nm[rows], history.time_s[rows]
     noise = torque_noise_Nm(history, rows)
-    widest = max(1, len(rows) // 20)
+    widest = max(1, len(rows) // FEWEST_STEPS)
     cycles = int(np.ptp(history.cycle[rows])) + 1
     coarse = max(1, len(rows) // (CYCLE_PARTS * cycles))
     part = np.searchsorted(losses(t, torque, coarse), np.arange(len(rows)))

@@ -15,6 +15,8 @@ from flexspline.pipeline.diagnosis.robust import MAD_PER_SIGMA
 SPIKE_SIGMAS, SPIKE_SHARE, SPIKE_STEPS = 10.0, 0.05, 4.0
 """What a torque must stand out by, to be no torque where the angle does not follow: in deviations of the rows
 about it, as a share of the largest torque, and in steps between the rows beside it."""
+LARGEST_QUANTILE = 0.95
+"""Of torques without sign, taken for the largest: spikes in up to a twentieth of the rows do not count."""
 FOLLOWS = 0.25
 """Of the twist that such a torque would make."""
 BESIDE = 3
@@ -29,7 +31,7 @@ def torque_spikes(torque: np.ndarray, angle: np.ndarray) -> np.ndarray:
         return np.zeros(len(torque), bool)
     off, moved = (values - _median_about(values) for values in (torque, angle))
     sigma = np.median(np.abs(off)) / MAD_PER_SIGMA
-    largest = np.quantile(np.abs(torque), 0.95)
+    largest = np.quantile(np.abs(torque), LARGEST_QUANTILE)
     far = np.abs(off) > np.maximum(SPIKE_SIGMAS * sigma, SPIKE_SHARE * largest)
     least_moved = FOLLOWS * _softness(torque, angle) * np.abs(off)
     spikes = far & (_largest_about(np.abs(moved)) < least_moved)

@@ -13,11 +13,13 @@ Factors = Mapping[str, float]
 
 
 ARCSEC_PER_TURN = 1_296_000.0
+"""360 · 60 · 60."""
 KGF_N = 9.80665
 """Standard gravity on 1 kg: NIST SP 811 (2008), appendix B.8."""
 LBF_N = 0.45359237 * KGF_N
 """The international pound, the same place."""
 INCH_M, FOOT_M = 0.0254, 0.3048
+"""Exact, the same place."""
 
 # what one of each unit is in ours: N·m, arcsec, s, °C, N·m/rad
 TORQUE: Factors = {

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from flexspline.geometry.ranges import Range
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.outliers import LONGEST_OUTLIER
 from flexspline.pipeline.diagnosis.measurement.runs import runs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable
@@ -160,7 +161,8 @@ def _against_another(table: MeasuredTable, rows: np.ndarray, name: str, other: s
     Or where both hold one number, which is the logger's code for a fault.
     """
     values, beside = table.numbers[name][rows], table.numbers[other][rows]
-    same = np.isclose(_as_written(table, name)[rows], _as_written(table, other)[rows], rtol=1e-9)
+    written, other_written = (_as_written(table, one)[rows] for one in (name, other))
+    same = np.isclose(written, other_written, rtol=ROUNDING_OF_SUMS)
 
     def judge(far: np.ndarray, others: np.ndarray) -> np.ndarray:
         low, high = beside[others].min(), beside[others].max()

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.table import LARGEST_NUMBER
 from flexspline.pipeline.diagnosis.model.doubt import Doubt, parameter_count
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
@@ -100,7 +101,10 @@ def _covariance(rows: list[Any], refuse: Refuse) -> np.ndarray:
             )
         found[i, : i + 1] = row
     found += np.tril(found, -1).T
-    if len(found) and np.linalg.eigvalsh(found)[0] < -1e-9 * np.abs(np.diag(found)).max():
+    if (
+        len(found)
+        and np.linalg.eigvalsh(found)[0] < -ROUNDING_OF_SUMS * np.abs(np.diag(found)).max()
+    ):
         raise refuse(
             "covariance in [doubt] must give every combination of parameters a variance above 0"
         )

@@ -1,65 +1,47 @@
-"""Which rows of a history lie beyond what a model's record spans, in words."""
+"""Which rows of a history lie beyond what a model's record spans."""
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.span import Ends, MeasuredSpan, span_of
-from flexspline.pipeline.diagnosis.timeless import PER_ROW, PER_SECOND
 
-LESS_CERTAIN = "the model is less certain there"
-SPANS = {
-    "torque_Nm": ("torque", " N·m"),
-    "temperature_C": ("temperature", " °C"),
-    "input_angle_deg": ("positions of the wave generator", "°"),
+LIMITS = {
+    "torque_amplitude": "smallest_loop_Nm",
+    "torque_rate": "rate_Nm_per_s",
+    "slow_torque_rate": "slowest_rate_Nm_per_s",
 }
-"""Channels with two ends: what they are called, and their unit."""
+"""Channels that are left at one end, with the field of a span that says it."""
+
+
+@dataclass(frozen=True)
+class RowsBeyond:
+    """Rows that lie outside of what a model's record spans, whose deviations are therefore wider.
+
+    Attributes
+    ----------
+    channel : in which they do. count : of the history's `rows`.
+    here, there : what this history spans, and the record: two ends, or the one limit of a channel of
+        `LIMITS`; None where it has none.
+    timed : whether the record had time; without, a row counts as a second.
+    """
+
+    channel: str
+    count: int
+    rows: int
+    here: Ends | float | None
+    there: Ends | float | None
+    timed: bool
 
 
 def extrapolated(
     deviation: Deviation, span: MeasuredSpan, history: History, timed: bool = True
-) -> list[str]:
-    """A sentence for each channel in which rows lie outside: what they are, this file, the record, and why
-    their deviations are wider.
-
-    `timed`: whether the model's record had time; without, a row counts as a second.
-    """
-    own, rate = span_of(history), PER_SECOND if timed else PER_ROW
-    return [
-        f"{count} of {len(history)} rows {_outside(channel, own, span, rate)}, so their deviations are wider"
-        for channel, count in deviation.rows_beyond.items()
-    ]
-
-
-def _outside(channel: str, own: MeasuredSpan, record: MeasuredSpan, rate: str) -> str:
-    if channel == "torque_amplitude":
-        here, there = (f"{s.smallest_loop_Nm or 0.0:.4g} N·m" for s in (own, record))
-        return (
-            f"are in cycles smaller than the smallest measured: the smallest of this file reaches {here}, "
-            f"that of the model's record {there}; the friction of small loops is less certain"
-        )
-    if channel == "torque_rate":
-        here, there = (f"{s.rate_Nm_per_s or 0.0:.3g} {rate}" for s in (own, record))
-        return (
-            f"are faster than measured: torque in this file moves by {here}, in the model's record by "
-            f"{there}; {LESS_CERTAIN}"
-        )
-    if channel == "slow_torque_rate":
-        here, there = (f"{s.slowest_rate_Nm_per_s or 0.0:.3g} {rate}" for s in (own, record))
-        return (
-            f"are slower than measured: torque in this file moves by as little as {here}, in the model's "
-            f"record by {there} or more; what of the model is rate dependence is less certain there"
-        )
-    words, unit = SPANS[channel]
-    here, there = (_ends(getattr(s, channel), unit) for s in (own, record))
-    return (
-        f"are beyond the measured {words}: this file spans {here}, the model's record {there}; "
-        f"{LESS_CERTAIN}"
-    )
-
-
-def _ends(ends: Ends | None, unit: str) -> str:
-    low, high = ends or (np.nan, np.nan)
-    return f"{low:.4g} to {high:.4g}{unit}"
+) -> Iterator[RowsBeyond]:
+    """The rows outside, by channel; `timed` as `RowsBeyond` has it."""
+    own = span_of(history)
+    for channel, count in deviation.rows_beyond.items():
+        here, there = (getattr(s, LIMITS.get(channel, channel)) for s in (own, span))
+        yield RowsBeyond(channel, count, len(history), here, there, timed)

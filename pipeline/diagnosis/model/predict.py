@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from flexspline.geometry.listed import listed
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.wear import WEAR
@@ -16,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.history_reading import NamedHisto
 from flexspline.pipeline.diagnosis.measurement.read_as import AS_OURS, ReadAs
 from flexspline.pipeline.diagnosis.measurement.table import MeasuredTable, read_table
 from flexspline.pipeline.diagnosis.model.doubt import deviation_of
-from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
+from flexspline.pipeline.diagnosis.model.extrapolation import RowsBeyond, extrapolated
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile
 from flexspline.pipeline.diagnosis.model.shape_check import channels_needed
 
@@ -30,14 +29,18 @@ class Predicted:
 
     Attributes
     ----------
-    angle_arcsec : (n,). warnings : what the reader should know about it, one line each.
-    angle_std_arcsec : (n,) one standard deviation of a reading from it; None where the model does not say.
+    angle_arcsec : (n,). angle_std_arcsec : (n,) one standard deviation of a reading from it; None where the
+        model does not say.
+    new_units : that the model's record does not have, so that their zero is taken as 0; "" for a file without
+        units.
+    beyond : rows outside of what the record spans, by channel.
     """
 
     angle_arcsec: np.ndarray
-    warnings: tuple[str, ...]
+    angle_std_arcsec: np.ndarray | None
+    new_units: tuple[str, ...]
+    beyond: tuple[RowsBeyond, ...]
     read_as: ReadAs = AS_OURS
-    angle_std_arcsec: np.ndarray | None = None
 
 
 def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = None) -> Predicted:
@@ -65,15 +68,12 @@ def predict_file(file: ModelFile, csv: Path, counts_per_turn: float | None = Non
                     None, f"column {channel} is missing; {cause_id} in {file.path.name} needs it"
                 )
     angle = file.model.angle_of(history, found.units) + _drifted_before(found, file, history)
-    strange = [u for u in found.units if u not in file.model.zeros_arcsec]
-    told = f"unit {listed(strange, 'units')}" if any(strange) else "a file without units"
-    warnings = [f"{told}: not in the model's record, so its zero is taken as 0"] if strange else []
+    new = tuple(u for u in found.units if u not in file.model.zeros_arcsec)
     if file.doubt is None:
-        return Predicted(angle, tuple(warnings), table.read_as)
+        return Predicted(angle, None, new, (), table.read_as)
     deviation = deviation_of(file.model, file.doubt, history, found.units)
-    timed = file.provenance.time_recorded
-    warnings += extrapolated(deviation, file.doubt.span, history, timed)
-    return Predicted(angle, tuple(warnings), table.read_as, deviation.std_arcsec)
+    beyond = extrapolated(deviation, file.doubt.span, history, timed=file.provenance.time_recorded)
+    return Predicted(angle, deviation.std_arcsec, new, tuple(beyond), table.read_as)
 
 
 def _drifted_before(found: NamedHistory, file: ModelFile, history: History) -> np.ndarray:

@@ -21,6 +21,7 @@ import numpy as np
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.decision import (
+    CONSISTENT,
     Decision,
     chance,
     decided,
@@ -54,7 +55,7 @@ def decide(race: SpecimenRace, torque_Nm: float) -> SpecimenExplanation:
     best = next((f for f in race.fits if f.named or f.unnamed), None)
     if best is None or best.score - race.null < NAMING_NATS:
         within = [f for f in race.fits if not f.named and not f.unnamed and len(f.terms) < 2]
-        return SpecimenExplanation(Decision("consistent"), within[0] if within else race.null_fit)
+        return SpecimenExplanation(CONSISTENT, within[0] if within else race.null_fit)
     best = _reduced(race, best)
     unexplained = [_unexplained(race, best, t) for t in best.unnamed]
     found = []

@@ -31,6 +31,11 @@ PAIR_NATS = -1.0
 """Log prior odds of a second term, 1 to 2.7."""
 MOST_ZONE = 1.2
 """Beyond the lobes there is nowhere to go; a fifth is allowed for noise."""
+LEAST_MODULUS_STD = 1e-9
+"""Of ln E, where the design states no doubt: the modulus then stays, and its column is still divided by a
+number above 0."""
+LEAST_INSIDE = 1e-9
+"""Probability, as 1 less what lies outside: doubles leave such a difference seven digits."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,7 @@ def _finding(term: SpecimenParameter, value: float) -> bool:
 
 def fit(data: SpecimenData, terms: Sequence[SpecimenParameter]) -> LaplaceFit:
     """Maximum of the posterior by Gauss-Newton, evidence by Laplace, noise levels summed over."""
-    spread = np.array([max(data.modulus_std, 1e-9), *(t.spread for t in terms)])
+    spread = np.array([max(data.modulus_std, LEAST_MODULUS_STD), *(t.spread for t in terms)])
     centre = np.array([0.0, *(t.centre for t in terms)])
     noises = data.noises
     noise = noises[len(noises) // 2][1]
@@ -169,7 +174,9 @@ def _where(term: SpecimenParameter, value: float, std: float) -> float:
             return float(beyond)
         inside = -np.expm1(min(float(beyond), 0.0))
         # far outside, what is left inside is the tail of the nearer limit
-        return log(inside) if inside > 1e-9 else float(log_ndtr((limit - abs(mean)) / width))
+        return (
+            log(inside) if inside > LEAST_INSIDE else float(log_ndtr((limit - abs(mean)) / width))
+        )
 
     return log_mass(value, std) - log_mass(0.0, term.spread)
 

@@ -20,6 +20,8 @@ SERIES_SPREAD = 0.3
 ZONES = ((1.0, 0.12, 0.35), (0.5, 0.35, 0.15))
 """Prior mean, standard deviation and odds of the load zone: where the simulation spreads the torque
 evenly, a real wave generator mostly takes it at its lobes, or part of the way."""
+LEAST_LOBES_SHARE = 0.01
+"""Of the flexspline's compliance: where the zone changes less, it cannot be told, as rigs repeat to 1 %."""
 WRONG_TOLERANCES = 3.0
 """A dimension that is wrong is off by some general tolerances."""
 TOLERANCE_SHARE = 0.5
@@ -93,7 +95,7 @@ def specimen_parameters(
         )
         for g in groups
     ]
-    if (np.abs(fe.lobes_share) > 0.01).any():
+    if (np.abs(fe.lobes_share) > LEAST_LOBES_SHARE).any():
         side = -1.0 if fe.base_zone else 1.0
         found += [
             SpecimenParameter(

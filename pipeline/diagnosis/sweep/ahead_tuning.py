@@ -21,6 +21,7 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep, true_history
 from flexspline.pipeline.diagnosis.sweep.regressors import NOISE_COLUMNS, base_columns
+from flexspline.pipeline.diagnosis.sweep.shape_tuning import ENOUGH_NATS
 from flexspline.pipeline.diagnosis.sweep.torque_offset import Crossing
 
 AHEAD_STEPS = 8
@@ -34,8 +35,6 @@ STIFFNESS_RATIO, RATIO_STD = 30.0, 1.5
 its log."""
 AHEAD_STEP_SHARES = (1.0, 0.35, 0.1)
 """Of a step: whole, and less where that loses."""
-AHEAD_ENOUGH_NATS = 0.05
-"""Nats: a step that gains less is the last."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ def tuned_ahead(
                 point, now = moved, then
                 break
         std = float(np.sqrt(covariance[0, 0]) * np.exp(point[0]))
-        if gained < AHEAD_ENOUGH_NATS:
+        if gained < ENOUGH_NATS:
             break
     return TunedAhead(trial.element(point), std)
 

@@ -135,15 +135,18 @@ class CrossingRows:
         In single precision, which takes a tenth of the time and is good to 1e-6 of a density.
         """
         in_noise = self.noise_arcsec * np.sqrt(2)
-        true = np.single(beyond / blur.ends)[..., None] - np.single(
-            blur.reading / blur.ends * _nodes
+        place, step, angle, nodes, weights = (
+            values.astype(np.float32)
+            for values in (
+                beyond / blur.ends,
+                half / in_noise,
+                left / in_noise,
+                blur.reading / blur.ends * _nodes,
+                _weights,
+            )
         )
-        off = (
-            np.single(half / in_noise)[..., None] * np.tanh(true)
-            - np.single(left / in_noise)[..., None]
-        )
-        likely = np.exp(-off * off) @ np.single(_weights)
-        return np.asarray(likely / (np.sqrt(np.pi) * in_noise))
+        off = step[..., None] * np.tanh(place[..., None] - nodes) - angle[..., None]
+        return np.asarray(np.exp(-off * off) @ weights / (np.sqrt(np.pi) * in_noise))
 
     def _near(self, mean: np.ndarray, left: np.ndarray) -> np.ndarray:
         """Normal density of angles about a mean."""

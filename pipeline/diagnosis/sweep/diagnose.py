@@ -4,6 +4,7 @@
 |---|---|
 | read the file (`../diagnose.py`) | `measurement/record.py`, `measurement/table.py` |
 | refuse an absurd size (`../diagnose.py`) | `../plausibility.py`, `size.py` |
+| refuse too few torques | `too_few_torques.py` |
 | shorten a long record | `measurement/thinning.py` |
 | choose rows, estimate the noise | `row_selection.py`, `measurement/noise.py`, `prepare.py` |
 | evaluate the shapes of all causes and the nuisance terms | `regressors.py`, `nuisance_terms.py` |
@@ -31,11 +32,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot
 
-import numpy as np
-
-from flexspline.pipeline.diagnosis.decision import Decision, decided
+from flexspline.pipeline.diagnosis.decision import Decision, decided, overruled
 from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
-from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.doubt import Doubt
@@ -47,7 +45,7 @@ from flexspline.pipeline.diagnosis.outcome import (
     Unexplained,
 )
 from flexspline.pipeline.diagnosis.prediction import Prediction
-from flexspline.pipeline.diagnosis.shortage import ConstantTorque, FewRows, FewTorques, Shortage
+from flexspline.pipeline.diagnosis.shortage import FewRows, Shortage
 from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
@@ -68,16 +66,10 @@ from flexspline.pipeline.diagnosis.sweep.residual_tests import (
     channel_tests,
 )
 from flexspline.pipeline.diagnosis.sweep.stuck import stuck_of
+from flexspline.pipeline.diagnosis.sweep.too_few_torques import too_few_torques
 from flexspline.pipeline.diagnosis.sweep.travel_scatter import scatter_along_travel
 from flexspline.pipeline.diagnosis.sweep.unexplained import made_by_rounding, unexplained_of
 from flexspline.pipeline.diagnosis.sweep.written_model import written_model
-
-CONSTANT_SHARE = 0.1
-"""Torque that varies by less than this share of its largest value is constant."""
-FEWEST_TORQUES = 4
-"""One more than zero, stiffness and gap."""
-FEWEST_CREEP_HOLDS = 3
-"""Up, back, and once more: what grows in one hold only may be drift."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +90,7 @@ def diagnose_sweep(
     sweep: Sweep, prediction: Prediction
 ) -> tuple[DiagnosisOutcome, SweepAnalysis | None]:
     """The verdict on a sweep and what stands behind it; None where there are too few data."""
-    shortage = _too_little(sweep)
+    shortage = too_few_torques(sweep)
     if shortage is not None:
         return _insufficient(shortage), None
     try:
@@ -139,18 +131,18 @@ def diagnose_sweep(
     )
     broken = broken_limit(sweep, explained, decision.causes)
     if broken is not None:
-        decision = Decision("unknown", (), (broken, *decision.unexplained))
+        decision = overruled(broken, beside=decision.unexplained)
     if decision.verdict == "consistent" and (slow := slow_noise(explained)) is not None:
-        decision = Decision("unknown", (), (slow,))
+        decision = overruled(slow)
     misread = _misread(prepared, explained, decision)
     if misread is not None:  # whatever else was found is what the race made of it
         late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
-        decision = Decision("unknown", (), (late,))
+        decision = overruled(late)
     ids = [c.id for c in decision.causes]
     gain = gain_of(explained, ids)
     levels = gains_at_levels(explained, ids) if ids else ()
     if (fails := refuted(levels)) is not None:
-        decision = Decision("unknown", decision.causes, (fails, *decision.unexplained))
+        decision = overruled(fails, decision.causes, decision.unexplained)
     outcome = DiagnosisOutcome(
         decision.verdict,
         decision.causes,
@@ -175,22 +167,6 @@ def _misread(
     if found is None and (decision.causes or decision.unexplained):
         return late_angle_of(prepared, explained)
     return found
-
-
-def _too_little(sweep: Sweep) -> Shortage | None:
-    torque = sweep.history.torque_Nm
-    largest = float(np.abs(torque).max())
-    if largest == 0 or np.ptp(torque) < CONSTANT_SHARE * largest:
-        return ConstantTorque()
-    different = len(np.unique(np.round(torque / largest, 2)))
-    if different < FEWEST_TORQUES and not _is_creep_test(sweep):
-        return FewTorques(FEWEST_TORQUES)
-    return None
-
-
-def _is_creep_test(sweep: Sweep) -> bool:
-    """Whether torque is stepped and held: few torques then show what goes on while they are held."""
-    return len(holds(sweep.history)) >= FEWEST_CREEP_HOLDS
 
 
 def _insufficient(shortage: Shortage) -> DiagnosisOutcome:

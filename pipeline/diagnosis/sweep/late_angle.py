@@ -49,6 +49,8 @@ COARSE_ROWS = 1000
 """Rows looked at meanwhile: enough to tell forms that lie three steps apart."""
 FINE_TIMES = 9
 """Times tried between two neighbours of the first search."""
+TO_NEIGHBOUR = 1.2
+"""From one time of the first search to the next they grow 1.19 times (`of_time`)."""
 LATE_KINDS = (FILTER, DELAY, BOTH)
 IMITATED = (
     HARDENING, FRICTION, RATE, CREEP, SERIES,
@@ -118,7 +120,7 @@ def _searched(crossed: CrossedRecord) -> _Searched:
 
 def _times_about(history: History, tried: Tried) -> list[Tried]:
     """Late angles between the neighbours of one that was tried."""
-    times = np.geomspace(tried.value / 1.2, tried.value * 1.2, FINE_TIMES)
+    times = np.geomspace(tried.value / TO_NEIGHBOUR, tried.value * TO_NEIGHBOUR, FINE_TIMES)
     return [late(history, tried.kind, time) for time in times.tolist()]
 
 

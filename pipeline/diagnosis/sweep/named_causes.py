@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-import numpy as np
-
 from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
-from flexspline.pipeline.diagnosis.decision import RIVAL_EVIDENCE, probability
+from flexspline.pipeline.diagnosis.decision import probability, probability_of_gain
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
@@ -45,7 +43,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         rivals = (*identified.rivals[c], *_other_rivals(explained, c, told, timed))
         chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
         if c == FRICTION and ahead is not None:
-            chance, nats = _probability(ahead.nats), ahead.nats
+            chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))
         found.append(NamedCause(
             c, chance, tuple(dict.fromkeys(rivals)), magnitude[c], std[c], known_causes()[c].unit, nats,
@@ -57,7 +55,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
         offset = known_causes()[OFFSET]
         slope = identified.fit.measured_rig().compliance
         found.append(NamedCause(
-            offset.id, _probability(explained.offset_nats), (),
+            offset.id, probability_of_gain(explained.offset_nats), (),
             explained.offset_Nm,
             hypot(explained.crossing.std_Nm, offset.shape_doubt * explained.offset_Nm),
             offset.unit, explained.offset_nats,
@@ -96,11 +94,6 @@ def _stands_for_springs(identified: Identification) -> bool:
     assert alone is not None
     assert beside is not None
     return alone.std < SLOPE_NARROWED_SHARE * stated and beside.std > SLOPE_OPEN_SHARE * stated
-
-
-def _probability(nats: float) -> float:
-    """Of a shifted torque reading, or friction ahead of the teeth: RIVAL_EVIDENCE nats count as even odds."""
-    return float(1 / (1 + np.exp(-nats + RIVAL_EVIDENCE)))
 
 
 def _std_ahead_arcsec(explained: ExplainedSweep) -> float:

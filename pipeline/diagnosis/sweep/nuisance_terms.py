@@ -47,6 +47,8 @@ NUISANCE_SPREAD, SLIGHT_SPREAD = 0.15, 0.015
 prior over what is known of it: at the usual size twenty would hide a scatter of a third of the noise."""
 NEW_SHARE = 0.25
 """Of a column's own size: one of which less is new beside torque and gap is no nuisance term."""
+LEAST_COLUMN = 1e-9
+"""Rms of a column about its mean, in its own unit (1, N·m, °C): below, it is constant but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ def nuisance_terms(rig: Rig, step: int | None = None) -> list[NuisanceTerm]:
                 rest = columns - taken[kind.less] @ (onto[kind.less] @ columns)
             was = np.sqrt(np.maximum(share @ columns**2 - (share @ columns) ** 2, 0.0))
             rms = np.sqrt(share @ rest**2)
-            good = rms > NEW_SHARE * np.maximum(was, 1e-9)
+            good = rms > NEW_SHARE * np.maximum(was, LEAST_COLUMN)
             if good.any():
                 found.append(
                     NuisanceTerm(

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.causes import known_causes
 from flexspline.pipeline.diagnosis.causes.cause import Cause, Element, Rig
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.measurement.crossing_band import crossing_band_Nm
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
@@ -102,7 +103,7 @@ def prepare(
     if int(kept.sum()) < wanted:
         raise TooFewRowsError(int(kept.sum()), wanted)
     rough = rough_residual(target, history, kept, per_cycle)
-    spread = SIGMA_PER_MAD * float(np.median(np.abs(rough))) + 1e-9
+    spread = SIGMA_PER_MAD * float(np.median(np.abs(rough))) + ROUNDING_ARCSEC
     outlier = np.zeros(len(kept), bool)
     outlier[kept] = isolated_outliers(rough, history.rows(kept), spread)
     good = ~outlier[kept]

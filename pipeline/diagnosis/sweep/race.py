@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.noise import Noise, estimated, stretches_of
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
@@ -235,7 +236,9 @@ def _with_noise(prepared: PreparedSweep, left: np.ndarray, used: int) -> Prepare
     inside = naming_rows(history, prepared.band_Nm)
     spread = SIGMA_PER_MAD * float(np.median(np.abs(left[inside & ~prepared.outlier])))
     outlier = np.zeros(len(left), bool)
-    outlier[inside] = isolated_outliers(left[inside], history.rows(inside), spread + 1e-9)
+    outlier[inside] = isolated_outliers(
+        left[inside], history.rows(inside), spread + ROUNDING_ARCSEC
+    )
     kept = inside & ~outlier
     noise = estimated(
         left[kept], stretches_of(history, kept), prepared.rows_per_cycle, used + OF_BASE

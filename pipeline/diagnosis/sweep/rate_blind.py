@@ -27,6 +27,8 @@ RATES_WITHIN = 1.9
 """Of the rates in a record at one rate, that nine tenths and one tenth of its travel are slower than. A
 sine's are 2.3 apart, and its loop by the rate is round, by friction pointed. A triangle's are as far apart
 as noise makes them, 1.6 at most: they are taken over steps of eight times the torque's."""
+SLOW_AND_FAST = (0.1, 0.9)
+"""Of the travel, slower than the two rates: starts and turns lie in the tenths beyond."""
 RATES_APART = 1.2
 """Of the quickest to the slowest cycle: a twist in proportion to the rate then differs by a fifth."""
 FOLLOWS_NATS = 3.0
@@ -96,7 +98,7 @@ def rates_apart_within(history: History) -> float:
     for rows in history.unit_slices:
         if (found := moving_rates(history, rows)) is None:
             continue
-        slow, fast = (by_travel(found.values, found.travel_Nm, share) for share in (0.1, 0.9))
+        slow, fast = (by_travel(found.values, found.travel_Nm, share) for share in SLOW_AND_FAST)
         apart.append(fast / slow if slow > 0 else 1.0)
     return max(apart)
 

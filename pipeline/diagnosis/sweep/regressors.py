@@ -165,6 +165,8 @@ NARROW = 2
 """Rows on each side over which the torque is taken as a parabola; `USUAL_ROWS` and `widest` beside it."""
 NOISE_COLUMNS = 3
 """Of the torque's noise: what parabolas over `NARROW`, `USUAL_ROWS` and `widest` rows take off."""
+LEAST_PRIOR = 1e-9
+"""Arcsec, or arcsec per N·m: what the design states without doubt is held, by a deviation above 0."""
 
 
 def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -188,4 +190,4 @@ def base_columns(rig: Rig, noise: np.ndarray | None = None) -> tuple[np.ndarray,
         [jitter(h, w) for w in (NARROW, USUAL_ROWS, widest(h))] if noise is None else list(noise.T)
     )
     prior += [p.compliance] * NOISE_COLUMNS
-    return np.column_stack(columns), np.maximum(np.array(prior), 1e-9)
+    return np.column_stack(columns), np.maximum(np.array(prior), LEAST_PRIOR)

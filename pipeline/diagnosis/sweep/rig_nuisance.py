@@ -9,7 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.cause import Rig
 from flexspline.pipeline.diagnosis.causes.operators import stops
 from flexspline.pipeline.diagnosis.measurement.corners import Corner, corners_of
-from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import hold_s
 from flexspline.pipeline.diagnosis.measurement.ramps import ramp_s
@@ -68,7 +68,7 @@ def _own(way: np.ndarray, load: np.ndarray) -> np.ndarray:
         [np.cumsum(np.where(load == k, steps, 0.0)) for k in range(int(load.max()) + 1)]
     )
     moved = np.abs(own).max(axis=0)
-    return to_one(own[:, moved > 1e-9 * moved.max()])
+    return to_one(own[:, moved > ROUNDING_OF_SUMS * moved.max()])
 
 
 def _loads(history: History, limit_Nm: float) -> np.ndarray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import rising
+from flexspline.pipeline.diagnosis.measurement.floors import FINEST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 
@@ -55,7 +56,7 @@ def turning(history: History) -> np.ndarray:
     What a row there shows depends on how reading and turning fall together: friction has not turned
     yet, a rate is half of what it was. A few rows of sparse records would decide between them.
     """
-    direction = rising(history, deadband_Nm(history) + 1e-9)
+    direction = rising(history, deadband_Nm(history) + FINEST_TORQUE_Nm)
     out = np.zeros(len(history), bool)
     for rows in history.unit_slices:
         turned = _turns(direction[rows])
@@ -79,7 +80,7 @@ def settling(history: History) -> np.ndarray:
 
 def before_far_turn(history: History) -> np.ndarray:
     """(n,) rows before a unit's torque first turns far from zero; all where it never does."""
-    direction = rising(history, deadband_Nm(history) + 1e-9)
+    direction = rising(history, deadband_Nm(history) + FINEST_TORQUE_Nm)
     far = SETTLED_AT * np.abs(history.torque_Nm).max()
     out = np.ones(len(history), bool)
     for rows in history.unit_slices:

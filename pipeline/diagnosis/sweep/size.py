@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.crossing_band import BAND_SHARE
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC, ROUNDING_OF_SUMS
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.outliers import isolated_outliers
 from flexspline.pipeline.diagnosis.prediction import Prediction
@@ -90,7 +91,7 @@ def sweep_size(
             return None
         (c, g), cov, residual = found
         scale = SIGMA_PER_MAD * float(np.median(np.abs(residual)))
-        good[good] = ~isolated_outliers(residual, h.rows(good), scale + 1e-9)
+        good[good] = ~isolated_outliers(residual, h.rows(good), scale + ROUNDING_ARCSEC)
     extent = float(np.ptp(h.torque_Nm))
     both = float(h.torque_Nm.min()) < 0 < float(h.torque_Nm.max())
     along = np.array([extent, 1.0 if both else 0.0])
@@ -125,9 +126,9 @@ def _line(
         columns[rows] -= own @ np.linalg.lstsq(own, columns[rows], rcond=None)[0]
     x, y = columns[:, :2], columns[:, 2]
     size = np.sqrt((x**2).sum(axis=0))
-    if len(y) < FEWEST_SIZE_ROWS or size[0] <= 1e-9 * np.abs(h.torque_Nm).max():
+    if len(y) < FEWEST_SIZE_ROWS or size[0] <= ROUNDING_OF_SUMS * np.abs(h.torque_Nm).max():
         return None
-    used = [0, 1] if size[1] > 1e-9 * np.sqrt(len(y)) else [0]
+    used = [0, 1] if size[1] > ROUNDING_OF_SUMS * np.sqrt(len(y)) else [0]
     inverse = np.linalg.pinv(x[:, used].T @ x[:, used])
     values = inverse @ (x[:, used].T @ y)
     residual = y - x[:, used] @ values

@@ -11,6 +11,7 @@ from flexspline.pipeline.diagnosis.causes.operators import (
     stops,
 )
 from flexspline.pipeline.diagnosis.causes.periodic import HARMONICS, KEYS, harmonic
+from flexspline.pipeline.diagnosis.measurement.floors import ROUNDING_ARCSEC
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.torque_jitter import less_jitter
 from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
@@ -127,7 +128,7 @@ def step_misfit(
     for _ in range(2):
         found = weighted_fit(basis, angle_arcsec[rows], weight)
         left = angle_arcsec[rows] - basis @ found
-        scale = SIGMA_PER_MAD * np.median(np.abs(left)) + 1e-9
+        scale = SIGMA_PER_MAD * np.median(np.abs(left)) + ROUNDING_ARCSEC
         weight = 1 / np.maximum(1, np.abs(left) / (ROBUST_DEVIATIONS * scale))
     if found[-1] < least * gap_arcsec:
         return np.inf

@@ -16,6 +16,8 @@ from flexspline.pipeline.gear_chain import Chain
 
 SECANT_STEPS = 4
 """Of the secant: curves are nearly linear in an input, and the last steps are below 1 % of the first."""
+SETTLED_SHARE = 0.01
+"""Of an input's first step: a smaller change ends the search, as the last of the four steps would be."""
 KNOTS = 16
 """Torques at which a curve is computed: denser where it is small and teeth come into mesh."""
 
@@ -60,7 +62,7 @@ def fitted(
             break
         step = float(weight @ (curve.angle_arcsec - angles)) / float(weight @ slope)
         trial = float(np.clip(value + step, one.low, one.high))
-        if abs(trial - value) < 0.01 * one.first:
+        if abs(trial - value) < SETTLED_SHARE * one.first:
             break
     information = float(((slope / curve.std_arcsec) ** 2).sum())
     std = information**-0.5 if information > 0 else float("inf")

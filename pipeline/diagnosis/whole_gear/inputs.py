@@ -7,8 +7,22 @@ from dataclasses import dataclass, replace
 
 from flexspline.fea.gear.model import GearModel
 from flexspline.geometry.design import Design
+from flexspline.geometry.fields import MM_PER_UM
 from flexspline.geometry.wave_generator import flexible_bearing
 from flexspline.pipeline.gear_chain import Chain
+
+MOST_PLAY_STROKES = 1.9
+"""Times the radial stroke w0: a play of 2 w0 takes the whole of it, and the gear turns freely."""
+STROKE_SHARES = (0.7, 1.3)
+"""Of the design's stroke: where the first steps of a search may lead; no drawing is off by so much."""
+SOFTEST_PAIR = 100.0
+"""Times the computed compliance of a pair of teeth."""
+STIFFEST_SERIES, SOFTEST_SERIES = -0.9, 1e3
+"""Of the shaft's compliance, added: one tenth of it is left, or a joint a thousand times softer comes in."""
+FIRST_FLANK_um, FIRST_PLAY_um, FIRST_STROKE_SHARE = 1.0, 2.0, 0.01
+"""First steps: what a maker's tolerance on clearance, play and stroke allows."""
+FIRST_PAIR, FIRST_SERIES = 3.0, 0.2
+"""First steps, times the pair's and the shaft's compliance. Chosen: both are less sure than lengths are."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +45,7 @@ def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
     a hundred times softer, a shaft ten times stiffer. First steps are what a maker's tolerance allows.
     """
     bearing, gear = flexible_bearing(design), design.gear
-    play = design.bearing.radial_clearance_um
+    play, w0 = design.bearing.radial_clearance_um, bearing.deflection
 
     def with_model(
         change: Callable[[GearModel, float], GearModel],
@@ -39,10 +53,12 @@ def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
         return lambda chain, value: replace(chain, model=change(chain.model, value))
 
     def flanks(model: GearModel, value: float) -> GearModel:
-        return model.with_gaps(replace(model.mesh, clearance=value / 1e3), model.wave_generator)
+        return model.with_gaps(
+            replace(model.mesh, clearance=value * MM_PER_UM), model.wave_generator
+        )
 
     def bearing_play(model: GearModel, value: float) -> GearModel:
-        return model.with_gaps(model.mesh, replace(model.wave_generator, play=value / 1e3))
+        return model.with_gaps(model.mesh, replace(model.wave_generator, play=value * MM_PER_UM))
 
     def stroke(model: GearModel, value: float) -> GearModel:
         return model.with_gaps(model.mesh, replace(model.wave_generator, deflection=value))
@@ -50,13 +66,14 @@ def inputs_of(design: Design, chain: Chain) -> tuple[GearInput, ...]:
     pair = chain.model.pair
     return (
         GearInput("gear.flank_clearance_um", "µm", gear.flank_clearance_um, 0.0,
-              1e3 * gear.module_mm, 1.0, with_model(flanks)),
+              gear.module_mm / MM_PER_UM, FIRST_FLANK_um, with_model(flanks)),
         GearInput("bearing.radial_clearance_um", "µm", play, 0.0,
-              1.9e3 * bearing.deflection, 2.0, with_model(bearing_play)),
-        GearInput("wave_generator.deflection_mm", "mm", bearing.deflection, 0.7 * bearing.deflection,
-              1.3 * bearing.deflection, 0.01 * bearing.deflection, with_model(stroke)),
-        GearInput("tooth pair compliance", "mm/N", pair, 0.0, 100 * pair, 3 * pair,
+              MOST_PLAY_STROKES * w0 / MM_PER_UM, FIRST_PLAY_um, with_model(bearing_play)),
+        GearInput("wave_generator.deflection_mm", "mm", w0, STROKE_SHARES[0] * w0,
+              STROKE_SHARES[1] * w0, FIRST_STROKE_SHARE * w0, with_model(stroke)),
+        GearInput("tooth pair compliance", "mm/N", pair, 0.0, SOFTEST_PAIR * pair, FIRST_PAIR * pair,
               with_model(lambda model, value: replace(model, pair=value))),
-        GearInput("compliance in series", "rad/(N·m)", 0.0, -0.9 * chain.shaft, 1e3 * chain.shaft,
-              0.2 * chain.shaft, lambda chain, value: replace(chain, holes=chain.holes + value)),
+        GearInput("compliance in series", "rad/(N·m)", 0.0, STIFFEST_SERIES * chain.shaft,
+              SOFTEST_SERIES * chain.shaft, FIRST_SERIES * chain.shaft,
+              lambda chain, value: replace(chain, holes=chain.holes + value)),
     )  # fmt: skip

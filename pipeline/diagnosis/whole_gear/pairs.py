@@ -24,6 +24,8 @@ PAIR_STEPS = 6
 """Of Gauss-Newton; the sixth step of made-up records is below a hundredth of a deviation."""
 PAIR_SETTLED_SHARE = 0.02
 """Of a first step: a smaller change of both inputs ends the search."""
+LEAST_ROOM = 1e-9
+"""In first steps: an input whose end is reached has no room, and `lsq_linear` wants ends that differ."""
 Curve = Callable[[Chain], np.ndarray]
 
 
@@ -115,7 +117,7 @@ def _bounded(
     unit = np.array([one.first for one in both])
     ends = np.array([(one.low, one.high) for one in both])
     room = (ends - at[:, None]) / unit[:, None]
-    room[:, 1] = np.maximum(room[:, 1], room[:, 0] + 1e-9)  # an end that is reached leaves a point
+    room[:, 1] = np.maximum(room[:, 1], room[:, 0] + LEAST_ROOM)
     found = lsq_linear(slope * unit / std[:, None], off / std, bounds=(room[:, 0], room[:, 1]))
     return found.x * unit, 2 * float(found.cost)
 

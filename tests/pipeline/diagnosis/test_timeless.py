@@ -15,6 +15,7 @@ from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.span import span_of
 from flexspline.results.diagnosis.advice import why
+from flexspline.results.diagnosis.prediction_words import beyond_words
 from flexspline.results.diagnosis.structure_words import structure_words
 from flexspline.results.diagnosis.summary import summary
 from flexspline.results.diagnosis.words import magnitude_words
@@ -99,5 +100,5 @@ def test_structure_lies_in_time_only_where_time_was_recorded(
 def test_what_lies_beyond_the_record_too(timed: bool, unit: str) -> None:
     record = sweep()
     far = Deviation(np.ones(len(record)), {"torque_rate": 3})
-    (line,) = extrapolated(far, span_of(record), record, timed)
+    (line,) = map(beyond_words, extrapolated(far, span_of(record), record, timed))
     assert line.count(unit) == 2

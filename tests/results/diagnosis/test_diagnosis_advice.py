@@ -35,7 +35,7 @@ def test_an_unexplained_effect_makes_the_calibrated_figures_doubtful() -> None:
         calibration, prediction, DiagnosisOutcome("unknown", unexplained=(left,))
     )
     assert calibrated_sentences(calibration, prediction, DiagnosisOutcome("consistent")) in unknown
-    assert "unexplained and may have moved them" in unknown
+    assert "unexplained; it may have changed them" in unknown
 
 
 def test_an_elastic_cause_makes_the_calibrated_compliance_a_part_of_the_slope() -> None:

@@ -205,7 +205,7 @@ def test_a_size_that_is_not_known_is_a_suspicion(monkeypatch: pytest.MonkeyPatch
     assert outcome.next_measurement.aim == "confirm"
     advice = why(outcome.next_measurement, "end_points")
     assert advice.startswith(f"on unit {outcome.next_measurement.unit}: ")
-    assert advice.endswith("the suspicion of stiffness that differs with the torque's direction")
+    assert advice.endswith("confirm or rule out stiffness that differs with the torque's direction")
 
 
 def only(points: EndPoints, torque: float) -> EndPoints:

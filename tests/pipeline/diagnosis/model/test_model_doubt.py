@@ -29,6 +29,7 @@ from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
 from flexspline.pipeline.diagnosis.model.span import MeasuredSpan, span_of
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
+from flexspline.results.diagnosis.prediction_words import beyond_words, prediction_warnings
 
 PLAIN = ExtendedModel(11.0, 70.0, {"": 5.0}, {}, {})
 ORIGIN = Provenance("flexspline", "gear", "m.csv", "0" * 64, "named", 3e4, 4e4, True, {}, {})
@@ -112,7 +113,7 @@ def test_half_of_what_a_rate_dependence_loses_where_torque_is_slower_than_measur
         found = deviation_of(model, of, history, ("",))
         assert found.std_arcsec[-1] == pytest.approx(expected, rel=0.01, abs=1e-9)
         assert found.rows_beyond == ({} if expected == 0 else {"slow_torque_rate": 401})
-        (*_, words) = ["", *extrapolated(found, of.span, history)]
+        (*_, words) = ["", *map(beyond_words, extrapolated(found, of.span, history))]
         assert ("are slower than measured" in words) == (expected > 0)
         assert deviation_of(PLAIN, of, history, ("",)).rows_beyond == {}  # it knows no rate
 
@@ -196,7 +197,7 @@ def test_a_prediction_says_which_rows_extrapolate(tmp_path: Path) -> None:
     path.write_text(model_text(PLAIN, ORIGIN, doubt=doubt()), encoding="utf-8")
     csv.write_text("torque_Nm\n" + "".join(f"{t / 10}\n" for t in range(31)))
     found = predict_file(read_model_file(path), csv)
-    (warning,) = found.warnings
+    (warning,) = prediction_warnings(found)
     assert warning == (
         "9 of 31 rows are beyond the measured torque: this file spans 0 to 3 N·m, the model's record "
         "-2 to 2 N·m; the model is less certain there, so their deviations are wider"
@@ -232,7 +233,7 @@ def test_friction_in_smaller_loops_than_any_measured_is_not_known() -> None:
 def test_small_loops_are_said_with_the_smallest_of_file_and_record() -> None:
     history = replace(RECORD, torque_Nm=0.5 * RECORD.torque_Nm)
     small = Deviation(np.ones(len(history)), {"torque_amplitude": 40})
-    (line,) = extrapolated(small, span_of(RECORD), history)
+    (line,) = map(beyond_words, extrapolated(small, span_of(RECORD), history))
     assert line == (
         f"40 of {len(history)} rows are in cycles smaller than the smallest measured: the smallest of this "
         "file reaches 1 N·m, that of the model's record 2 N·m; the friction of small loops is less certain, "

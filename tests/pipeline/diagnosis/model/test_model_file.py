@@ -16,6 +16,7 @@ from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.model_file import ModelFile, Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
+from flexspline.results.diagnosis.prediction_words import prediction_warnings
 
 FRICTION = shape_of("friction_hysteresis", threshold_Nm=0.3, spread=2, loaded=0, held=1, start=0)
 AHEAD = {"stiffness_ratio": 12.3, "deadband_Nm": 0.003}
@@ -158,7 +159,7 @@ def test_angles_by_hand(tmp_path: Path) -> None:
     csv.write_text("torque_Nmm\n1000\n-500\n0\n")
     predicted = predict_file(file, csv)
     np.testing.assert_allclose(predicted.angle_arcsec, [51.0, -35.5, 5.0], atol=1e-12)
-    assert predicted.warnings == ()
+    assert predicted.new_units == predicted.beyond == ()
 
 
 def test_a_missing_channel_is_named(tmp_path: Path) -> None:
@@ -217,5 +218,7 @@ def test_a_strange_unit_is_told(tmp_path: Path) -> None:
     file = read_model_file(written(tmp_path))
     csv = tmp_path / "t.csv"
     csv.write_text("torque_Nm,temperature_C,input_angle_deg,unit\n1,20,0,c\n")
-    (warning,) = predict_file(file, csv).warnings
+    predicted = predict_file(file, csv)
+    assert predicted.new_units == ("c",)
+    (warning,) = prediction_warnings(predicted)
     assert "unit c: not in the model's record" in warning

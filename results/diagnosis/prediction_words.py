@@ -1,0 +1,71 @@
+"""What a reader of a prediction should know: units and rows that the model's record does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.model.extrapolation import RowsBeyond
+from flexspline.pipeline.diagnosis.model.predict import Predicted
+from flexspline.pipeline.diagnosis.timeless import PER_ROW, PER_SECOND
+
+LESS_CERTAIN = "the model is less certain there"
+SPANS = {
+    "torque_Nm": ("torque", " N·m"),
+    "temperature_C": ("temperature", " °C"),
+    "input_angle_deg": ("positions of the wave generator", "°"),
+}
+"""Channels with two ends: what they are called, and their unit."""
+
+
+def prediction_warnings(predicted: Predicted) -> Iterator[str]:
+    """One line each."""
+    if new := predicted.new_units:
+        told = f"unit {listed(new, 'units')}" if any(new) else "a file without units"
+        yield f"{told}: not in the model's record, so its zero is taken as 0"
+    yield from map(beyond_words, predicted.beyond)
+
+
+def beyond_words(rows: RowsBeyond) -> str:
+    """What rows beyond the record are, what this file and the record span, and that deviations are wider."""
+    return f"{rows.count} of {rows.rows} rows {_outside(rows)}, so their deviations are wider"
+
+
+def _outside(rows: RowsBeyond) -> str:
+    rate = PER_SECOND if rows.timed else PER_ROW
+    if rows.channel == "torque_amplitude":
+        here, there = (f"{_limit(s):.4g} N·m" for s in (rows.here, rows.there))
+        return (
+            f"are in cycles smaller than the smallest measured: the smallest of this file reaches {here}, "
+            f"that of the model's record {there}; the friction of small loops is less certain"
+        )
+    if rows.channel == "torque_rate":
+        here, there = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
+        return (
+            f"are faster than measured: torque in this file moves by {here}, in the model's record by "
+            f"{there}; {LESS_CERTAIN}"
+        )
+    if rows.channel == "slow_torque_rate":
+        here, there = (f"{_limit(s):.3g} {rate}" for s in (rows.here, rows.there))
+        return (
+            f"are slower than measured: torque in this file moves by as little as {here}, in the model's "
+            f"record by {there} or more; what of the model is rate dependence is less certain there"
+        )
+    words, unit = SPANS[rows.channel]
+    here, there = (
+        f"{low:.4g} to {high:.4g}{unit}" for low, high in map(_ends, (rows.here, rows.there))
+    )
+    return (
+        f"are beyond the measured {words}: this file spans {here}, the model's record {there}; "
+        f"{LESS_CERTAIN}"
+    )
+
+
+def _limit(span: tuple[float, float] | float | None) -> float:
+    return 0.0 if span is None or isinstance(span, tuple) else span
+
+
+def _ends(span: tuple[float, float] | float | None) -> tuple[float, float]:
+    return span if isinstance(span, tuple) else (np.nan, np.nan)
