@@ -1,4 +1,4 @@
-"""What `import flexspline` offers of measured files: `diagnose` and `predict`, as the commands."""
+"""What `import flexspline` offers of measured files: `diagnose`, as the command."""
 
 from __future__ import annotations
 
