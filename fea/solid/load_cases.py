@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+from skfem import Functional, LinearForm
 
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
-from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
@@ -23,6 +23,11 @@ BALANCE_LIMIT = 1e-6
 HELD_LIMIT = 1e-4
 """Of the held face's torque after an iteration: it goes with the square root of the error's energy,
 3e-5 (1e-6 at most was measured)."""
+LOBE_DEGREE = 8
+"""Of quadrature: of the torque on the example's ring degree 4 lacks 2e-9, 6 lacks 1e-11, against 12."""
+FORCES = LinearForm(lambda v, w: w.traction * v, dtype=complex)
+TORQUE = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
+"""Of a tangential traction about z."""
 
 
 @dataclass(frozen=True)
@@ -91,21 +96,18 @@ def lobes(model: Model, supported: bool) -> Solved:
 
 
 def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:
-    """Nodal forces (n, 3) of a unit lobe traction [MPa] by wave, and its torque on the whole part [N·mm]."""
-    facets = model.mesh.on("mesh")
-    # of the torque on the example's ring degree 4 lacks 2e-9, 6 lacks 1e-11, against degree 12
-    rule = facet_points(model.mesh.nodes, facets, degree=8)
-    phi = np.arctan2(rule.points[..., 1], rule.points[..., 0])
+    """Nodal forces (n, 3) of a unit lobe traction [MPa] by wave, complex; its torque on the part [N·mm]."""
+    basis = model.space.facet_basis("mesh", LOBE_DEGREE)
+    x, y, _ = np.asarray(basis.global_coordinates())
+    phi = np.arctan2(y, x)
     repeats = repeats_of(model.mesh)
     loads = {}
     for wave in waves(range(0, 2 * repeats, 2), repeats):
-        traction = wave.of(_lobe_traction, phi)
-        forces = np.einsum("kq,qi->ki", traction * rule.weights, rule.values)
-        loads[wave] = np.zeros((len(model.mesh.nodes), 3), forces.dtype)
-        np.add.at(loads[wave][:, TANGENTIAL], facets, forces)
+        loads[wave] = np.zeros((len(model.mesh.nodes), 3), complex)
+        forces = FORCES.assemble(basis, traction=wave.of(_lobe_traction, phi))
+        loads[wave][model.space.node, TANGENTIAL] = forces
     mean = CyclicWave(0, repeats).of(_lobe_traction, phi)
-    radius = np.hypot(rule.points[..., 0], rule.points[..., 1])
-    return loads, float((mean * radius * rule.weights).sum()) * model.copies
+    return loads, float(TORQUE.assemble(basis, traction=mean)) * model.copies
 
 
 def _lobe_traction(phi: np.ndarray) -> np.ndarray:
