@@ -13,6 +13,7 @@ import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
 from flexspline.fea.axisymmetric.space import interpolated
+from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 
 RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
@@ -45,12 +46,9 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
     raw = stress(wave, material, s.basis, displacement)
     at_nodes = stress(wave, material, model.nodal_basis, displacement)
     weight = (s.weights * s.r).sum(axis=1)
-    nodes, share = s.dofs.ravel(), np.repeat(weight, 6)
-    sums = {k: np.bincount(nodes, share * part.ravel(), s.count) for k, part in at_nodes.items()}
-    shares = np.bincount(nodes, share, s.count)
+    local = np.stack(list(at_nodes.values()), axis=2)
     nodal = np.zeros((s.count, 6))
-    for k, total in sums.items():
-        nodal[:, k] = total / shares
+    nodal[:, list(at_nodes)] = nodal_average(s.count, len(at_nodes), [(s.dofs, weight, local)])
     misfit = {k: s.values(nodal[:, k]) - part for k, part in raw.items()}
     volume = wave.around * s.weights * s.r
     return Recovered(
