@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 Part = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Of some elements: their nodes (m, k), the weight of each (m,), and values (m, k, components) at its nodes."""
+"""Of some elements: nodes (m, k), the weight of each (m,), and its values (m, k, components) at its nodes."""
 
 
 def nodal_average(count: int, components: int, parts: Iterable[Part]) -> np.ndarray:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
-from flexspline.fea.axisymmetric.space import interpolated
 from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 
@@ -63,7 +62,8 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
     """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
     lam, mu, n = material.lam, material.mu, wave.n
     r = np.asarray(basis.global_coordinates())[0]
-    (u, v, w), ((u_r, v_r, w_r), (u_z, v_z, w_z)) = interpolated(basis, displacement)
+    u, v, w = (basis.interpolate(each) for each in displacement.reshape(-1, 3).T)
+    (u_r, u_z), (v_r, v_z), (w_r, w_z) = u.grad, v.grad, w.grad
     if wave.torsion:
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
     around = (u + n * v) / r

@@ -64,7 +64,7 @@ class Space:
 
     def values(self, field: np.ndarray) -> np.ndarray:
         """A field (count,) at the quadrature points (m, q), where no gradient is asked for."""
-        return field[self.dofs] @ shape_functions(self.basis.X)
+        return np.asarray(self.basis.interpolate(field))
 
 
 def curved(mesh: MeridianMesh, degree: int) -> Space:
@@ -147,17 +147,6 @@ def at_points(space: Space, at: np.ndarray) -> Any:
         basis.mesh, basis.elem, mapping=basis.mapping, quadrature=(at, weights), dofs=basis.dofs,
         disable_doflocs=True,
     )  # fmt: skip
-
-
-def interpolated(basis: Any, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As `basis.interpolate` of U, V, W (3·count,) at once: values (3, m, q), gradients (2, 3, m, q)."""
-    local = u.reshape(-1, 3)[basis.element_dofs]
-    values = np.stack([np.asarray(function) for (function,) in basis.basis])
-    gradients = np.stack([function.grad for (function,) in basis.basis])
-    return (
-        np.einsum("imc,imq->cmq", local, values),
-        np.einsum("imc,idmq->dcmq", local, gradients),
-    )
 
 
 def shape_functions(at: np.ndarray) -> np.ndarray:
