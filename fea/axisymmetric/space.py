@@ -149,12 +149,6 @@ def at_points(space: Space, at: np.ndarray) -> Any:
     )  # fmt: skip
 
 
-def shape_functions(at: np.ndarray) -> np.ndarray:
-    """P2 shape functions (6, q) at points (2, q) of the reference triangle."""
-    element = ElementTriP2()
-    return np.stack([element.lbasis(at, i)[0] for i in range(6)])
-
-
 def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
     """‖Ax - b‖/‖b‖."""
     return float(np.linalg.norm(matrix @ x - load) / np.linalg.norm(load))
