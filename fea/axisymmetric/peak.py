@@ -12,7 +12,7 @@ import numpy as np
 from flexspline.fea.axisymmetric.harmonics import HarmonicModel
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, edge_lengths
 from flexspline.fea.axisymmetric.recovery import mises_parts
-from flexspline.fea.axisymmetric.space import at_points
+from flexspline.fea.axisymmetric.space import shape_functions
 from flexspline.fea.stress_rule import Largest
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.outline import Meridian
@@ -76,10 +76,10 @@ def peak_stress(model: HarmonicModel, nodal: np.ndarray, exclusion_mm: float) ->
     StressError
         If no point is that far away.
     """
-    basis = at_points(model.space, _lattice())
-    lattice, rim = _Lattice(model, basis), _Rim(model)
+    s, values = model.space, _lattice_values()
+    lattice, rim = _Lattice(model), _Rim(model)
     acting = np.flatnonzero(nodal.any(axis=0))
-    parts = mises_parts({int(k): np.asarray(basis.interpolate(nodal[:, k])) for k in acting})
+    parts = mises_parts({int(k): nodal[s.dofs, k] @ values for k in acting})
     either = np.maximum(*parts)
 
     def search(distance_mm: float, at: np.ndarray, within_mm: float) -> _Found | None:
@@ -147,22 +147,22 @@ def _distance(places: np.ndarray, outline: Meridian) -> np.ndarray:
 
 
 @cache
-def _lattice() -> np.ndarray:
-    """Points (2, q) of the reference triangle."""
+def _lattice_values() -> np.ndarray:
+    """Shape functions (6, q) on the lattice."""
     i, j = np.meshgrid(np.arange(LATTICE_STEPS + 1), np.arange(LATTICE_STEPS + 1), indexing="ij")
     inside = i + j <= LATTICE_STEPS
-    return np.stack([i[inside], j[inside]]) / LATTICE_STEPS
+    return shape_functions(np.stack([i[inside], j[inside]]) / LATTICE_STEPS)
 
 
 class _Lattice:
     """The lattice points of all triangles, and how far they are from what is singular."""
 
-    def __init__(self, model: HarmonicModel, basis: Any) -> None:
+    def __init__(self, model: HarmonicModel) -> None:
         nodes = model.space.places[model.space.dofs]
         self._outline = model.mesh.outline
         self._corner = _distance(nodes[:, 0], self._outline)
         self._reach = BULGE * np.linalg.norm(nodes - nodes[:, :1], axis=2).max(axis=1)
-        self.places = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
+        self.places = np.matmul(_lattice_values().T, nodes)
 
     def counting(self, distance_mm: float) -> np.ndarray:
         """Mask (m, q) of the points at the distance or farther.
