@@ -13,7 +13,6 @@ from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, re
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
-from flexspline.fea.solid.solver import Solution
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM, TetMesh
@@ -32,21 +31,30 @@ TORQUE = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
 
 @dataclass(frozen=True)
 class Solved:
-    """A solved case: displacement (n, 3) Cartesian mm, and K where the case defines one.
-
-    `K_energy` and `K_reaction` are for the whole part, N·m/rad; 0 where the case has none.
-    """
+    """A solved case: displacement (n, 3) Cartesian mm."""
 
     mesh: TetMesh
     displacement: np.ndarray
-    K_energy: float
-    K_reaction: float
     residual: float
     dofs: int
     solver: SolverKind
 
 
-def torsion(model: Model, driven: str) -> Solved:
+@dataclass(frozen=True)
+class SolvedStiffness(Solved):
+    """A solved case that defines a stiffness of the whole part.
+
+    Attributes
+    ----------
+    K_energy : from the strain energy [N·m/rad].
+    K_check : the same from the reaction's torque, or from the work of the loads [N·m/rad].
+    """
+
+    K_energy: float
+    K_check: float
+
+
+def torsion(model: Model, driven: str) -> SolvedStiffness:
     """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
 
     Raises
@@ -73,10 +81,13 @@ def torsion(model: Model, driven: str) -> Solved:
                 f" from energy {twice_energy:.9g} N·mm"
             )
     scale = model.copies / NMM_PER_NM
-    return _solved(model, solution, twice_energy * scale, torque * scale)
+    return SolvedStiffness(
+        model.mesh, model.frames.to_cartesian(solution.unknowns.reshape(-1, 3)), solution.residual,
+        solution.free_count, solution.solver, float(twice_energy * scale), float(torque * scale),
+    )  # fmt: skip
 
 
-def lobes(model: Model, supported: bool) -> Solved:
+def lobes(model: Model, supported: bool) -> SolvedStiffness:
     """Torque entering at the two lobes; `supported`: the seat may not move radially.
 
     The model is half a repeat of the part, as `cyclic.half_repeat`. The field is that of its quarter or half
@@ -92,7 +103,8 @@ def lobes(model: Model, supported: bool) -> Solved:
         found.append(supports.solve(load * (NMM_PER_NM / torque)))
     scale = NMM_PER_NM**2 / NMM_PER_NM
     stored, work = sum(w.stored for w in found), sum(w.work for w in found)
-    return _of_waves(model, found, "antisymmetric", scale / stored, scale / work)
+    solved = _of_waves(model, found, "antisymmetric")
+    return SolvedStiffness(**vars(solved), K_energy=scale / stored, K_check=scale / work)
 
 
 def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:
@@ -128,12 +140,10 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
     supports.set(nodes, RADIAL, wave.of(lambda angle: w0_mm * np.cos(2 * angle), phi))
     supports.hold("mount")
     found = supports.solve(np.zeros((len(model.mesh.nodes), 3)))
-    return _of_waves(model, [found], "symmetric", 0.0, 0.0)
+    return _of_waves(model, [found], "symmetric")
 
 
-def _of_waves(
-    model: Model, found: list[SolvedWave], parity: Parity, K_energy: float, K_reaction: float
-) -> Solved:
+def _of_waves(model: Model, found: list[SolvedWave], parity: Parity) -> Solved:
     """Waves of half a repeat on the quarter of the part, or on its half, where n is odd."""
     whole = unfolding(model.mesh, larger_deg(model.mesh))
     u = np.zeros((whole.copies, len(model.mesh.nodes), 3))
@@ -141,14 +151,6 @@ def _of_waves(
         for w in found:
             values += model.frames.to_cartesian(w.wave.on_copy(w.values, copy))
     return Solved(
-        whole.mesh, whole.vectors(u, parity), K_energy, K_reaction,
+        whole.mesh, whole.vectors(u, parity),
         max(w.residual for w in found), sum(w.free_count for w in found), found[0].solver,
-    )  # fmt: skip
-
-
-def _solved(model: Model, solution: Solution, K_energy: float, K_reaction: float) -> Solved:
-    u = model.frames.to_cartesian(solution.unknowns.reshape(-1, 3))
-    return Solved(
-        model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count,
-        solution.solver,
     )  # fmt: skip
