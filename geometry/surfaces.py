@@ -15,6 +15,9 @@ from flexspline.geometry.shaft_shape import Shaft
 
 SYMMETRY_START = "symmetry_start"
 SYMMETRY_END = "symmetry_end"
+ON_SURFACE_MM = 1e-6
+"""Vertices of a CAD face and nodes of a mesh are computed on their surfaces: what is farther off belongs to
+another."""
 
 
 class Surface(Protocol):

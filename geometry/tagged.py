@@ -24,10 +24,7 @@ from flexspline.geometry.face_triangles import (
 )
 from flexspline.geometry.part import Part
 from flexspline.geometry.sharp_edges import sharp_edges
-from flexspline.geometry.surfaces import Surface, part_surfaces
-
-ON_SURFACE = 1e-6
-"""A CAD face lies on a surface if all its vertices do, to this distance [mm]."""
+from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface, part_surfaces
 
 
 @dataclass(frozen=True)
@@ -128,18 +125,18 @@ def _surface_of(vertices: np.ndarray, inside: np.ndarray, surfaces: list[Surface
     A flat disc is triangulated with all its vertices on the rim, which lies on the cylinder too.
     """
     far = [np.abs(s.project(vertices) - vertices).max() for s in surfaces]
-    near = [i for i, d in enumerate(far) if d < ON_SURFACE]
+    near = [i for i, d in enumerate(far) if d < ON_SURFACE_MM]
     if not near:
         where = np.round(vertices.mean(axis=0), 3).tolist()
         raise GeometryError(f"a CAD face around {where} mm lies on no surface of the design")
     off = [np.abs(surfaces[i].project(inside) - inside).max() for i in near]
-    first = next(k for k, d in enumerate(off) if d < min(off) + ON_SURFACE)
+    first = next(k for k, d in enumerate(off) if d < min(off) + ON_SURFACE_MM)
     return near[first]
 
 
 def _merged(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Join vertices that neighbouring faces share (closer than ON_SURFACE)."""
-    pairs = cKDTree(vertices).query_pairs(ON_SURFACE, output_type="ndarray")
+    """Join vertices that neighbouring faces share (closer than ON_SURFACE_MM)."""
+    pairs = cKDTree(vertices).query_pairs(ON_SURFACE_MM, output_type="ndarray")
     n = len(vertices)
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     _, label = connected_components(graph, directed=False)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import bsr_matrix, csr_matrix
+from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix
 from skfem import BilinearForm
 from skfem.assembly.form.coo_data import COOData
 
@@ -77,18 +77,11 @@ class Couplings:
         return RR.elemental(self.space.basis)
 
     @cached_property
-    def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """The matrices' entries, row·count + column, and to which of them each triangle's entry is added."""
-        rows, columns = self._first.indices.astype(np.int64)
-        return np.unique(rows * self.space.count + columns, return_inverse=True)
-
-    @cached_property
     def _pattern(self) -> csr_matrix:
         """Of all the forms; its data are the numbers of its entries."""
-        rows, columns = np.divmod(self._places[0], self.space.count)
-        starts = np.searchsorted(rows, np.arange(self.space.count + 1))
-        shape = 2 * (self.space.count,)
-        return csr_matrix((np.arange(len(rows)), columns, starts), shape=shape)
+        found = _matrix(self._first)
+        found.data = np.arange(found.nnz)
+        return found
 
     @cached_property
     def _transposed(self) -> np.ndarray:
@@ -96,14 +89,11 @@ class Couplings:
         return self._pattern.T.tocsr().data
 
     def _entries(self, form: BilinearForm) -> np.ndarray:
-        return self._summed(form.elemental(self.space.basis))
-
-    def _summed(self, entries: COOData) -> np.ndarray:
-        return np.bincount(self._places[1], entries.data, len(self._places[0]))
+        return np.asarray(_matrix(form.elemental(self.space.basis)).data)
 
     @cached_property
     def _rr(self) -> np.ndarray:
-        return self._summed(self._first)
+        return np.asarray(_matrix(self._first).data)
 
     @cached_property
     def _rz(self) -> np.ndarray:
@@ -128,3 +118,8 @@ class Couplings:
     @cached_property
     def _oo(self) -> np.ndarray:
         return self._entries(OO)
+
+
+def _matrix(entries: COOData) -> csr_matrix:
+    """As `COOData.tocsr`, which drops the entries that happen to be 0: so all forms have one pattern."""
+    return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()

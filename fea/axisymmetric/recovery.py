@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
-from flexspline.fea.axisymmetric.space import interpolated
+from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 
 RR, THETA_THETA, ZZ, RZ, R_THETA, THETA_Z = range(6)
@@ -45,12 +45,9 @@ def recovered(model: HarmonicModel, wave: Harmonic, displacement: np.ndarray) ->
     raw = stress(wave, material, s.basis, displacement)
     at_nodes = stress(wave, material, model.nodal_basis, displacement)
     weight = (s.weights * s.r).sum(axis=1)
-    nodes, share = s.dofs.ravel(), np.repeat(weight, 6)
-    sums = {k: np.bincount(nodes, share * part.ravel(), s.count) for k, part in at_nodes.items()}
-    shares = np.bincount(nodes, share, s.count)
+    local = np.stack(list(at_nodes.values()), axis=2)
     nodal = np.zeros((s.count, 6))
-    for k, total in sums.items():
-        nodal[:, k] = total / shares
+    nodal[:, list(at_nodes)] = nodal_average(s.count, len(at_nodes), [(s.dofs, weight, local)])
     misfit = {k: s.values(nodal[:, k]) - part for k, part in raw.items()}
     volume = wave.around * s.weights * s.r
     return Recovered(
@@ -65,7 +62,8 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
     """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
     lam, mu, n = material.lam, material.mu, wave.n
     r = np.asarray(basis.global_coordinates())[0]
-    (u, v, w), ((u_r, v_r, w_r), (u_z, v_z, w_z)) = interpolated(basis, displacement)
+    u, v, w = (basis.interpolate(each) for each in displacement.reshape(-1, 3).T)
+    (u_r, u_z), (v_r, v_z), (w_r, w_z) = u.grad, v.grad, w.grad
     if wave.torsion:
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
     around = (u + n * v) / r

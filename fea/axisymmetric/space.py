@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from skfem import Basis, ElementTriP2
+from skfem import Basis, ElementTriP2, MeshTri, MeshTri2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
-from flexspline.fea.entities import CurvedTriangles, Triangles
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,7 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
     middles = straight_edges.p[:, straight_edges.facets].mean(axis=1)
     middles[:, facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment).T
     named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
-    quadratic = CurvedTriangles(np.hstack([straight_edges.p, middles]), straight_edges.t)
+    quadratic = MeshTri2(np.hstack([straight_edges.p, middles]), straight_edges.t)
     quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
     basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
     jacobian = basis.mapping.detDF(basis.X)
@@ -109,14 +108,14 @@ def straight(
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
     """A `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
-    mesh = Triangles(np.ascontiguousarray(vertices.T), old.mesh.t)
+    mesh = MeshTri(np.ascontiguousarray(vertices.T), old.mesh.t)
     basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
     return Space(basis, space.rim, space.numbers)
 
 
 def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
     triangles = np.sort(mesh.triangles, axis=1)
-    return Triangles(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
+    return MeshTri(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
 
 
 def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
@@ -149,19 +148,12 @@ def at_points(space: Space, at: np.ndarray) -> Any:
     )  # fmt: skip
 
 
-def interpolated(basis: Any, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As `basis.interpolate` of U, V, W (3·count,) at once: values (3, m, q), gradients (2, 3, m, q)."""
-    local = u.reshape(-1, 3)[basis.element_dofs]
-    values = np.stack([np.asarray(function) for (function,) in basis.basis])
-    gradients = np.stack([function.grad for (function,) in basis.basis])
-    return (
-        np.einsum("imc,imq->cmq", local, values),
-        np.einsum("imc,idmq->dcmq", local, gradients),
-    )
-
-
 def shape_functions(at: np.ndarray) -> np.ndarray:
-    """P2 shape functions (6, q) at points (2, q) of the reference triangle."""
+    """scikit-fem's P2 shape functions (6, q) at points (2, q) of the reference triangle.
+
+    `interpolate` finds a field's gradients too: where only values are asked for, smoothed stresses here and
+    at the lattice of the peak, it would make `stiffness` of hat-25 1.05 times as long (0.23 of 4.9 s).
+    """
     element = ElementTriP2()
     return np.stack([element.lbasis(at, i)[0] for i in range(6)])
 

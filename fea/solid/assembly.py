@@ -15,6 +15,7 @@ from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
 
 from flexspline.fea.solid.elements import basis_of
+from flexspline.fea.solid.own_assembly import NodePairs
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import SAME
@@ -88,25 +89,20 @@ def _blocks(d: Mapping[tuple[int, int], np.ndarray], material: Elastic) -> np.nd
     return blocks
 
 
-def _derivatives(space: SolidSpace) -> tuple[np.ndarray, dict[tuple[int, int], np.ndarray]]:
-    """Pairs of nodes (p,) that share an element, row·n + column rising, and D_ij (p,) for each.
-
-    All forms have this one pattern, so the elements' entries find their places once.
-    """
+def _derivatives(
+    space: SolidSpace,
+) -> tuple[np.ndarray, dict[tuple[int, int], np.ndarray]]:
+    """Pairs of nodes (p,) that share an element, row·n + column rising, and D_ij (p,) for each."""
     n, m = len(space.node), len(space.cells)
-    # as scikit-fem's element matrices: trial function (column), test function (row), element
-    numbers = space.cells.T[None] * n + space.cells.T[:, None]
-    pairs, place = np.unique(numbers, return_inverse=True)
-    place = place.reshape(numbers.shape)
-    d = {ij: np.zeros(len(pairs)) for ij in FORMS}
+    pairs = NodePairs.of(space.cells, n)
+    d = {ij: np.zeros(len(pairs.number)) for ij in FORMS}
     for start in range(0, m, CHUNK_ELEMENTS):
         part = np.arange(start, min(start + CHUNK_ELEMENTS, m))
-        basis, where = basis_of(space.curved, elements=part), place[..., part].ravel()
+        basis = basis_of(space.curved, elements=part)
         for ij, form in FORMS.items():
-            d[ij] += np.bincount(where, form.elemental(basis).data, len(pairs))
-    opposite = np.empty(len(pairs), int)
-    opposite[place] = place.swapaxes(0, 1)
-    return pairs, d | {(j, i): entries[opposite] for (i, j), entries in d.items() if i != j}
+            d[ij] += pairs.summed(form.elemental(basis).data, part)
+    opposite = {(j, i): entries[pairs.transposed] for (i, j), entries in d.items() if i != j}
+    return pairs.number, d | opposite
 
 
 def _turn(blocks: np.ndarray, frames: NodeFrames, row: np.ndarray, column: np.ndarray) -> None:

@@ -10,13 +10,12 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.types import NMM_PER_NM, Elastic, TetMesh
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START
 
 DECK_ANGLE_RAD = 1e-3
 """Θ of the deck: the analysis is linear, so it only sets the size of the printed reactions."""
-ON_AXIS_MM = 1e-9
-"""No cylindrical axes exist nearer to z than this, as in `NodeFrames`."""
 PER_LINE = 12
 """Node numbers in a line of a set; the format allows 16."""
 
@@ -29,12 +28,12 @@ def torsion_deck(
     `K_Nm_per_rad` is our own figure on this mesh, whole part, quoted in the header for comparison.
     Units of the deck: mm, N, MPa.
     """
-    radius = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1])
+    radius = NodeFrames.cylindrical(mesh.nodes).radius
     held = mesh.nodes_on("mount")
     turned = np.setdiff1d(mesh.nodes_on(driven), held)
     planes = np.union1d(mesh.nodes_on(SYMMETRY_START), mesh.nodes_on(SYMMETRY_END))
     planes = np.setdiff1d(planes, np.union1d(held, turned))
-    on_axis = radius[planes] < ON_AXIS_MM
+    on_axis = radius[planes] == 0
     axis, planes = planes[on_axis], planes[~on_axis]
     local = np.concatenate([planes, turned])
     lines = [

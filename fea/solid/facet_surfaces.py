@@ -7,10 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexspline.fea.solid.errors import MeshQualityError
-from flexspline.geometry.surfaces import Surface
-
-ON_SURFACE = 1e-6
-"""[mm] Nodes are computed on their surfaces; what is farther off belongs to another."""
+from flexspline.geometry.surfaces import ON_SURFACE_MM, Surface
 
 
 def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surface]) -> np.ndarray:
@@ -29,10 +26,10 @@ def surfaces_of(corners: np.ndarray, faces: np.ndarray, surfaces: Sequence[Surfa
     centres = corners[faces].mean(axis=1)
     off = np.array([np.abs(s.project(corners) - corners).max(axis=1) for s in surfaces])
     away = np.array([np.abs(s.project(centres) - centres).max(axis=1) for s in surfaces])
-    lies = off[:, faces].max(axis=2) < ON_SURFACE
+    lies = off[:, faces].max(axis=2) < ON_SURFACE_MM
     if not lies.any(axis=0).all():
         raise MeshQualityError(
             f"{int((~lies.any(axis=0)).sum())} facets lie on no surface of the part"
         )
     away = np.where(lies, away, np.inf)
-    return np.asarray((away < away.min(axis=0) + ON_SURFACE).argmax(axis=0))
+    return np.asarray((away < away.min(axis=0) + ON_SURFACE_MM).argmax(axis=0))

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+from skfem import Functional, LinearForm
 
 from flexspline.fea.axisymmetric.lobes import LOBE_HALF_WIDTH
 from flexspline.fea.solid.cyclic import SolvedWave, WaveSupports, larger_deg, repeats_of
-from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.solid.memory import SolverKind
 from flexspline.fea.solid.model import AXIAL, RADIAL, TANGENTIAL, Model, Supports
-from flexspline.fea.solid.solver import Solution
 from flexspline.fea.solid.unfold import Parity, unfolding
 from flexspline.fea.solid.waves import CyclicWave, waves
 from flexspline.fea.types import NMM_PER_NM, TetMesh
@@ -23,25 +22,39 @@ BALANCE_LIMIT = 1e-6
 HELD_LIMIT = 1e-4
 """Of the held face's torque after an iteration: it goes with the square root of the error's energy,
 3e-5 (1e-6 at most was measured)."""
+LOBE_DEGREE = 8
+"""Of quadrature: of the torque on the example's ring degree 4 lacks 2e-9, 6 lacks 1e-11, against 12."""
+FORCES = LinearForm(lambda v, w: w.traction * v, dtype=complex)
+TORQUE = Functional(lambda w: w.traction * np.hypot(w.x[0], w.x[1]))
+"""Of a tangential traction about z."""
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A solved case: displacement (n, 3) Cartesian mm, and K where the case defines one.
-
-    `K_energy` and `K_reaction` are for the whole part, N·m/rad; 0 where the case has none.
-    """
+    """A solved case: displacement (n, 3) Cartesian mm."""
 
     mesh: TetMesh
     displacement: np.ndarray
-    K_energy: float
-    K_reaction: float
     residual: float
     dofs: int
     solver: SolverKind
 
 
-def torsion(model: Model, driven: str) -> Solved:
+@dataclass(frozen=True)
+class SolvedStiffness(Solved):
+    """A solved case that defines a stiffness of the whole part.
+
+    Attributes
+    ----------
+    K_energy : from the strain energy [N·m/rad].
+    K_check : the same from the reaction's torque, or from the work of the loads [N·m/rad].
+    """
+
+    K_energy: float
+    K_check: float
+
+
+def torsion(model: Model, driven: str) -> SolvedStiffness:
     """`mount` held, every point of `driven` turned rigidly about z by 1 rad; K from both routes.
 
     Raises
@@ -68,10 +81,13 @@ def torsion(model: Model, driven: str) -> Solved:
                 f" from energy {twice_energy:.9g} N·mm"
             )
     scale = model.copies / NMM_PER_NM
-    return _solved(model, solution, twice_energy * scale, torque * scale)
+    return SolvedStiffness(
+        model.mesh, model.frames.to_cartesian(solution.unknowns.reshape(-1, 3)), solution.residual,
+        solution.free_count, solution.solver, float(twice_energy * scale), float(torque * scale),
+    )  # fmt: skip
 
 
-def lobes(model: Model, supported: bool) -> Solved:
+def lobes(model: Model, supported: bool) -> SolvedStiffness:
     """Torque entering at the two lobes; `supported`: the seat may not move radially.
 
     The model is half a repeat of the part, as `cyclic.half_repeat`. The field is that of its quarter or half
@@ -87,25 +103,23 @@ def lobes(model: Model, supported: bool) -> Solved:
         found.append(supports.solve(load * (NMM_PER_NM / torque)))
     scale = NMM_PER_NM**2 / NMM_PER_NM
     stored, work = sum(w.stored for w in found), sum(w.work for w in found)
-    return _of_waves(model, found, "antisymmetric", scale / stored, scale / work)
+    solved = _of_waves(model, found, "antisymmetric")
+    return SolvedStiffness(**vars(solved), K_energy=scale / stored, K_check=scale / work)
 
 
 def _lobe_loads(model: Model) -> tuple[dict[CyclicWave, np.ndarray], float]:
-    """Nodal forces (n, 3) of a unit lobe traction [MPa] by wave, and its torque on the whole part [N·mm]."""
-    facets = model.mesh.on("mesh")
-    # of the torque on the example's ring degree 4 lacks 2e-9, 6 lacks 1e-11, against degree 12
-    rule = facet_points(model.mesh.nodes, facets, degree=8)
-    phi = np.arctan2(rule.points[..., 1], rule.points[..., 0])
+    """Nodal forces (n, 3) of a unit lobe traction [MPa] by wave, complex; its torque on the part [N·mm]."""
+    basis = model.space.facet_basis("mesh", LOBE_DEGREE)
+    x, y, _ = np.asarray(basis.global_coordinates())
+    phi = np.arctan2(y, x)
     repeats = repeats_of(model.mesh)
     loads = {}
     for wave in waves(range(0, 2 * repeats, 2), repeats):
-        traction = wave.of(_lobe_traction, phi)
-        forces = np.einsum("kq,qi->ki", traction * rule.weights, rule.values)
-        loads[wave] = np.zeros((len(model.mesh.nodes), 3), forces.dtype)
-        np.add.at(loads[wave][:, TANGENTIAL], facets, forces)
+        loads[wave] = np.zeros((len(model.mesh.nodes), 3), complex)
+        forces = FORCES.assemble(basis, traction=wave.of(_lobe_traction, phi))
+        loads[wave][model.space.node, TANGENTIAL] = forces
     mean = CyclicWave(0, repeats).of(_lobe_traction, phi)
-    radius = np.hypot(rule.points[..., 0], rule.points[..., 1])
-    return loads, float((mean * radius * rule.weights).sum()) * model.copies
+    return loads, float(TORQUE.assemble(basis, traction=mean)) * model.copies
 
 
 def _lobe_traction(phi: np.ndarray) -> np.ndarray:
@@ -126,12 +140,10 @@ def ellipse(model: Model, w0_mm: float) -> Solved:
     supports.set(nodes, RADIAL, wave.of(lambda angle: w0_mm * np.cos(2 * angle), phi))
     supports.hold("mount")
     found = supports.solve(np.zeros((len(model.mesh.nodes), 3)))
-    return _of_waves(model, [found], "symmetric", 0.0, 0.0)
+    return _of_waves(model, [found], "symmetric")
 
 
-def _of_waves(
-    model: Model, found: list[SolvedWave], parity: Parity, K_energy: float, K_reaction: float
-) -> Solved:
+def _of_waves(model: Model, found: list[SolvedWave], parity: Parity) -> Solved:
     """Waves of half a repeat on the quarter of the part, or on its half, where n is odd."""
     whole = unfolding(model.mesh, larger_deg(model.mesh))
     u = np.zeros((whole.copies, len(model.mesh.nodes), 3))
@@ -139,14 +151,6 @@ def _of_waves(
         for w in found:
             values += model.frames.to_cartesian(w.wave.on_copy(w.values, copy))
     return Solved(
-        whole.mesh, whole.vectors(u, parity), K_energy, K_reaction,
+        whole.mesh, whole.vectors(u, parity),
         max(w.residual for w in found), sum(w.free_count for w in found), found[0].solver,
-    )  # fmt: skip
-
-
-def _solved(model: Model, solution: Solution, K_energy: float, K_reaction: float) -> Solved:
-    u = model.frames.to_cartesian(solution.unknowns.reshape(-1, 3))
-    return Solved(
-        model.mesh, u, float(K_energy), float(K_reaction), solution.residual, solution.free_count,
-        solution.solver,
     )  # fmt: skip

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from flexspline.fea.solid.elements import element_volumes, facet_areas
 from flexspline.fea.solid.errors import MeshQualityError
 from flexspline.fea.solid.flatness import longest_edges
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.tetwild import signed_volumes
 from flexspline.fea.types import TetMesh
 from flexspline.geometry.percent import percent
@@ -47,11 +47,9 @@ def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
     ------
     MeshQualityError : one of them is off.
     """
+    space = SolidSpace.of(mesh)
     for what, right in wanted.items():
-        if what == VOLUME:
-            found = float(element_volumes(mesh.nodes, mesh.cells).sum())
-        else:
-            found = float(facet_areas(mesh.nodes, mesh.on(what)).sum())
+        found = float((space.volumes if what == VOLUME else space.areas(what)).sum())
         if not abs(found / right - 1) < SIZE_TOLERANCE:
             raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {right:.6g} in the part")
 
@@ -65,13 +63,14 @@ def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:
         off = np.abs(plane.project(nodes) - nodes).max(initial=0.0)
         if off > OFF_PLANE * size:
             raise MeshQualityError(f"a node of {plane.patch} lies {off:.3g} mm off the plane")
-    volume = element_volumes(mesh.nodes, mesh.cells).sum()
+    space = SolidSpace.of(mesh)
+    volume = space.volumes.sum()
     if abs(volume / surface.volume - 1) > VOLUME_TOLERANCE:
         raise MeshQualityError(
             f"the mesh holds {volume:.6g} mm³, the CAD solid {surface.volume:.6g} mm³"
         )
     for patch, wanted in surface.patch_areas.items():
-        area = facet_areas(mesh.nodes, mesh.on(patch)).sum()
+        area = space.areas(patch).sum()
         if abs(area / wanted - 1) > AREA_TOLERANCE:
             raise MeshQualityError(
                 f"patch '{patch}' has {area:.6g} mm² in the mesh, {wanted:.6g} mm² in the CAD,"

@@ -10,8 +10,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from skfem import ElementTetP2, FacetBasis, MappingAffine
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
 
-from flexspline.fea.solid.elements import quadratic_mesh
+from flexspline.fea.solid.elements import determinants, quadratic_mesh, tet_rule
 from flexspline.fea.types import TetMesh
 
 
@@ -45,6 +48,32 @@ class SolidSpace:
         if patch not in boundaries:
             return np.empty(0, int)
         return np.sort(self.node[self.curved.dofs.get_facet_dofs(boundaries[patch]).flatten()])
+
+    @property
+    def volumes(self) -> np.ndarray:
+        """Of the elements (m,) mm³, curved as they are."""
+        points, weights = tet_rule(4)
+        return determinants(self.curved, points) @ weights
+
+    def areas(self, patch: str) -> np.ndarray:
+        """Of a patch's facets (k,) mm², curved as they are; none where the part has no such patch."""
+        points, weights = get_quadrature(RefTri, 4)
+        facets = (self.curved.boundaries or {}).get(patch, np.empty(0, int))
+        return np.asarray(self.curved.mapping().detDG(points, find=facets) @ weights)
+
+    def facet_basis(self, patch: str, degree: int) -> Any:
+        """scikit-fem's basis on the curved facets of a patch, for the fields' values, not their slopes.
+
+        The values at a facet's points are those on the flat facet. There its place in the element is a matter
+        of corners; scikit-fem's search for it in the curved one does not end on coarse meshes.
+        """
+        basis = FacetBasis(
+            self.curved, ElementTetP2(), mapping=MappingAffine(self.curved), facets=patch,
+            intorder=degree, dofs=self.curved.dofs, disable_doflocs=True,
+        )  # fmt: skip
+        basis.mapping = self.curved.mapping()
+        basis.dx = basis.mapping.detDG(basis.X, find=basis.find) * basis.W
+        return basis
 
 
 def _facet_numbers(curved: Any, mesh: TetMesh) -> np.ndarray:

@@ -20,7 +20,7 @@ from flexspline.fea.deadline import NO_DEADLINE, Deadline, OutOfTimeError
 from flexspline.fea.refinement import refine
 from flexspline.fea.scaled_estimate import ERROR_RATIOS, ScaledEstimate
 from flexspline.fea.solid.alone import alone
-from flexspline.fea.solid.load_cases import Solved, torsion
+from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, torsion
 from flexspline.fea.solid.mesh import ENVELOPES_PER_EDGE, MeshSpec
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.sizing import Grading
@@ -169,14 +169,14 @@ def _finer(spec: MeshSpec, near_step: float) -> MeshSpec:
     )
 
 
-def level_of(solved: Solved) -> MeshLevel:
+def level_of(solved: SolvedStiffness) -> MeshLevel:
     """What one mesh gave."""
     return MeshLevel(
         shortest_edge_mm=solved.mesh.shortest_edge_mm,
         elements=len(solved.mesh.cells),
         dofs=solved.dofs,
         K_Nm_per_rad=solved.K_energy,
-        K_check_Nm_per_rad=solved.K_reaction,
+        K_check_Nm_per_rad=solved.K_check,
         residual=solved.residual,
     )
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from flexspline.fea.nodal_average import Part, nodal_average
 from flexspline.fea.solid.elements import (
     NODES,
     basis_of,
@@ -43,17 +44,14 @@ def nodal_stress(mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
 def _averaged(curved: Any, mesh: TetMesh, u: np.ndarray, material: Elastic) -> np.ndarray:
     """`nodal_stress` on the mesh as scikit-fem has it."""
     at_nodes = NODES, np.ones(len(NODES)) / len(NODES)
-    n = len(mesh.nodes)
-    total, summed = np.zeros(n), np.zeros((9, n))
-    for part in _parts(mesh.elements):
-        basis = basis_of(curved, part, at_nodes)
-        local = _stress(basis, u[mesh.cells[part]], material).reshape(-1, 9)
-        weight = np.repeat(basis.dx.sum(axis=1), 10)
-        nodes = mesh.cells[part].ravel()
-        total += np.bincount(nodes, weight, minlength=n)
-        for k, sums in enumerate(summed):
-            sums += np.bincount(nodes, weight * local[:, k], minlength=n)
-    return (summed.T / total[:, None]).reshape(n, 3, 3)
+
+    def parts() -> Iterator[Part]:
+        for part in _parts(mesh.elements):
+            basis, cells = basis_of(curved, part, at_nodes), mesh.cells[part]
+            local = _stress(basis, u[cells], material)
+            yield cells, basis.dx.sum(axis=1), local.reshape(*cells.shape, 9)
+
+    return nodal_average(len(mesh.nodes), 9, parts()).reshape(-1, 3, 3)
 
 
 def _parts(elements: int) -> Iterator[np.ndarray]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from flexspline.fea.axisymmetric.shape_slope import Twist, moved_stiffness, twist
+from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
+from flexspline.fea.axisymmetric.twist import Twist, twist
 from flexspline.fea.shortfall import settled, without
 from flexspline.fea.types import MET, Elastic, Shortfall
 from flexspline.geometry.design import Design

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.fea.axisymmetric.revolved_field import RevolvedField
+from flexspline.geometry.outline import SAME
 from flexspline.results.page_3d.arrays import packed
 from flexspline.results.renders.picture_elements import magnification
 from flexspline.results.studio.simplify import simplified
@@ -15,8 +16,6 @@ PLACE = 2e-4
 """Of the part's size: a fifth of a pixel where it fills a thousand."""
 COLOUR = 0.01
 """Of the colour scale, and of the largest displacement: two of 256 colours."""
-_ON_AXIS_MM = 1e-9
-"""Rounding of a radius that is 0."""
 
 
 def field_message(view: str, field: RevolvedField) -> bytes:
@@ -87,4 +86,4 @@ def _rim(places: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def _off_axis(places: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    return edges[(places[edges][:, :, 0] > _ON_AXIS_MM).any(axis=1)]
+    return edges[(places[edges][:, :, 0] > SAME).any(axis=1)]

@@ -8,19 +8,21 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from skfem import LinearForm
 
 from flexspline.fea.solid.assembly import NodeFrames
 from flexspline.fea.solid.elements import (
     basis_of,
-    facet_points,
     quadratic_mesh,
     reference_values,
     tet_rule,
 )
 from flexspline.fea.solid.model import Model, Supports
+from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic, TetMesh
 
 X, Y, Z = 0, 1, 2
+FORCES = LinearForm(lambda v, w: w.traction * v)
 Traction = Callable[[np.ndarray], np.ndarray]
 
 
@@ -38,11 +40,14 @@ def cartesian_model(mesh: TetMesh, material: Elastic) -> Model:
 
 def surface_load(mesh: TetMesh, patch: str, traction: Traction) -> np.ndarray:
     """Nodal forces (n, 3) of a traction given at points (..., 3) as vectors (..., 3)."""
-    facets = mesh.on(patch)
-    rule = facet_points(mesh.nodes, facets, degree=6)
+    space = SolidSpace.of(mesh)
+    basis = space.facet_basis(patch, degree=6)
+    at = np.asarray(basis.global_coordinates())
+    forces = traction(np.moveaxis(at, 0, -1))
     load = np.zeros_like(mesh.nodes)
-    forces = np.einsum("kqx,kq,qi->kix", traction(rule.points), rule.weights, rule.values)
-    np.add.at(load, facets, forces)
+    for component in (X, Y, Z):
+        of_one = FORCES.assemble(basis, traction=np.ascontiguousarray(forces[..., component]))
+        load[space.node, component] = of_one
     return load
 
 

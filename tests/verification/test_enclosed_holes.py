@@ -20,7 +20,7 @@ from example_files import EXAMPLES
 
 from flexspline.fea.solid.defaults import first_spec
 from flexspline.fea.solid.elements import basis_of, displacement_gradient, quadratic_mesh
-from flexspline.fea.solid.load_cases import Solved, lobes, torsion
+from flexspline.fea.solid.load_cases import Solved, SolvedStiffness, lobes, torsion
 from flexspline.fea.solid.model import Model
 from flexspline.fea.solid.stiffness import USUAL_EFFICIENCY
 from flexspline.fea.solid.stress import energy_error
@@ -80,7 +80,7 @@ def model_of(case: str, whole: bool, degrees: float | None = None) -> Model:
 
 
 @cache
-def twisted(case: str, whole: bool = False) -> Solved:
+def twisted(case: str, whole: bool = False) -> SolvedStiffness:
     return torsion(model_of(case, whole), "mesh")
 
 

@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cartesian import FORCES
 from example_files import EXAMPLES
 from scipy.interpolate import griddata
 
 from flexspline.fea.gear.rim import condensed_rim, places_along
 from flexspline.fea.solid.defaults import first_spec
-from flexspline.fea.solid.elements import facet_points
 from flexspline.fea.solid.mesh import mesh_surface
 from flexspline.fea.solid.model import RADIAL, TANGENTIAL, Model, Supports
 from flexspline.fea.solid.sizing import Grading
@@ -57,22 +57,21 @@ def by_tetrahedra() -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
     surface = tagged_surface(part, 90.0, 0.03, edge_spacing=0.1)
     spec = replace(first_spec(part), grading=Grading(0.3, 1.2, 1.0))
     model = Model.of(mesh_surface(surface, spec), Elastic.of(part.material))
-    facets = model.mesh.on("mesh")
-    rule = facet_points(model.mesh.nodes, facets, degree=8)
-    phi = np.arctan2(rule.points[..., 1], rule.points[..., 0])
+    basis = model.space.facet_basis("mesh", degree=8)
+    x, y, _ = np.asarray(basis.global_coordinates())
+    phi = np.arctan2(y, x)
     radius, width = design().flexspline.ring_radius, design().flexspline.ring_width_mm
-    load = np.zeros(model.matrix.shape[0])
+    load = np.zeros((len(model.mesh.nodes), 3))
     for centre, component, force in PUSHES:
         traction = bump(phi, centre) * force / (HALF_WIDTH * radius * width)  # ∫ cos² is HALF_WIDTH
-        nodal = np.einsum("kq,qi->ki", traction * rule.weights, rule.values)
-        np.add.at(load, 3 * facets + component, nodal)
+        load[model.space.node, component] += FORCES.assemble(basis, traction=traction)
     supports = Supports(model)
     supports.symmetry(antisymmetric=True)
     supports.hold("mount")
-    u = supports.solve(load).unknowns
+    u = supports.solve(load.ravel()).unknowns
     seat = model.on("seat")
     x, y, z = model.mesh.nodes[seat].T
-    return 2 * float(u @ load), np.arctan2(y, x), z, u[3 * seat + RADIAL]
+    return 2 * float(u @ load.ravel()), np.arctan2(y, x), z, u[3 * seat + RADIAL]
 
 
 def test_forces_at_three_teeth() -> None:

@@ -7,11 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hand_made_tube import tube
-from skfem import ElementTetP2, ElementTriP2
-from skfem.mapping import MappingIsoparametric
 
-from flexspline.fea.solid.elements import tet_rule
-from flexspline.fea.solid.mapping import KeptMapping
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.solid.unfold import unfolded
 from flexspline.fea.types import TetMesh
@@ -41,16 +37,6 @@ def test_a_boundary_has_the_nodes_of_its_facets(mesh: TetMesh) -> None:
     assert np.array_equal(space.curved.doflocs.T, mesh.nodes[space.node])
     for patch in filter(None, mesh.patches):
         assert np.array_equal(space.on(patch), np.unique(mesh.on(patch)))
-
-
-@pytest.mark.parametrize("elements", [None, np.array([5, 2])])
-def test_slopes_and_their_inverse_are_those_of_scikit_fem(elements: np.ndarray | None) -> None:
-    curved, points = SolidSpace.of(tube(30.0, 2)).curved, tet_rule(4)[0].T
-    ours = KeptMapping(curved, ElementTetP2(), ElementTriP2())
-    theirs = MappingIsoparametric(curved, ElementTetP2(), ElementTriP2())
-    for what in ("DF", "invDF", "detDF"):
-        found, known = (getattr(m, what)(points, elements) for m in (ours, theirs))
-        np.testing.assert_allclose(found, known, rtol=1e-12, atol=1e-12 * np.abs(known).max())
 
 
 def test_a_patch_that_a_part_does_not_have_is_empty() -> None:

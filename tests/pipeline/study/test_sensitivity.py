@@ -7,13 +7,9 @@ from pathlib import Path
 import pytest
 from example_files import EXAMPLES
 
-from flexspline.fea.axisymmetric.shape_slope import (
-    HeldSurfaceError,
-    Twist,
-    layer_stiffness,
-    moved_stiffness,
-    twist,
-)
+from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
+from flexspline.fea.axisymmetric.surface_layer import HeldSurfaceError, layer_stiffness
+from flexspline.fea.axisymmetric.twist import Twist, twist
 from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
