@@ -13,6 +13,7 @@ from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
 from flexspline.pipeline.diagnosis.decision import probability, probability_of_gain
 from flexspline.pipeline.diagnosis.outcome import NamedCause
+from flexspline.pipeline.diagnosis.sweep.dashpot import dashpot_explains
 from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
@@ -73,6 +74,8 @@ def _other_rivals(explained: ExplainedSweep, cause: str, told: bool, timed: bool
         if at_one_rate_on_ramps(explained.prepared.rig.history):
             yield RATE  # so does a lag as long as a ramp
         yield SERIES
+    if cause == FRICTION and RATE in identified.named and dashpot_explains(identified):
+        yield RATE  # of a low power, alone
     if cause == DRIFT and zero_moves(explained):
         yield OFFSET
 
