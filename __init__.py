@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         study,
     )
     from flexspline.pipeline.measured import diagnose
-    from flexspline.results.diagnosis.predicted import predict
+    from flexspline.results.predict import predict
 
     __version__: str
 
@@ -33,7 +33,7 @@ _PLACE = {
     "backlash": "pipeline.api",
     "diagnose": "pipeline.measured",
     "gear": "pipeline.api",
-    "predict": "results.diagnosis.predicted",
+    "predict": "results.predict",
     "sensitivity": "pipeline.api",
     "stiffness": "pipeline.api",
     "stress": "pipeline.api",
