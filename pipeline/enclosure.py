@@ -111,7 +111,7 @@ def held_within(solid: Stiffness, enclosure: Stiffness, tolerance: float) -> Sti
     else:
         K, how = (
             enclosure,
-            f"the middle of its bounds, which the solid model knows to ± {percent(half)}",
+            f"the middle of its bounds (the solid model alone: ± {percent(half)})",
         )
     return replace(
         solid,
