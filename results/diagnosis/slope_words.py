@@ -26,7 +26,7 @@ def slope_hint_words(diagnosis: Diagnosis) -> str:
         return f" The slope is {times} than simulated, as with {units}: check the units."
     return (
         f" The slope is {times} than flexspline and shaft in series: was a complete gear measured,"
-        " whose teeth and bearing yield too? Then use --against gear."
+        " whose teeth and bearing are elastic too? Then use --against gear."
     )
 
 

@@ -39,8 +39,8 @@ def whole_gear(content: ReportContent, roomy: bool) -> Iterable[Block]:
     yield Paragraph(
         plain(
             "The output under torque while the wave generator is locked: tooth pairs come into contact one "
-            "after another, the rim may lift off its bearing, races and balls yield. Makers’ catalogues give "
-            "such a curve as three slopes, "
+            "after another, the rim may lift off its bearing, races and balls deform elastically. Makers’ "
+            "catalogues give such a curve as three slopes, "
         )
         + K1
         + plain(" up to ")
@@ -114,8 +114,8 @@ def _beside(total: Backlash, curve: GearCurve) -> Table:
         rows=tuple(rows),
         caption="Backlash sum and whole gear compared. The whole gear’s flexspline wind-up includes "
         "teeth and bearing; the angle of a clearance is what the free angle loses when first the flanks’ "
-        "clearance is taken away, then the bearing’s too. The gap without any clearance: balls, race and "
-        "rim yield, so that the teeth do not reach full depth; the sum has no such term.",
+        "clearance is taken away, then the bearing’s too. The gap without any clearance: balls, race "
+        "and rim deform elastically, so that the teeth do not reach full depth; the sum has no such term.",
         strong=len(rows) - 1,
     )  # fmt: skip
 

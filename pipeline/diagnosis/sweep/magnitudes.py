@@ -17,7 +17,6 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
-from flexspline.pipeline.diagnosis.sweep.other_sets import std_over
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
 from flexspline.pipeline.diagnosis.sweep.thermal_lag import lag_std
 
@@ -74,11 +73,13 @@ def _spring_std(identified: Identification, magnitude: float) -> float:
     """Of a spring's size, by laws of other causes that fit as well and leave it another one.
 
     Whether friction takes torque at a loop's ends, or at which load the stiffness is as simulated, no row
-    says.
+    says: they count alike. What the prior says of larger springs is no evidence of the smaller.
     """
     evidence, best = identified.search.evidence, identified.best
-    found = map(identified.search.candidate, _but_for_a_spring(evidence, best))
-    return std_over(identified, found, SERIES, magnitude)
+    others = list(_but_for_a_spring(evidence, best))
+    sizes = [fit_regressors(evidence, terms).magnitudes()[SERIES] for terms in others]
+    off = np.array(sizes) - magnitude
+    return float(np.sqrt((off**2).sum() / (1 + len(off))))
 
 
 def _but_for_a_spring(evidence: GaussianEvidence, best: Candidate) -> Iterator[tuple[int, ...]]:

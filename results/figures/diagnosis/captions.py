@@ -22,7 +22,7 @@ CAPTIONS = {
         extended model predicts as well as the instrument reads.""",
     "residual_model": """
         Residual of the best model: the points should fill the grey band evenly and the lines stay near
-        zero. Each panel says whether a test finds structure.""",
+        zero. A panel whose channel is tested says what the test finds.""",
     "residual_unknown": """
         Residual of the best model, unnamed structure included. The structure that no cause
         explains lies in: {where}; the figure of the model's parts shows its course.""",

@@ -156,14 +156,19 @@ def _panel(
 
 
 def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Mean of y in bins of x: levels or clusters where they are few, else bins of equal count."""
+    """Mean of y in bins of x: levels or clusters where they are few, else bins of equal count.
+
+    Single values, far from the next where a channel is thinly covered, are no clusters.
+    """
     if len(x) < FEWEST_OF_MEAN:
         return np.empty(0), np.empty(0)
     sorted_x = np.sort(x)
     gaps = np.flatnonzero(np.diff(sorted_x) > CLUSTER_GAP_SHARE * np.ptp(x))
     if few:
         where, codes = np.unique(x, return_inverse=True)
-    elif 1 < len(gaps) < LEVELS:  # a bin across a gap would put its mean where nothing was measured
+    elif (
+        1 < len(gaps) < LEVELS and _sizes(gaps, len(x)).min() >= FEWEST_OF_MEAN
+    ):  # a bin across a gap would put its mean where nothing was measured
         where = np.arange(len(gaps) + 1, dtype=float)
         codes = np.searchsorted((sorted_x[gaps] + sorted_x[gaps + 1]) / 2, x)
     else:
@@ -175,6 +180,11 @@ def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarr
     mean_x = np.bincount(codes, x, len(where)) / np.maximum(count, 1)
     mean_y = np.bincount(codes, y, len(where)) / np.maximum(count, 1)
     return mean_x[good], mean_y[good]
+
+
+def _sizes(gaps: np.ndarray, count: int) -> np.ndarray:
+    """How many of so many values lie between two gaps each."""
+    return np.diff(gaps, prepend=-1, append=count - 1)
 
 
 def _reach(shown: SweepPictureData, left: np.ndarray) -> float:
