@@ -16,7 +16,7 @@ from numpy.linalg import norm
 from scipy.special import bdtr
 
 from flexspline.pipeline.diagnosis.measurement.corners import corners_of
-from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S
+from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, FINEST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
 from flexspline.pipeline.diagnosis.measurement.holds import holds
 from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
@@ -38,6 +38,8 @@ last must not stand out: of a way with a centre every second one is zero. Of a c
 may have a little of them; a straight way has none."""
 AT_CORNER = 3
 """Rows by which a corner in noise may be misplaced: they do not count."""
+KNOWN_SHARE = 0.8
+"""Of the ways that must be known, where more are refused than by chance: a drive rounds all corners alike."""
 BUMP_ROWS, BUMP_SIGMAS = 20, 4.5
 """What is left of so many rows is no noise where its mean is off by more of its deviations: a bend."""
 END_ROWS, END_SIGMAS = (3, 6, 12, 24), 2.5
@@ -106,7 +108,9 @@ def _stepped(edges: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
             moves = np.abs(np.diff(torque_Nm[edges[i] - 1 : edges[i + 1] + 1]))
             most = int(moves.argmax())
             beside = torque_Nm[edges[i - 1] : edges[i]], torque_Nm[edges[i + 1] : edges[i + 2]]
-            rests = max(float(np.ptp(way)) for way in beside) < moves[most]
+            rests = all(
+                len(way) >= FEWEST_ROWS_PER_NUMBER and np.ptp(way) < moves[most] for way in beside
+            )
             if rests and moves[most] > ONE_STEP * moves.sum():
                 at[i], kept[i + 1] = edges[i] + most, False
     return at[kept]
@@ -135,13 +139,16 @@ def known_ways(history: History) -> list[KnownWay]:
         if torque_noise_Nm(history) > 0:
             ways = list(_ways(history))
             each = [_known(history, way, END_SIGMAS) for way in ways]
+            refused = sum(own is None for own in each)
             up_to = bdtr(np.arange(len(each)), len(each), REFUSED_BY_CHANCE)
-            if sum(own is None for own in each) <= (up_to < RECORDS).sum():  # chance refused these
+            if refused <= (up_to < RECORDS).sum():  # chance refused these
                 each = [
                     own or _known(history, way, BUMP_SIGMAS)
                     for way, own in zip(ways, each, strict=True)
                 ]
-                found = [own for own in each if own is not None]
+            elif refused > (1 - KNOWN_SHARE) * len(each):
+                each = []
+            found = [own for own in each if own is not None]
             left = np.ones(len(history), bool)
             for way in found:
                 left[way.rows] = False
@@ -177,6 +184,8 @@ def _known(
     t = history.time_or_rows(way)
     x = 2 * (t - t[0]) / max(float(np.ptp(t)), LEAST_TIME_S) - 1
     tested = TESTED if len(way) >= FEWEST_ROWS_PER_NUMBER else 0
+    if noise.min() < FINEST_TORQUE_Nm:
+        return None
     if tested and len(np.unique(t)) < FEWEST_ROWS_PER_NUMBER:  # a clock of whole minutes
         return None
     most = min(most, max(len(way) // FEWEST_ROWS_PER_NUMBER - 1, 0))
@@ -192,8 +201,10 @@ def _known(
             left = torque / noise - told @ along[:count]
             if _bends(left, told, inner, end_sigmas):
                 return None
-            known = norm(told, axis=1) < 1  # a pause may lie between the last rows and the others
-            return KnownWay(way[known], (noise * left)[known], noise[known, None] * told[known])
+            near = norm(told, axis=1) < 1  # a pause may lie between the last rows and the others
+            if not near.any():
+                return None
+            return KnownWay(way[near], (noise * left)[near], noise[near, None] * told[near])
     return None
 
 

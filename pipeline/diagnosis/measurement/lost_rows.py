@@ -11,13 +11,23 @@ LOST_SHARE = 0.5
 """Of the travel: where more of it lies between rows that are far apart, a logger writes what changes."""
 
 
-def losses(t: np.ndarray, torque_Nm: np.ndarray, step: int = 1) -> np.ndarray:
-    """Rows (k,) of one unit after which others are missing.
+def far_apart(t: np.ndarray, torque_Nm: np.ndarray, step: int) -> np.ndarray:
+    """Rows (k,) of one unit after which the next is far away, of rows at random times too.
 
     Parameters: times (n,) and torques (n,); and over how many rows, a `step`, the travel is taken.
     """
+    return _after(t, torque_Nm, step, 0.5)
+
+
+def losses(t: np.ndarray, torque_Nm: np.ndarray) -> np.ndarray:
+    """Rows (k,) of one unit after which others are missing; of times (n,) and torques (n,)."""
+    return _after(t, torque_Nm, 1, USUAL)
+
+
+def _after(t: np.ndarray, torque_Nm: np.ndarray, step: int, quantile: float) -> np.ndarray:
+    """Rows before a step of time beyond `LOST_STEPS` times that quantile of all."""
     spans = np.diff(t)
-    usual = np.quantile(spans, USUAL) if len(spans) else 0.0
+    usual = np.quantile(spans, quantile) if len(spans) else 0.0
     if usual <= 0:  # a clock of whole seconds
         return np.zeros(0, int)
     lost = spans > LOST_STEPS * usual

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.floors import LEAST_TIME_S, LEAST_TORQUE_Nm
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
+from flexspline.pipeline.diagnosis.measurement.lost_rows import far_apart
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 
 MOVING = 0.3
@@ -17,6 +17,9 @@ FEWEST_HOLD_ROWS = 3
 """Rows of a hold: two are a turn between samples."""
 CLEAR_SIGMAS = 8.0
 """Rates are taken over as many rows as make a ramp's step this many times the torque's noise."""
+SHORT_SPAN = 0.3
+"""Of the usual time over which a rate is taken, below which none is: rows at random times lie close together,
+and the noise of their torques passes for a rate."""
 CYCLE_PARTS = 60
 """Of a cycle: steps over one of them say first how fast a ramp is."""
 FEWEST_STEPS = 20
@@ -49,7 +52,7 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
     widest = max(1, len(rows) // FEWEST_STEPS)
     cycles = int(np.ptp(history.cycle[rows])) + 1
     coarse = max(1, len(rows) // (CYCLE_PARTS * cycles))
-    part = np.searchsorted(losses(t, torque, coarse), np.arange(len(rows)))
+    part = np.searchsorted(far_apart(t, torque, coarse), np.arange(len(rows)))
 
     def beyond(moved: np.ndarray) -> np.ndarray:
         return np.maximum(moved - NOISE_MOVES * noise, 0.0)
@@ -70,7 +73,8 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
             break
         width = min(2 * width, fewest)
     span = np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
-    return Rates(width, (torque[width:] - torque[:-width]) / span, beyond(moved(width)))
+    told = span > SHORT_SPAN * np.median(span)
+    return Rates(width, (torque[width:] - torque[:-width]) / span, beyond(moved(width)) * told)
 
 
 def moving_rates(history: History, rows: np.ndarray) -> Rates | None:

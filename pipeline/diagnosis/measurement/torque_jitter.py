@@ -16,8 +16,8 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import (
 )
 from flexspline.pipeline.diagnosis.robust import rms
 
-FAR_SIGMAS, FAR_OF_WAY_SIGMAS = 4.0, 6.0
-"""Standard deviations of the torque noise; one row of noise in 16 000 lies further off, and one in 5e8."""
+FAR_SIGMAS = 4.0
+"""Standard deviations of the torque noise; one row of noise in 16 000 lies further off."""
 USUAL_ROWS, WIDEST_ROWS = 7, 20
 """Rows on either side: torque amid 15 is known to 0.39 of its noise, its rate to 0.06 a row; amid 41 to
 0.23."""
@@ -67,13 +67,11 @@ def jitter(history: History, width: int) -> np.ndarray:
         for rows, edges in zip(history.unit_slices, programme_edges(history), strict=True):
             t = history.time_or_rows(rows)
             out[rows] = _off_parabolas(history.torque_Nm[rows], t, edges, width)
-        far = np.full(len(history), FAR_SIGMAS)
         for way in known_ways(history):
             if way.held or width >= widest(history):
                 out[way.rows] = way.noise_Nm
-                far[way.rows] = FAR_OF_WAY_SIGMAS
-        # beyond its noise it is a corner that was not seen, and in a known way a pulse
-        history.memo[key] = np.where(np.abs(out) < far * own, out, 0.0)
+        # beyond its noise it is a corner that was not seen
+        history.memo[key] = np.where(np.abs(out) < FAR_SIGMAS * own, out, 0.0)
     return history.memo[key]
 
 

@@ -111,7 +111,8 @@ def _about_levels(torque_Nm: np.ndarray) -> float | None:
     apart = np.diff(in_order)
     edges = np.flatnonzero(apart > LEVELS_APART * np.median(apart)) + 1
     levels = np.split(in_order, edges)
-    if len(edges) == 0 or len(levels) * FEWEST_OF_LEVEL > len(torque_Nm):
+    few = 1 < len(levels) < FEWEST_LEVELS  # else they are the digits that a reading is written with
+    if not few or len(levels) * FEWEST_OF_LEVEL > len(torque_Nm):
         return None
     if max(map(np.ptp, levels)) > LEVEL_WIDTH * apart[edges - 1].min():
         return None

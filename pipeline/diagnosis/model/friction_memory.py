@@ -64,7 +64,8 @@ def reached_Nm(span: MeasuredSpan, history: History) -> np.ndarray:
         starts = np.r_[0, turns]
         for k in range(1, len(starts)):
             end = starts[k + 1] if k + 1 < len(starts) else len(rows)
-            before = size[starts[k - 1] : starts[k]].max()
+            turned = max(starts[k - 1] - 1, 0)  # the turn itself, from which one row may go on far
+            before = size[turned : starts[k]].max()
             out[rows[starts[k] : end]] = np.maximum(
                 before, np.maximum.accumulate(size[starts[k] : end])
             )

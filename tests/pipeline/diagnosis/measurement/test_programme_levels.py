@@ -75,3 +75,24 @@ def test_stairs_read_without_noise_have_none() -> None:
     true = np.tile([5.0, 10.0, 5.0, -5.0, -10.0, -5.0], 4)
     none = np.zeros(len(true), int)
     assert torque_noise_Nm(History(true, none, none)) == 0
+
+
+@pytest.mark.parametrize("step_Nm", [0.01, 0.02])
+def test_the_digits_of_a_long_record_are_no_levels(step_Nm: float) -> None:
+    """50 000 rows written to a hundredth: each number comes again and again, and scatters by nothing."""
+    turn = 4 * np.arange(50_000) / 50_000
+    triangle = 20 * 2 / np.pi * np.arcsin(np.sin(2 * np.pi * turn))
+    read = triangle + 0.1 * np.random.default_rng(2).normal(size=len(turn))
+    history = History(
+        step_Nm * np.round(read / step_Nm), np.zeros(len(turn), int), turn.astype(int), 60 * turn
+    )
+    assert torque_noise_Nm(history) == pytest.approx(0.1, rel=0.05)
+
+
+def test_ways_without_noise_beside_noisy_ones_are_left_as_they_are() -> None:
+    """Holds read to the last digit in one cycle, in noise in the next."""
+    noisy = stairs(LEVELS_Nm, 1)
+    torque = np.where(noisy.cycle == 0, np.repeat(LEVELS_Nm, ROWS), noisy.torque_Nm)
+    mixed = History(torque, noisy.unit, noisy.cycle, noisy.time_s)
+    assert all(len(way.rows) for way in known_ways(mixed))
+    assert np.isfinite(levelled_torque_Nm(mixed)).all()

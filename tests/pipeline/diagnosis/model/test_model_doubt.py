@@ -24,6 +24,7 @@ from flexspline.pipeline.diagnosis.model.doubt import (
 )
 from flexspline.pipeline.diagnosis.model.extended_model import ExtendedModel
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
+from flexspline.pipeline.diagnosis.model.friction_memory import smaller_loops
 from flexspline.pipeline.diagnosis.model.model_file import Provenance, read_model_file
 from flexspline.pipeline.diagnosis.model.model_text import model_text
 from flexspline.pipeline.diagnosis.model.predict import predict_file
@@ -255,3 +256,11 @@ def test_a_reading_of_a_long_record_is_as_noisy_as_one_of_a_short_one(rows: int)
     assert analysis is not None
     # torque's noise leads some rows to the wrong side of the gap; 3000 rows know a deviation to 1.3 %
     assert analysis.doubt.reading_arcsec == pytest.approx(0.6, rel=0.05)
+
+
+def test_a_record_that_jumps_back_to_zero_has_no_loops_smaller_than_its_own() -> None:
+    """Each cycle ends at its largest torque, and the next begins at 0 one row later."""
+    one = np.concatenate([np.linspace(0, 2, 20), np.linspace(2, -2, 40), np.linspace(-2, 2, 40)])
+    cycle = np.repeat(np.arange(3), len(one))
+    history = History(np.tile(one, 3), np.zeros(len(cycle), int), cycle)
+    assert not smaller_loops(span_of(history), history).any()
