@@ -48,13 +48,14 @@ def dashpot_explains(identified: Identification) -> bool:
         return False
     others = [i for i in best.terms if i not in loops]
     powers, times = np.linspace(*POWERS, TRIED[0]), np.geomspace(*TIMES, TRIED[1])
+    apart, factor = powers[1] - powers[0], times[1] / times[0]
     for _ in range(1 + ZOOMS):
         scores = _scores(identified, others, lag, powers, times)
         if best.score - scores.max() < RIVAL_EVIDENCE:
             return True
         at = np.unravel_index(scores.argmax(), scores.shape)
-        apart, factor = (powers[1] - powers[0]) / 3, (times[1] / times[0]) ** (1 / 3)
-        powers = powers[at[0]] + apart * np.arange(-2, 3)
+        apart, factor = apart / 3, factor ** (1 / 3)
+        powers = np.minimum(powers[at[0]] + apart * np.arange(-2, 3), POWERS[1])
         times = times[at[1]] * factor ** np.arange(-2.0, 3.0)
     return False
 
