@@ -39,8 +39,6 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("rings", "torque_rate"): "ringing after sudden changes of torque",
     ("wave", "time_s"): "a wave in time",
     ("wave", "row"): "a wave along the record",
-    ("slow_noise", "time_s"): "noise that wanders slowly, too large to compare with a simulation",
-    ("slow_noise", "row"): "noise that wanders slowly, too large to compare with a simulation",
     ("step", "time_s"): "a step in time",
     ("step", "row"): "a step along the record",
     ("own_zero", "cycle"): "a zero of its own in each cycle",
@@ -68,6 +66,7 @@ ANYWHERE: Mapping[FormKind, str] = {
     "jumps": "jumps with the torque's motion; something sticks and breaks away",
     "comes_back": "a misfit at the same torques in every cycle",
     "remainder": "what the best model leaves",
+    "slow_noise": "noise that wanders slowly, too large to compare with a simulation",
 }
 """What is said alike of every channel."""
 LATE = (

@@ -152,7 +152,9 @@ def known_ways(history: History) -> list[KnownWay]:
             left = np.ones(len(history), bool)
             for way in found:
                 left[way.rows] = False
-            holds_alone = (_held(history, h) for h in still(history) if left[h].all())
+            holds_alone = (
+                _known(history, h, END_SIGMAS, most=0) for h in still(history) if left[h].all()
+            )
             found += [way for way in holds_alone if way is not None]
         history.memo[key] = found
     known: list[KnownWay] = history.memo[key]
@@ -168,17 +170,12 @@ def _ways(history: History) -> Iterator[np.ndarray]:
             yield from (way for way in parts if len(way) >= FEWEST_ROWS_PER_NUMBER)
 
 
-def _held(history: History, rest: np.ndarray) -> KnownWay | None:
-    """By its mean, where that leaves noise."""
-    return _known(history, rest, END_SIGMAS, most=0)
-
-
 def _known(
     history: History, way: np.ndarray, end_sigmas: float, most: int = MOST_DEGREE
 ) -> KnownWay | None:
     """By the fewest polynomials over a way that leave noise, `most` the highest; None where none do.
 
-    A way's first and last rows may be off by `end_sigmas` of their deviations.
+    0: by its mean. A way's first and last rows may be off by `end_sigmas` of their deviations.
     """
     torque, noise = history.torque_Nm[way], torque_noise_of_rows_Nm(history)[way]
     t = history.time_or_rows(way)

@@ -8,15 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.known_ways import programme_edges
+from flexspline.pipeline.diagnosis.measurement.known_ways import AT_CORNER, programme_edges
 from flexspline.pipeline.diagnosis.measurement.lost_rows import losses
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.robust import rms
 
 WAY_ROWS, FEWEST_ROWS = 60, 8
 """Of a straight way on either side, the nearest: most, and fewest."""
-AT_CORNER = 3
-"""Rows by which a way's other end may be misplaced."""
 STRAIGHT = 0.01
 """Of the torque along it, what a straight way's rms may be off a line beyond twice its noise: that of a sine
 from its top over an eighth of the cycle is 0.06."""
@@ -98,10 +96,8 @@ def _further(history: History, before: np.ndarray, after: np.ndarray) -> float |
     (level, slope), (later, back) = (np.pad(line.coef, (0, 2 - len(line.coef))) for line in lines)
     if slope * back >= 0:
         return None
-    at, until = (
-        (later - level) / (slope - back),
-        history.time_s[after[0]] - history.time_s[before[-1]],
-    )
+    at = (later - level) / (slope - back)
+    until = history.time_s[after[0]] - history.time_s[before[-1]]
     step = max(np.median(np.abs(np.diff(history.torque_Nm[rows]))) for rows in (before, after))
     doubt = torque_noise_Nm(history) * np.sqrt(4 / len(before) + 4 / len(after))  # at a line's end
     moved = abs(later + back * until - level) > MOVED_STEPS * step + MOVED_SIGMAS * doubt

@@ -19,6 +19,14 @@ def levelled_torque_Nm(history: History) -> np.ndarray:
     Each rest's own mean is off by its noise, which is in the angle too: a wave over the torque that passes
     through zero at every level would tell them apart by that alone.
     """
+    key = ("levelled", 0.0)
+    if key not in history.memo:
+        history.memo[key] = _levelled_torque_Nm(history)
+    found: np.ndarray = history.memo[key]
+    return found
+
+
+def _levelled_torque_Nm(history: History) -> np.ndarray:
     torque = less_jitter(history).torque_Nm.copy()
     rests = [way for way in known_ways(history) if way.held]
     if len(rests) < 2:

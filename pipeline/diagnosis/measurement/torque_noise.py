@@ -83,10 +83,8 @@ def _torque_noise_Nm(history: History) -> np.ndarray:
         return none
     most = LARGEST_NOISE * float(np.abs(history.torque_Nm).max())
     scatter = [_about_levels(history.torque_Nm[rows[usual[rows]]]) for rows in history.unit_slices]
-    about_levels, rounding = (
-        [noise for noise in scatter if noise is not None],
-        _rounding_Nm(history),
-    )
+    about_levels = [noise for noise in scatter if noise is not None]
+    rounding = _rounding_Nm(history)
     if len(about_levels) == len(scatter) and not rounding:
         return np.full(len(history), min(float(np.median(about_levels)), most))
     typical = max(float(np.median(units)), rounding)

@@ -163,19 +163,13 @@ def _alone(prepared: PreparedSweep) -> TunedAhead:
     Stiffness, gap, lags and a soft wind-up: a lag opens the loop as friction does, and a wind-up bends it
     near the gap, but neither moves the gap's step. Without them the friction would be as large as all.
     """
-    columns = prepared.columns
-    free = [
-        t
-        for t in columns.terms
-        if t.owner in LINEAR or PRESUMED_TERMS.get(t.owner, NEVER).items() <= dict(t.shape).items()
-    ]
-    few = replace(
-        columns,
-        all=np.hstack([columns.all[:, t.at] for t in free]),
-        terms=tuple(replace(t, at=slice(i, i + 1)) for i, t in enumerate(free)),
+    few = prepared.columns.only(
+        lambda t: (
+            t.owner in LINEAR or PRESUMED_TERMS.get(t.owner, NEVER).items() <= dict(t.shape).items()
+        )
     )
     evidence = gaussian_evidence(few, prepared.target, prepared.kept, prepared.noise)
-    return tuned_ahead(prepared, evidence, range(len(free)))
+    return tuned_ahead(prepared, evidence, range(len(few.terms)))
 
 
 def _crossing(explained: ExplainedSweep) -> Crossing | None:

@@ -7,9 +7,6 @@ and comes to rest late. In the race that is a lag with a little friction.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
@@ -23,7 +20,6 @@ from flexspline.pipeline.diagnosis.measurement.torque_noise import deadband_Nm
 from flexspline.pipeline.diagnosis.robust import rms
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
-from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.search import Search
 
 POWERS = (0.35, 1.0)
@@ -73,26 +69,15 @@ def _scores(
     like = evidence.terms[lag]
     carried = dashpot_torque_Nm(old.rig.history, powers, times)
     sizes = [rms(column[kept]) for column in (old.all[:, like.at], *carried.T)]
-    columns = replace(
-        old,
-        all=np.hstack(
-            [*(old.all[:, evidence.terms[i].at] for i in others), -carried / sizes[1:] * sizes[0]]
-        ),
-        terms=tuple(_in_order([*(evidence.terms[i] for i in others), *[like] * carried.shape[1]])),
+    beside_these = [evidence.terms[i] for i in others]
+    columns = old.with_terms(
+        [*beside_these, *[like] * carried.shape[1]],
+        [*(old.all[:, t.at] for t in beside_these), -carried / sizes[1:] * sizes[0]],
     )
     search = Search(gaussian_evidence(columns, evidence.target, kept, evidence.noise))
     beside = range(len(others))
     alone = [search.candidate([*beside, k]).score for k in range(len(others), len(columns.terms))]
     return np.array(alone).reshape(len(powers), len(times))
-
-
-def _in_order(terms: list[Regressor]) -> Iterator[Regressor]:
-    """The terms with their columns one after the other."""
-    at = 0
-    for term in terms:
-        width = term.at.stop - term.at.start
-        yield replace(term, at=slice(at, at + width))
-        at += width
 
 
 def dashpot_torque_Nm(history: History, powers: np.ndarray, times: np.ndarray) -> np.ndarray:

@@ -95,20 +95,25 @@ class DesignMatrix:
 
     def of(self, causes: Collection[str]) -> DesignMatrix:
         """With the terms of these causes alone, for a fit that no other may enter."""
-        return self._only(lambda t: t.cause is not None and t.cause.id in causes)
+        return self.only(lambda t: t.cause is not None and t.cause.id in causes)
 
     def less(self, causes: Collection[str]) -> DesignMatrix:
         """Without the terms of these causes."""
-        return self._only(lambda t: t.owner not in causes)
+        return self.only(lambda t: t.owner not in causes)
 
-    def _only(self, wanted: Callable[[Regressor], bool]) -> DesignMatrix:
+    def only(self, wanted: Callable[[Regressor], bool]) -> DesignMatrix:
+        """With the terms that are wanted alone."""
         kept = [t for t in self.terms if wanted(t)]
-        ends = np.cumsum([0, *(t.width for t in kept)]).tolist()
+        return self.with_terms(kept, [self.all[:, t.at] for t in kept])
+
+    def with_terms(self, terms: Sequence[Regressor], columns: Sequence[np.ndarray]) -> DesignMatrix:
+        """With these terms in place of its own, each with its columns (n, k)."""
+        ends = np.cumsum([0, *(t.width for t in terms)]).tolist()
         return replace(
             self,
-            all=np.hstack([self.all[:, :0], *(self.all[:, t.at] for t in kept)]),
+            all=np.hstack([self.all[:, :0], *columns]),
             terms=tuple(
-                replace(t, at=slice(a, b)) for t, (a, b) in zip(kept, pairwise(ends), strict=True)
+                replace(t, at=slice(a, b)) for t, (a, b) in zip(terms, pairwise(ends), strict=True)
             ),
             tuned_from=None,
         )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.operators import direction_of_loading, steadied
-from flexspline.pipeline.diagnosis.measurement.encoder_step import encoder_step, undithered
+from flexspline.pipeline.diagnosis.measurement.encoder_step import rounding_arcsec
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 from flexspline.pipeline.diagnosis.sweep.prepare import PreparedSweep
@@ -39,9 +39,9 @@ def repeated_misfit(prepared: PreparedSweep, fit: SweepFit) -> ChannelTest | Non
     if codes is None:
         return None
     found = Residual.of(prepared, fit).tested("torque_Nm", codes)
-    rounding = undithered(prepared.noise.white, encoder_step(prepared.sweep.angle_arcsec))
+    rounding = rounding_arcsec(prepared.sweep.angle_arcsec, prepared.noise.white)
     of_torque = fit.measured_rig().compliance * torque_noise_Nm(prepared.rig.history)
-    if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding**0.5, of_torque):
+    if found.p_value > UNKNOWN_P_VALUE or found.rms_arcsec < max(rounding, of_torque):
         return None
     return found
 

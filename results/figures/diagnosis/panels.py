@@ -166,9 +166,8 @@ def means(x: np.ndarray, y: np.ndarray, few: bool) -> tuple[np.ndarray, np.ndarr
     gaps = np.flatnonzero(np.diff(sorted_x) > CLUSTER_GAP_SHARE * np.ptp(x))
     if few:
         where, codes = np.unique(x, return_inverse=True)
-    elif (
-        1 < len(gaps) < LEVELS and _sizes(gaps, len(x)).min() >= FEWEST_OF_MEAN
-    ):  # a bin across a gap would put its mean where nothing was measured
+    elif 1 < len(gaps) < LEVELS and _sizes(gaps, len(x)).min() >= FEWEST_OF_MEAN:
+        # a bin across a gap would put its mean where nothing was measured
         where = np.arange(len(gaps) + 1, dtype=float)
         codes = np.searchsorted((sorted_x[gaps] + sorted_x[gaps + 1]) / 2, x)
     else:
