@@ -14,6 +14,8 @@ import numpy as np
 Point = tuple[float, float]
 SAME = 1e-9
 """Points closer than this [mm] are one point."""
+ARC_RULE = np.polynomial.legendre.leggauss(24)
+"""Gauss's points and weights, exact to rounding for what is swept by an arc below 180°."""
 SMOOTH_rad = 0.02
 """Where tangents, or the normals of faces, turn by less [rad], there is no corner: 1.1°, more than rounding
 and a CAD kernel's tolerance, and far below the 45° of the flattest corner that a part has."""
@@ -107,7 +109,7 @@ class Segment:
         (r0, z0), (r1, z1) = self.start, self.end
         if self.centre is None:
             return pi * (z1 - z0) * (r0 * r0 + r0 * r1 + r1 * r1) / 3
-        x, w = np.polynomial.legendre.leggauss(24)  # exact to rounding for an arc below 180°
+        x, w = ARC_RULE
         angle0 = atan2(z0 - self.centre[1], r0 - self.centre[0])
         a = angle0 + self.sweep * (x + 1) / 2
         r = self.centre[0] + self.radius * np.cos(a)

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix
+from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
-from skfem.assembly.form.coo_data import COOData
 
 from flexspline.fea.axisymmetric.space import Space
+from flexspline.fea.own_assembly import NodePairs
 from flexspline.fea.types import Elastic
 
 RADIAL, TANGENTIAL, AXIAL = 0, 1, 2
@@ -46,10 +46,9 @@ class Couplings:
             if a in components and b in components:
                 blocks[:, a, b] = entries
                 if a != b:
-                    blocks[:, b, a] = entries[self._transposed]
-        pattern = self._pattern
+                    blocks[:, b, a] = entries[self._pairs.transposed]
         shape = 2 * (3 * self.space.count,)
-        return bsr_matrix((blocks, pattern.indices, pattern.indptr), shape=shape).tocsr()
+        return bsr_matrix((blocks, *self._places), shape=shape).tocsr()
 
     def _torsion(self, n: int) -> dict[tuple[int, int], np.ndarray]:
         lam, mu = self.material.lam, self.material.mu
@@ -62,7 +61,7 @@ class Couplings:
         lam, mu = self.material.lam, self.material.mu
         both = lam + 2 * mu
         rr, rz, ro, zz, zo, oo = self._rr, self._rz, self._ro, self._zz, self._zo, self._oo
-        zr, o_r, oz = rz[self._transposed], self._or, zo[self._transposed]
+        zr, o_r, oz = rz[self._pairs.transposed], self._or, zo[self._pairs.transposed]
         return {
             (RADIAL, RADIAL): both * (rr + oo) + lam * (ro + o_r) + mu * (zz + n * n * oo),
             (AXIAL, AXIAL): both * zz + mu * (rr + n * n * oo),
@@ -73,27 +72,21 @@ class Couplings:
         }
 
     @cached_property
-    def _first(self) -> COOData:
-        return RR.elemental(self.space.basis)
+    def _pairs(self) -> NodePairs:
+        return NodePairs.of(self.space.dofs, self.space.count)
 
     @cached_property
-    def _pattern(self) -> csr_matrix:
-        """Of all the forms; its data are the numbers of its entries."""
-        found = _matrix(self._first)
-        found.data = np.arange(found.nnz)
-        return found
-
-    @cached_property
-    def _transposed(self) -> np.ndarray:
-        """Where the entries of the transposed matrix stand."""
-        return self._pattern.T.tocsr().data
+    def _places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Columns of the entries, and where each row starts."""
+        rows, columns = np.divmod(self._pairs.number, self.space.count)
+        return columns, np.searchsorted(rows, np.arange(self.space.count + 1))
 
     def _entries(self, form: BilinearForm) -> np.ndarray:
-        return np.asarray(_matrix(form.elemental(self.space.basis)).data)
+        return self._pairs.summed(form.elemental(self.space.basis).data)
 
     @cached_property
     def _rr(self) -> np.ndarray:
-        return np.asarray(_matrix(self._first).data)
+        return self._entries(RR)
 
     @cached_property
     def _rz(self) -> np.ndarray:
@@ -105,7 +98,7 @@ class Couplings:
 
     @cached_property
     def _or(self) -> np.ndarray:
-        return self._ro[self._transposed]
+        return self._ro[self._pairs.transposed]
 
     @cached_property
     def _zz(self) -> np.ndarray:
@@ -118,8 +111,3 @@ class Couplings:
     @cached_property
     def _oo(self) -> np.ndarray:
         return self._entries(OO)
-
-
-def _matrix(entries: COOData) -> csr_matrix:
-    """As `COOData.tocsr`, which drops the entries that happen to be 0: so all forms have one pattern."""
-    return coo_matrix((entries.data, tuple(entries.indices)), shape=entries.shape).tocsr()

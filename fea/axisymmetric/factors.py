@@ -10,11 +10,12 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.superlu import superlu
 
-PARDISO_FROM = 3_000
-"""Unknowns from which oneMKL's Pardiso takes less time than SuperLU, where it is. Milliseconds of SuperLU, of
-Pardiso's factors, and of those with a new ordering, on a busy machine: 1 000 to 2 000 unknowns 9, 15 and 22,
-2 000 to 4 000 19, 14 and 35, 4 000 to 8 000 53, 25 and 64, 8 000 to 16 000 147, 58 and 115. Four of five
-matrices have the places of the last one."""
+PARDISO_AT_ONCE_FROM = 8_000
+"""Unknowns from which oneMKL's Pardiso takes less time than SuperLU even for one matrix alone, where it is:
+147 ms (SuperLU) and 115 (Pardiso, ordering included) at 8 000 to 16 000, 53 and 64 at half of that, on a busy
+machine. Below, Pardiso begins with the second matrix of the same places: of 1 200, 1 600, 4 400 and 5 800
+unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0, 2.7, 11.3 and 15.1, and 0.5,
+0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress and about five for lobes."""
 
 
 class PatternSolver:
@@ -23,6 +24,7 @@ class PatternSolver:
     def __init__(self) -> None:
         self._lock = Lock()  # factors serve one thread at a time
         self._factors: PardisoFactors | None = None
+        self._last: csr_matrix | None = None
 
     def solve(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
         """K⁻¹ f of loads (N,) or (N, k).
@@ -32,14 +34,22 @@ class PatternSolver:
         RuntimeError : K is singular, in SuperLU's words.
         SolveError : it is, in Pardiso's.
         """
-        if matrix.shape[0] < PARDISO_FROM or pardiso() is None:
+        if pardiso() is None:
             return solved(matrix, loads)
         with self._lock:
             last, self._factors = self._factors, None
             if last is None or not last.replace(matrix):
+                before, self._last = self._last, matrix
+                alone = before is None or not _same_places(before, matrix)
+                if alone and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
+                    return solved(matrix, loads)
                 last = PardisoFactors(matrix, single=False)
             self._factors = last
             return last.solve(loads)
+
+
+def _same_places(one: csr_matrix, other: csr_matrix) -> bool:
+    return np.array_equal(one.indptr, other.indptr) and np.array_equal(one.indices, other.indices)
 
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:

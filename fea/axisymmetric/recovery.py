@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexspline.fea.axisymmetric.harmonics import Harmonic, HarmonicModel
+from flexspline.fea.axisymmetric.harmonics import AXIAL, RADIAL, TANGENTIAL, Harmonic, HarmonicModel
 from flexspline.fea.nodal_average import nodal_average
 from flexspline.fea.types import Elastic
 
@@ -62,10 +62,13 @@ def stress(wave: Harmonic, material: Elastic, basis: Any, displacement: np.ndarr
     """Amplitudes (m, q) [MPa] of the stresses that a harmonic has, from U, V, W (3·count,) [mm]."""
     lam, mu, n = material.lam, material.mu, wave.n
     r = np.asarray(basis.global_coordinates())[0]
-    u, v, w = (basis.interpolate(each) for each in displacement.reshape(-1, 3).T)
-    (u_r, u_z), (v_r, v_z), (w_r, w_z) = u.grad, v.grad, w.grad
+    component = displacement.reshape(-1, 3).T
+    v = basis.interpolate(component[TANGENTIAL])
+    v_r, v_z = v.grad
     if wave.torsion:
         return {R_THETA: mu * (v_r - v / r), THETA_Z: mu * v_z}
+    u, w = basis.interpolate(component[RADIAL]), basis.interpolate(component[AXIAL])
+    (u_r, u_z), (w_r, w_z) = u.grad, w.grad
     around = (u + n * v) / r
     mean = lam * (u_r + around + w_z)
     found = {

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from skfem import Basis, ElementTriP2, MeshTri, MeshTri2
+from skfem import ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
+from flexspline.fea.own_assembly import CurvedTriangles, ScalarBasis, Triangles
 
 
 @dataclass(frozen=True)
@@ -81,9 +82,9 @@ def curved(mesh: MeridianMesh, degree: int) -> Space:
     middles = straight_edges.p[:, straight_edges.facets].mean(axis=1)
     middles[:, facets] = edge_middles(mesh.outline, mesh.points, mesh.edges, mesh.edge_segment).T
     named = {p: mesh.segments_of(p) for p in {s.patch for s in mesh.outline.segments} if p}
-    quadratic = MeshTri2(np.hstack([straight_edges.p, middles]), straight_edges.t)
+    quadratic = CurvedTriangles(np.hstack([straight_edges.p, middles]), straight_edges.t)
     quadratic = quadratic.with_boundaries(_named(named, mesh, facets))
-    basis = Basis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
+    basis = ScalarBasis(quadratic, ElementTriP2(), intorder=degree, dofs=quadratic.dofs)
     jacobian = basis.mapping.detDF(basis.X)
     # corners stand in any sense, so either sign may come, but one per triangle
     folded = (jacobian * jacobian[:, :1] <= 0).any(axis=1)
@@ -102,20 +103,20 @@ def straight(
     linear = _linear_mesh(mesh, vertices)
     facets = _outline_facets(linear, mesh)
     linear = linear.with_boundaries(_named(boundaries, mesh, facets))
-    return _space(Basis(linear, ElementTriP2(), intorder=degree), mesh, facets)
+    return _space(ScalarBasis(linear, ElementTriP2(), intorder=degree), mesh, facets)
 
 
 def moved(space: Space, vertices: np.ndarray, degree: int) -> Space:
     """A `straight` space with its vertices elsewhere (n, 2); numbers and boundaries stay."""
     old = space.basis
-    mesh = MeshTri(np.ascontiguousarray(vertices.T), old.mesh.t)
-    basis = Basis(mesh, old.elem, intorder=degree, dofs=old.dofs)
+    mesh = Triangles(np.ascontiguousarray(vertices.T), old.mesh.t)
+    basis = ScalarBasis(mesh, old.elem, intorder=degree, dofs=old.dofs)
     return Space(basis, space.rim, space.numbers)
 
 
 def _linear_mesh(mesh: MeridianMesh, vertices: np.ndarray) -> Any:
     triangles = np.sort(mesh.triangles, axis=1)
-    return MeshTri(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
+    return Triangles(np.ascontiguousarray(vertices.T), np.ascontiguousarray(triangles.T))
 
 
 def _outline_facets(mesh: Any, meridian: MeridianMesh) -> np.ndarray:
@@ -142,7 +143,7 @@ def at_points(space: Space, at: np.ndarray) -> Any:
     """The basis at other points (2, q) of each reference triangle, to look at fields there."""
     basis = space.basis
     weights = np.full(at.shape[1], 0.5 / at.shape[1])
-    return Basis(
+    return ScalarBasis(
         basis.mesh, basis.elem, mapping=basis.mapping, quadrature=(at, weights), dofs=basis.dofs,
         disable_doflocs=True,
     )  # fmt: skip

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from skfem import BilinearForm
 
+from flexspline.fea.own_assembly import NodePairs
 from flexspline.fea.solid.elements import basis_of
-from flexspline.fea.solid.own_assembly import NodePairs
 from flexspline.fea.solid.space import SolidSpace
 from flexspline.fea.types import Elastic
 from flexspline.geometry.outline import SAME

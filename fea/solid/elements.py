@@ -9,14 +9,14 @@ import numpy as np
 
 def linear_mesh(corners: np.ndarray, tets: np.ndarray) -> Any:
     """scikit-fem's MeshTet; corners (n, 3), tets (m, 4)."""
-    from flexspline.fea.solid.own_assembly import Tetrahedra
+    from flexspline.fea.own_assembly import Tetrahedra
 
     return Tetrahedra(np.ascontiguousarray(corners.T), np.ascontiguousarray(tets.T), sort_t=False)
 
 
 def quadratic_mesh(nodes: np.ndarray, cells: np.ndarray) -> Any:
     """scikit-fem's curved MeshTet2; it numbers the middle nodes by its own edges."""
-    from flexspline.fea.solid.own_assembly import CurvedTetrahedra
+    from flexspline.fea.own_assembly import CurvedTetrahedra
 
     return CurvedTetrahedra(
         np.ascontiguousarray(nodes.T), np.ascontiguousarray(cells.T), sort_t=False
@@ -35,7 +35,7 @@ def basis_of(
     """
     from skfem import Basis, ElementTetP2, ElementTriP2
 
-    from flexspline.fea.solid.own_assembly import KeptMapping
+    from flexspline.fea.own_assembly import KeptMapping
 
     points, weights = quadrature or tet_rule(4)
     element = ElementTetP2()
@@ -57,7 +57,7 @@ def determinants(curved: Any, points: np.ndarray) -> np.ndarray:
     from skfem import ElementTetP2
     from skfem.helpers import det
 
-    from flexspline.fea.solid.own_assembly import KeptMapping
+    from flexspline.fea.own_assembly import KeptMapping
 
     return np.asarray(det(KeptMapping(curved, ElementTetP2()).DF(points.T)))
 

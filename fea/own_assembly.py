@@ -1,15 +1,14 @@
-"""What is the program's own between scikit-fem's meshes and the matrix of a solid, for time alone.
+"""What is the program's own between scikit-fem's meshes and the matrix, for time alone.
 
-Nothing here says anything that scikit-fem does not; tests hold each part to its answers. Processor time of a
-cold `flexspline stiffness` without it, over that with it (three cups alternating, means of two or three):
+Nothing here says anything that scikit-fem does not; tests hold each part to its answers. Processor time
+without it, over that with it (three cups, a cold `flexspline stiffness` each, two or three runs; twenty
+designs of a study, least of four; all alternating):
 
-                   xb1-40  hat-25  keyed-shaft
-    numbers          1.06    1.13    1.11   edges and facets from one sort of integers
-    KeptMapping      1.07    1.10    1.05   slopes found at once, their inverse once for ten functions
-    NodePairs        1.11    1.09    1.07   six forms summed at places that are found once
-    all three        1.28    1.29    1.29
-
-The axisymmetric side has none of it.
+                   xb1-40  hat-25  keyed-shaft  study
+    numbers          1.06    1.13    1.11       1.04   edges and facets from one sort of integers
+    KeptMapping      1.07    1.10    1.05       -      slopes at once, their inverse once for ten functions
+    NodePairs        1.11    1.09    1.07       1.02   six forms summed at places that are found once
+    ScalarBasis      -       -       -          1.04   numbers sorted once, not for each field
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from skfem import Mesh, MeshTet, MeshTet2
+from skfem import Basis, Mesh, MeshTet, MeshTet2, MeshTri, MeshTri2
 from skfem.mapping import MappingIsoparametric
 
 LARGEST = np.iinfo(np.int64).max
@@ -57,6 +56,22 @@ class Tetrahedra(_Numbered, MeshTet):  # type: ignore[misc]
 
 class CurvedTetrahedra(_Numbered, MeshTet2):  # type: ignore[misc]
     """scikit-fem's MeshTet2."""
+
+
+class Triangles(_Numbered, MeshTri):  # type: ignore[misc]
+    """scikit-fem's MeshTri."""
+
+
+class CurvedTriangles(_Numbered, MeshTri2):  # type: ignore[misc]
+    """scikit-fem's MeshTri2."""
+
+
+class ScalarBasis(Basis):  # type: ignore[misc]
+    """A basis of one component; scikit-fem sorts its numbers for every field that it looks at."""
+
+    def split(self, x: np.ndarray) -> list[tuple[np.ndarray, Any]]:
+        """A field (N,) and its basis, this one."""
+        return [(x, self)]
 
 
 class KeptMapping(MappingIsoparametric):  # type: ignore[misc]
@@ -102,7 +117,7 @@ class NodePairs:
     Attributes
     ----------
     number : (p,) row·n + column, rising.
-    place : (10, 10, m) to which of them each element's entry is added: trial function, test function,
+    place : (k, k, m) to which of them each element's entry is added: trial function, test function,
         element, as in scikit-fem's element matrices.
     """
 
@@ -111,13 +126,13 @@ class NodePairs:
 
     @classmethod
     def of(cls, cells: np.ndarray, n: int) -> NodePairs:
-        """Of elements (m, 10) on n nodes."""
+        """Of elements (m, k) on n nodes."""
         numbers = cells.T[None] * n + cells.T[:, None]
         pairs, place = np.unique(numbers, return_inverse=True)
         return cls(pairs, place.reshape(numbers.shape))
 
-    def summed(self, entries: np.ndarray, elements: np.ndarray) -> np.ndarray:
-        """Sums (p,) of the entries that a form has on some elements, `form.elemental(basis).data`."""
+    def summed(self, entries: np.ndarray, elements: Any = slice(None)) -> np.ndarray:
+        """Sums (p,) of the entries that a form has on all or some elements, `form.elemental(basis).data`."""
         return np.bincount(self.place[..., elements].ravel(), entries, len(self.number))
 
     @cached_property

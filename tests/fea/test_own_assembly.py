@@ -7,11 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 from hand_made_tube import tube
-from skfem import Basis, BilinearForm, ElementTetP2, ElementTriP2, Mesh, MeshTet
+from skfem import Basis, BilinearForm, ElementTetP2, ElementTriP2, Mesh, MeshTet, MeshTri
 from skfem.mapping import MappingIsoparametric
 
+from flexspline.fea.own_assembly import (
+    KeptMapping,
+    NodePairs,
+    ScalarBasis,
+    Tetrahedra,
+    Triangles,
+)
 from flexspline.fea.solid.elements import tet_rule
-from flexspline.fea.solid.own_assembly import KeptMapping, NodePairs, Tetrahedra
 from flexspline.fea.solid.space import SolidSpace
 
 
@@ -30,6 +36,21 @@ def test_numbers_of_tetrahedra(named: str) -> None:
     points, t = shuffled(MeshTet().refined(2))
     own, theirs = (kind(points, t, sort_t=False) for kind in (Tetrahedra, MeshTet))
     assert np.array_equal(getattr(own, named), getattr(theirs, named))
+
+
+@pytest.mark.parametrize("named", ["facets", "t2f", "f2t"])
+def test_numbers_of_triangles(named: str) -> None:
+    points, t = shuffled(MeshTri().refined(3))
+    own, theirs = (kind(points, t, sort_t=False) for kind in (Triangles, MeshTri))
+    assert np.array_equal(getattr(own, named), getattr(theirs, named))
+
+
+def test_a_field_seen_on_a_basis_of_one_component() -> None:
+    mesh = MeshTri(*shuffled(MeshTri().refined(2)))
+    field = np.random.default_rng(1).standard_normal(Basis(mesh, ElementTriP2()).N)
+    ours, theirs = (kind(mesh, ElementTriP2()).interpolate(field) for kind in (ScalarBasis, Basis))
+    assert np.array_equal(ours.value, theirs.value)
+    assert np.array_equal(ours.grad, theirs.grad)
 
 
 def test_corner_numbers_too_large_for_one_integer() -> None:
