@@ -1,4 +1,4 @@
-"""What is open of a hardening's size because no row says at which place friction takes its torque.
+"""What is open of hardening's and friction's size as no row says at which place friction takes its torque.
 
 Friction found behind the gap adds twist in proportion to its torque. Where it takes that torque before it
 reaches the soft wind-up, the wind-up's own slope stands in the place of the mean one: the loop is wider where
@@ -19,6 +19,9 @@ from flexspline.pipeline.diagnosis.sweep.fit import SweepFit
 
 SLOPE_SHARE = 1e-3
 """Of the largest torque, to either side, for the wind-up's slope: a hundredth of its narrowest knee."""
+BOTH_SIDES = 0.15
+"""Torque is on both sides of zero where the smaller side has more than this share of the larger: a loop
+closes within some percent of its turn, and noise is less."""
 EVEN_ODDS = 0.5
 """That friction acts before the wind-up, and not beside it."""
 
@@ -39,6 +42,21 @@ def hardening_std(fit: SweepFit) -> float:
     model = np.hstack([evidence.base, evidence.x[:, at]]) / scale
     moved = posterior.covariance @ (model.T @ other)
     return EVEN_ODDS**0.5 * abs(float(fit.magnitude_slopes()[HARDENING] @ moved))
+
+
+def width_share_std(fit: SweepFit) -> float:
+    """Of friction's size, as a share of it, by friction's place, where torque stays on one side of zero.
+
+    The loop at T = 0 is then told by loops elsewhere. Before the wind-up, friction makes it wider by as much
+    as the gear is softer there: by the hardening's ratio, or more, as chords from 5 % of the torque on say
+    the ratio. On both sides of zero the rows next to it show the width.
+    """
+    sizes, history = fit.magnitudes(), fit.rig.history
+    if fit.evidence.columns.ahead is not None or not {FRICTION, HARDENING} <= set(sizes):
+        return 0.0
+    torque = history.torque_Nm[fit.evidence.kept]
+    least, most = sorted([max(0.0, float(torque.max())), max(0.0, -float(torque.min()))])
+    return 0.0 if least > BOTH_SIDES * most else abs(sizes[HARDENING] - 1)
 
 
 def _softer(fit: SweepFit) -> np.ndarray:

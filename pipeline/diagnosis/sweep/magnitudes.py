@@ -14,7 +14,7 @@ from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.causes.thermal_clearance import THERMAL
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence, shape_key
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
+from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std, width_share_std
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.leakage import effect_size
 from flexspline.pipeline.diagnosis.sweep.search import Candidate
@@ -66,6 +66,8 @@ def magnitudes(identified: Identification) -> tuple[dict[str, float], dict[str, 
     # a loop in proportion to load has no width at T = 0 by its shape alone; ahead of the teeth there is none
     if FRICTION in std and FRICTION in names:
         std[FRICTION] = max(std[FRICTION], _width_std_arcsec(evidence))
+        by_place = width_share_std(identified.fit) * best[FRICTION]
+        std[FRICTION] = hypot(std[FRICTION], by_place)
     return best, std
 
 

@@ -13,7 +13,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.sweep.evidence import gaussian_evidence
 from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
-from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std
+from flexspline.pipeline.diagnosis.sweep.friction_place import hardening_std, width_share_std
 
 ROWS, PER_CYCLE, COMPLIANCE, LARGEST_Nm = 640, 160, 11.343, 10.0
 HARDENING, FRICTION = "stiffness_hardening", "friction_hysteresis"
@@ -30,12 +30,21 @@ def slipping_springs(torque: np.ndarray, limit: float) -> np.ndarray:
     return total
 
 
-def diagnosed(friction_Nm: float, folder: Path) -> Diagnosis:
-    """A soft wind-up of the torque that friction leaves, stiff above a third of the largest."""
-    i = np.arange(ROWS)
-    torque = LARGEST_Nm * (1 - 4 * np.abs(((i + 0.5) / PER_CYCLE + 0.25) % 1 - 0.5))
+def twist(torque: np.ndarray, friction_Nm: float) -> np.ndarray:
+    """A soft wind-up of the torque that friction leaves, stiff above a third of the largest [arcsec]."""
     left = torque - slipping_springs(torque, friction_Nm)
-    angle = COMPLIANCE * (left + 0.15 * LARGEST_Nm * np.tanh(left / (0.3 * LARGEST_Nm)))
+    return COMPLIANCE * (left + 0.15 * LARGEST_Nm * np.tanh(left / (0.3 * LARGEST_Nm)))
+
+
+def triangle() -> np.ndarray:
+    i = np.arange(ROWS)
+    return LARGEST_Nm * (1 - 4 * np.abs(((i + 0.5) / PER_CYCLE + 0.25) % 1 - 0.5))
+
+
+def diagnosed(friction_Nm: float, folder: Path, one_sided: bool = False) -> Diagnosis:
+    i = np.arange(ROWS)
+    torque = np.abs(triangle()) if one_sided else triangle()
+    angle = twist(torque, friction_Nm)
     angle += 36.1 * np.sign(torque) + np.random.default_rng(3).normal(0, 0.4, ROWS)
     path = folder / "rig.csv"
     body = "".join(f"{3 * k},{t:.4f},{a:.3f}\n" for k, t, a in zip(i, torque, angle, strict=True))
@@ -63,6 +72,25 @@ def test_the_deviation_is_what_the_other_place_moves_the_size_by(tmp_path: Path)
     assert hardening_std(fit) == pytest.approx(abs(moved) / 2**0.5, rel=0.2)
     (cause,) = (c for c in found.causes if c.id == HARDENING)
     assert cause.magnitude_std > hardening_std(fit)
+
+
+def test_where_torque_stays_on_one_side_the_width_at_zero_is_as_open(tmp_path: Path) -> None:
+    """Loops between 0 and the largest torque close at T = 0; the record shows none that crosses it."""
+    torque, friction_Nm = triangle(), 0.6
+    angle, last = twist(torque, friction_Nm), slice(-PER_CYCLE, None)
+    falls = np.diff(torque[last], prepend=torque[-PER_CYCLE - 1]) < 0
+    at_zero = []
+    for way in (falls, ~falls):
+        order = np.argsort(torque[last][way])
+        at_zero.append(np.interp(0.0, torque[last][way][order], angle[last][way][order]))
+    truth = at_zero[0] - at_zero[1]
+    for one_sided in (False, True):
+        found = diagnosed(friction_Nm, tmp_path, one_sided)
+        (cause,) = (c for c in found.causes if c.id == FRICTION)
+        assert found.sweep is not None
+        open_share = width_share_std(found.sweep.explained.identified.fit)
+        assert (open_share > 0.05) == one_sided
+        assert abs(cause.magnitude - truth) < 2.5 * cause.magnitude_std
 
 
 def test_without_friction_there_is_none(tmp_path: Path) -> None:
