@@ -158,10 +158,9 @@ class FrictionHysteresis(Cause):
             lengths = [len(r) for r, _ in parts]
             start = np.repeat([s["start"] for s in stopped], lengths)
             # the even and exponential spreads repeat thresholds; each pair is run once
-            pairs, where = np.unique(np.column_stack([each, start]), axis=0, return_inverse=True)
-            where = where.ravel()  # of two dimensions in numpy 2.0.0
+            pairs, where = np.unique(each + 1j * start, return_inverse=True)
             torque = steadied(history, shapes[0]["deadband_Nm"])
-            run = stops(history, torque, pairs[:, 0], pairs[:, 1])
+            run = stops(history, torque, pairs.real, pairs.imag)
             at = 0
             for s, (r, weight) in zip(stopped, parts, strict=True):
                 mine = where[at : at + len(r)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -31,17 +32,48 @@ def stops(
     """
     out = np.empty((len(history), len(thresholds_Nm)))
     high = thresholds_Nm
-    for rows in history.unit_slices:
-        torque = torque_Nm[rows]
-        first = np.clip(start * high + torque[0], -high, high)
-        edges = np.array([a for a, _ in _one_way(np.diff(torque, prepend=torque[0]))])
-        turns = np.r_[0, edges[1:] - 1, len(rows) - 1]
-        states = _clipped_sums(first, np.diff(torque[turns]), high)
+    for rows, ways in zip(history.unit_slices, _ways_of(history, torque_Nm), strict=True):
+        first = np.clip(start * high + torque_Nm[rows[0]], -high, high)
+        states = _clipped_sums(first, ways.steps_Nm, high)
         # between two turns nothing is lost but at one limit
-        way = np.repeat(np.arange(len(edges)), np.diff(np.r_[edges, len(rows)]))
-        moved = states[way] + (torque - torque[turns[way]])[:, None]
-        out[rows] = np.clip(moved, -high, high)
+        moved = states[ways.number] + ways.since_Nm[:, None]
+        out[rows] = np.clip(moved, -high, high, out=moved)
     return out
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """A unit's torque from turn to turn.
+
+    Attributes
+    ----------
+    steps_Nm : (k,) from each turn to the next.
+    number : (n,) of the way that each row is on.
+    since_Nm : (n,) torque since the turn before.
+    """
+
+    steps_Nm: np.ndarray
+    number: np.ndarray
+    since_Nm: np.ndarray
+
+    @classmethod
+    def of(cls, torque_Nm: np.ndarray) -> _Ways:
+        edges = [a for a, _ in _one_way(np.diff(torque_Nm, prepend=torque_Nm[0]))]
+        ends = np.array([*edges, len(torque_Nm)])
+        turns = np.r_[0, ends[1:] - 1]
+        way = np.repeat(np.arange(len(edges)), np.diff(ends))
+        at_turn = torque_Nm[turns]
+        return cls(np.diff(at_turn), way, torque_Nm - at_turn[way])
+
+
+def _ways_of(history: History, torque_Nm: np.ndarray) -> list[_Ways]:
+    """Of each unit; those of the last torque stay, as many elements are driven by it one after the other."""
+    key = ("ways", 0.0)
+    if key not in history.memo or history.memo[key][0] is not torque_Nm:
+        ways = [_Ways.of(torque_Nm[rows]) for rows in history.unit_slices]
+        history.memo[key] = torque_Nm, ways
+    found: list[_Ways] = history.memo[key][1]
+    return found
 
 
 def _clipped_sums(first: np.ndarray, steps: np.ndarray, limit: np.ndarray) -> np.ndarray:
@@ -90,7 +122,11 @@ def steadied(history: History, width_Nm: float) -> np.ndarray:
     Not smoothed: corners stay where they are. An operator with a memory, driven by the raw reading,
     would follow the reading's noise and be fitted to it.
     """
-    return play(history, width_Nm) + width_Nm * rising(history, width_Nm)
+    key = ("steadied", float(width_Nm))
+    if key not in history.memo:
+        history.memo[key] = play(history, width_Nm) + width_Nm * rising(history, width_Nm)
+    found: np.ndarray = history.memo[key]
+    return found
 
 
 def within_cycle(history: History) -> np.ndarray:
