@@ -89,12 +89,14 @@ def diagnose(
     """Compare measured data with the simulation and name the causes."""
     in_order(design, measured, "diagnose DESIGN.toml MEASURED.csv")
     with answered(design, "; run the same command again: it starts from the beginning"):
+        from flexspline.pipeline.second_process import second_process
         from flexspline.results.diagnosis.diagnose import diagnose_and_write
         from flexspline.results.figures.diagnosis.captions import CAPTIONS
 
         job = begin(design, out, of_diagnosis(CAPTIONS))
         given = (stiffness_option("--Kb", kb), stiffness_option("--Ke", ke))
-        said = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
+        with second_process():
+            said = diagnose_and_write(job, measured, given, json, counts_per_turn, against == GEAR)
         show(said, json)
 
 

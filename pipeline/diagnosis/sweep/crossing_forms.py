@@ -64,14 +64,16 @@ def softly(history: History) -> list[Tried]:
 def behind_friction(
     history: History, frictions_Nm: np.ndarray | None = None, offset_Nm: float = 0.0
 ) -> list[Tried]:
-    """Crossed where friction ahead of the teeth lets the torque pass; beside a shifted reading."""
+    """Crossed where friction ahead of the teeth lets the torque pass, which the twist follows; beside a
+    shifted reading."""
     if frictions_Nm is None:
         frictions_Nm = np.linspace(0, LARGEST_FRICTION, FRICTIONS + 1)[1:] * _largest(history)
     torque = steadied(history, deadband_Nm(history))
     carried = stops(history, torque, frictions_Nm, np.zeros(len(frictions_Nm)))
+    at_teeth = history.torque_Nm[:, None] - carried
     return [
-        Tried("friction", friction, _sharp(history.torque_Nm - offset_Nm - own))
-        for friction, own in zip(frictions_Nm.tolist(), carried.T, strict=True)
+        Tried("friction", friction, _sharp(torque - offset_Nm), torque)
+        for friction, torque in zip(frictions_Nm.tolist(), at_teeth.T, strict=True)
     ]
 
 

@@ -50,7 +50,7 @@ from flexspline.pipeline.diagnosis.structure import BackwardLoop, LateAngle
 from flexspline.pipeline.diagnosis.sweep.ahead_race import with_friction_ahead
 from flexspline.pipeline.diagnosis.sweep.backward import backward_of
 from flexspline.pipeline.diagnosis.sweep.credit import unnamed_share
-from flexspline.pipeline.diagnosis.sweep.held_out import gain_of, gains_at_levels, refuted
+from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
 from flexspline.pipeline.diagnosis.sweep.jumps import jumps_of, largest
 from flexspline.pipeline.diagnosis.sweep.late_angle import late_angle_of
 from flexspline.pipeline.diagnosis.sweep.limits import broken_limit, drowned, slow_noise
@@ -139,8 +139,7 @@ def diagnose_sweep(
         late = Unexplained("torque_rate", misread.rms_arcsec, 0.0, misread)
         decision = overruled(late)
     ids = [c.id for c in decision.causes]
-    gain = gain_of(explained, ids)
-    levels = gains_at_levels(explained, ids) if ids else ()
+    gain, levels = gains_of(explained, ids)
     if (fails := refuted(levels)) is not None:
         decision = overruled(fails, decision.causes, decision.unexplained)
     outcome = DiagnosisOutcome(

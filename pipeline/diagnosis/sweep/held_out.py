@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 from flexspline.pipeline.diagnosis.sweep.splits import Split, between_others, whole_levels
+from flexspline.pipeline.second_process import results_of
 
 MOST_HELD_OUT_ROWS = 24_000
 """Rows that all levels together may take, each with a search of its own: 1.5 ms of a processor a row."""
@@ -37,22 +39,23 @@ REFUTING_DEVIATIONS = 3.0
 tells the sizes."""
 
 
-def gain_of(explained: ExplainedSweep, causes: Collection[str]) -> Gain | None:
-    """The error on cycles, positions or units between others; None where nothing can be spared."""
+def gains_of(
+    explained: ExplainedSweep, causes: Collection[str]
+) -> tuple[Gain | None, tuple[Gain, ...]]:
+    """The error on cycles, positions or units between others, None where nothing can be spared; and, where
+    causes are named, on each whole amplitude, rate and temperature, learnt on the others."""
     prepared = explained.prepared
-    split = between_others(prepared.rig.history, prepared.sweep.cycles)
-    return None if split is None else _gain(explained, causes, split)
-
-
-def gains_at_levels(explained: ExplainedSweep, causes: Collection[str]) -> tuple[Gain, ...]:
-    """The error on each whole amplitude, rate and temperature, learnt on the others."""
-    prepared = explained.prepared
-    timed = prepared.sweep.history.time_s is not None
-    splits = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
-    most = MOST_HELD_OUT_ROWS // len(prepared.kept)
-    splits = splits[-most:] if most else []
-    gains = (_gain(explained, causes, split) for split in splits)
-    return tuple(g for g in gains if g is not None)
+    between = between_others(prepared.rig.history, prepared.sweep.cycles)
+    levels: list[Split] = []
+    if causes:
+        timed = prepared.sweep.history.time_s is not None
+        levels = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
+        most = MOST_HELD_OUT_ROWS // len(prepared.kept)
+        levels = levels[-most:] if most else []
+    splits = [*levels, *([between] if between else [])]
+    gains = results_of([partial(_gain, explained, causes, split) for split in splits])
+    first = gains.pop() if between else None
+    return first, tuple(g for g in gains if g is not None)
 
 
 def refuted(levels: Iterable[Gain]) -> Unexplained | None:

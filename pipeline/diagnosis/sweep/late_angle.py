@@ -107,14 +107,18 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
     # local polynomials take the gap's step for noise: what the best form leaves is less
     crossed = replace(crossed, noise_arcsec=_left_by(best))
+    if best is not own:
+        other = crossed.best(_beside(forms[fits.index(best)], best))
+        return _Searched(crossed, crossed.of(own.tried), other)
+    fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
+    best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
+    crossed = replace(crossed, noise_arcsec=_left_by(best))
     if best is own:
-        fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
-        best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
-        crossed = replace(crossed, noise_arcsec=_left_by(best))
-        if best is own:
-            fits += _rubbed(crossed, friction=fits[-1])
+        fits += _rubbed(crossed, friction=fits[-1])
+        own = crossed.best(_times_about(history, own.tried))
+    else:
+        own = crossed.of(own.tried)
     others = [crossed.of(fit.tried) for fit in fits[len(LATE_KINDS) :]]
-    own = crossed.best(_times_about(history, own.tried))
     return _Searched(crossed, own, max(others, key=likeliest))
 
 

@@ -43,20 +43,25 @@ def parts(shown: SweepPictureData) -> list[ContributionPanel]:
     for owner, rms in sorted(identified.rms.items(), key=lambda item: -item[1]):
         if owner in told or rms < LEAST_SHOWN * shown.noise_arcsec:
             continue
-        title, lines = _unnamed(shown.channel_name(owner.removeprefix("?")), owner, rms)
+        trace = rms < shown.noise_arcsec
+        title, lines = _unnamed(shown.channel_name(owner.removeprefix("?")), owner, rms, trace)
         found.append(ContributionPanel(owner, title, lines, shown.channel(_channel_of(owner))))
     return found
 
 
-def _unnamed(channel: str, owner: str, rms_arcsec: float) -> tuple[str, tuple[str, ...]]:
-    """Title and lines of structure, or of a cause that the model holds and the verdict does not name."""
+def _unnamed(
+    channel: str, owner: str, rms_arcsec: float, trace: bool
+) -> tuple[str, tuple[str, ...]]:
+    """Title and lines of structure, or of a cause that the model holds and the verdict does not name.
+
+    What is more than a `trace`, which noise hides, is not named for a reason that the verdict gives.
+    """
     size = f"{rms_arcsec:.2g} arcsec rms"
     if owner in known_causes():
-        return _short(f"Not named: {title_of(owner)}"), (
-            size,
-            "a trace of it;",
-            "too little to name",
-        )
+        why = ["a trace of it;", "too little to name"]
+        if not trace:
+            why = ["it fits these rows;", "the verdict says why", "it is not named"]
+        return _short(f"Not named: {title_of(owner)}"), (size, *why)
     words = channel_words(channel)
     lines = (size, f"lies in: {words}", "no known cause explains it")
     return f"Without a name: structure in {words}", lines

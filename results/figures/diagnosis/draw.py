@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Specimens, Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain, Unexplained
 from flexspline.pipeline.diagnosis.specimens.finding import SpecimenAnalysis
 from flexspline.pipeline.diagnosis.sweep.residual_tests import STRUCTURE_P_VALUE, ChannelTest
+from flexspline.pipeline.second_process import results_of
 from flexspline.results.diagnosis.channels import channel_words
 from flexspline.results.figures.diagnosis.captions import caption
 from flexspline.results.figures.diagnosis.contribution_parts import parts
@@ -44,16 +46,18 @@ class DiagnosisFigure:
 
 
 class _Sheet:
-    """Figures drawn so far, and where the next one goes."""
+    """Figures in their order, and how each is drawn."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.drawn: list[DiagnosisFigure] = []
+        self.figures: list[DiagnosisFigure] = []
+        self.drawings: list[Callable[[], None]] = []
 
-    def place(self, name: str, words: str | None = None) -> Path:
+    def add(self, name: str, write: Callable[[Path], None], words: str | None = None) -> None:
+        """A figure that `write` draws into its file."""
         path = self.folder / f"{name}.png"
-        self.drawn.append(DiagnosisFigure(path, words or caption(name)))
-        return path
+        self.figures.append(DiagnosisFigure(path, words or caption(name)))
+        self.drawings.append(partial(write, path))
 
 
 def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[DiagnosisFigure]:
@@ -68,36 +72,32 @@ def draw_figures(diagnosis: Diagnosis, folder: Path) -> list[DiagnosisFigure]:
         _end_points(diagnosis.end_points, sheet)
     elif isinstance(measurement, Specimens) and diagnosis.specimens is not None:
         _specimens(diagnosis.specimens, diagnosis.outcome.gain, measurement.overrides, sheet)
-    return sheet.drawn
+    results_of(sheet.drawings)
+    return sheet.figures
 
 
 def _sweep(shown: SweepPictureData, sheet: _Sheet) -> None:
-    outcome = shown.diagnosis.outcome
-    write_overview(sheet.place("measured_and_predicted"), shown)
-    write_channels(
-        sheet.place("residual_simulation"),
-        shown,
-        shown.calibrated,
-        "Residual of the simulation against every channel",
+    outcome, gain = shown.diagnosis.outcome, shown.diagnosis.outcome.gain
+    sheet.add("measured_and_predicted", lambda path: write_overview(path, shown))
+    before = "Residual of the simulation against every channel"
+    sheet.add(
+        "residual_simulation", lambda path: write_channels(path, shown, shown.calibrated, before)
     )
     if parts(shown):
-        write_contributions(sheet.place("causes"), shown)
+        sheet.add("causes", lambda path: write_contributions(path, shown))
     shares = shared_causes(shown)
     if shares:
-        write_units(sheet.place("units"), shown, shares)
-    gain = outcome.gain
+        sheet.add("units", lambda path: write_units(path, shown, shares))
     if gain is not None and gain.left and outcome.causes:
-        write_held_out(sheet.place("held_out"), gain)
+        sheet.add("held_out", lambda path: write_held_out(path, gain))
     words = None
     if outcome.unexplained:
         channels = dict.fromkeys(channel_words(u.channel) for u in outcome.unexplained)
         words = caption("residual_unknown", where=", ".join(channels))
-    write_channels(
-        sheet.place("residual_model", words),
-        shown,
-        shown.left,
-        "Residual of the best model against every channel",
-        residual_words(shown.tests, outcome.unexplained),
+    after = "Residual of the best model against every channel"
+    said = residual_words(shown.tests, outcome.unexplained)
+    sheet.add(
+        "residual_model", lambda path: write_channels(path, shown, shown.left, after, said), words
     )
 
 
@@ -119,18 +119,18 @@ def residual_words(
 
 
 def _end_points(analysis: EndPointAnalysis, sheet: _Sheet) -> None:
-    write_envelope(sheet.place("envelope"), analysis)
-    write_positions(sheet.place("positions"), analysis)
+    sheet.add("envelope", lambda path: write_envelope(path, analysis))
+    sheet.add("positions", lambda path: write_positions(path, analysis))
     if len(analysis.hypotheses) > 1:
-        write_rivals(sheet.place("rivals"), analysis)
+        sheet.add("rivals", lambda path: write_rivals(path, analysis))
 
 
 def _specimens(
     analysis: SpecimenAnalysis, gain: Gain | None, overrides: dict[str, np.ndarray], sheet: _Sheet
 ) -> None:
-    write_stiffness(sheet.place("stiffness"), analysis)
+    sheet.add("stiffness", lambda path: write_stiffness(path, analysis))
     if any(np.ptp(v) > 0 for v in overrides.values()):
-        write_dimensions(sheet.place("dimensions"), analysis, overrides)
+        sheet.add("dimensions", lambda path: write_dimensions(path, analysis, overrides))
     if gain is not None and analysis.chosen.terms and np.isfinite(analysis.held_out).all():
-        path = sheet.place("held_out", caption("held_out_specimens"))
-        write_held_out_specimens(path, analysis, gain)
+        words = caption("held_out_specimens")
+        sheet.add("held_out", lambda path: write_held_out_specimens(path, analysis, gain), words)

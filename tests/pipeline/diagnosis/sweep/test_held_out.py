@@ -15,7 +15,7 @@ from flexspline.pipeline.diagnosis.measurement.record import Sweep
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
-from flexspline.pipeline.diagnosis.sweep.held_out import gains_at_levels, refuted
+from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.splits import between_others, whole_levels
@@ -126,16 +126,14 @@ def test_a_level_held_out_teaches_nothing() -> None:
     angle = 10.0 * history.torque_Nm + 30.0 * history.sign + soft + rng.normal(0, 0.5, len(share))
     raced = explained(history, angle)
     assert raced.identified.named == ("stiffness_hardening",)
-    for level in gains_at_levels(raced, raced.identified.named):
+    for level in gains_of(raced, raced.identified.named)[1]:
         rows = np.array(level.held_out_rows)
         prepared = raced.prepared
         moved = prepared.target.copy()
         moved[np.isin(history.cycle, np.unique(history.cycle[rows]))] += 40.0
         other = replace(raced, prepared=replace(prepared, target=moved))
         again = next(
-            g
-            for g in gains_at_levels(other, raced.identified.named)
-            if g.held_out == level.held_out
+            g for g in gains_of(other, raced.identified.named)[1] if g.held_out == level.held_out
         )
         assert again.left["after"] == pytest.approx(level.left["after"] + 40.0, abs=1e-6)
     fresh = prepare(raced.prepared.sweep, PREDICTION).columns.terms
@@ -153,7 +151,7 @@ def test_what_is_known_carries_over_to_an_amplitude_not_measured() -> None:
     rng = np.random.default_rng(5)
     angle = 10.0 * torque + 30.0 * history.sign - 60.0 * state + rng.normal(0, 0.5, len(torque))
     raced = explained(history, angle)
-    gains = gains_at_levels(raced, ("friction_hysteresis",))
+    gains = gains_of(raced, ("friction_hysteresis",))[1]
     assert {left_out_words(g.held_out) for g in gains} == {"amplitude 1 N·m", "amplitude 2 N·m"}
     for g in gains:  # 300 rows and more: the rms of the noise is good to 4 %, thrice that
         assert g.rmse_after == pytest.approx(0.5, rel=0.15)
@@ -193,7 +191,7 @@ def test_a_level_with_positions_of_its_own_says_where_it_is(positions: int) -> N
     rng = np.random.default_rng(6)
     angle = 10.0 * history.torque_Nm + 30.0 * history.sign + 3.0 * np.sin(np.radians(place))
     raced = explained(history, angle + rng.normal(0, 0.5, len(angle)))
-    gains = gains_at_levels(raced, ("kinematic_error",))
+    gains = gains_of(raced, ("kinematic_error",))[1]
     assert len(gains) == 2
     assert all(g.elsewhere == (positions > 1) for g in gains)
-    assert not any(g.elsewhere for g in gains_at_levels(raced, ("friction_hysteresis",)))
+    assert not any(g.elsewhere for g in gains_of(raced, ("friction_hysteresis",))[1])
