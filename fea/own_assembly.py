@@ -1,14 +1,7 @@
 """What is the program's own between scikit-fem's meshes and the matrix, for time alone.
 
-Nothing here says anything that scikit-fem does not; tests hold each part to its answers. Processor time
-without it, over that with it (three cups, a cold `flexspline stiffness` each, two or three runs; twenty
-designs of a study, least of four; all alternating):
-
-                   xb1-40  hat-25  keyed-shaft  study
-    numbers          1.06    1.13    1.11       1.04   edges and facets from one sort of integers
-    KeptMapping      1.07    1.10    1.05       -      slopes at once, their inverse once for ten functions
-    NodePairs        1.11    1.09    1.07       1.02   six forms summed at places that are found once
-    ScalarBasis      -       -       -          1.04   numbers sorted once, not for each field
+Nothing here says anything that scikit-fem does not; tests hold each part to its answers. What each part saves
+stands in docs/decisions.md ("What is the program's own").
 """
 
 from __future__ import annotations
@@ -127,7 +120,8 @@ class NodePairs:
     @classmethod
     def of(cls, cells: np.ndarray, n: int) -> NodePairs:
         """Of elements (m, k) on n nodes."""
-        numbers = cells.T[None] * n + cells.T[:, None]
+        of = cells.T.astype(np.int64)  # n² of 46 341 nodes is beyond scikit-fem's 32 bits
+        numbers = of[None] * n + of[:, None]
         pairs, place = np.unique(numbers, return_inverse=True)
         return cls(pairs, place.reshape(numbers.shape))
 

@@ -51,7 +51,11 @@ def check_sizes(mesh: TetMesh, wanted: Mapping[str, float]) -> None:
     for what, right in wanted.items():
         found = float((space.volumes if what == VOLUME else space.areas(what)).sum())
         if not abs(found / right - 1) < SIZE_TOLERANCE:
-            raise MeshQualityError(f"{what}: {found:.6g} in the mesh, {right:.6g} in the part")
+            unit = "mm³" if what == VOLUME else "mm²"
+            raise MeshQualityError(
+                f"{what}: {found:.6g} {unit} in the mesh, {right:.6g} in the part:"
+                " a smaller solver.edge_length_mm describes it better"
+            )
 
 
 def check_against_cad(mesh: TetMesh, surface: TaggedSurface) -> None:

@@ -11,6 +11,7 @@ from skfem import Basis, BilinearForm, ElementTetP2, ElementTriP2, Mesh, MeshTet
 from skfem.mapping import MappingIsoparametric
 
 from flexspline.fea.own_assembly import (
+    CurvedTriangles,
     KeptMapping,
     NodePairs,
     ScalarBasis,
@@ -78,9 +79,27 @@ def test_slopes_and_their_inverse_are_those_of_scikit_fem(elements: np.ndarray |
         np.testing.assert_allclose(found, known, rtol=1e-12, atol=1e-12 * np.abs(known).max())
 
 
-def test_sums_are_those_of_an_assembled_form() -> None:
+def test_pairs_of_more_nodes_than_fit_in_32_bits_when_squared() -> None:
+    n = 50_000
+    pairs = NodePairs.of(np.array([[0, 1, n - 1], [n - 2, 5, n - 1]], np.int32), n)
+    rows, columns = np.divmod(pairs.number, n)
+    assert (np.diff(pairs.number) > 0).all()
+    assert set(zip(rows.tolist(), columns.tolist(), strict=True)) == {
+        (a, b) for cell in ((0, 1, n - 1), (n - 2, 5, n - 1)) for a in cell for b in cell
+    }
+
+
+@pytest.mark.parametrize(
+    "basis",
+    [
+        Basis(MeshTet().refined(1), ElementTetP2()),
+        Basis(MeshTri().refined(2), ElementTriP2()),
+        ScalarBasis(CurvedTriangles.from_mesh(MeshTri().refined(2)), ElementTriP2()),
+    ],
+    ids=["tetrahedra", "triangles", "curved triangles"],
+)
+def test_sums_are_those_of_an_assembled_form(basis: Any) -> None:
     form = BilinearForm(lambda u, v, w: u.grad[0] * v.grad[1])
-    basis = Basis(MeshTet().refined(1), ElementTetP2())
     cells = basis.element_dofs.T
     pairs = NodePairs.of(cells, basis.N)
     entries = pairs.summed(form.elemental(basis).data, np.arange(len(cells)))

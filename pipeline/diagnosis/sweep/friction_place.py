@@ -32,9 +32,9 @@ def hardening_std(fit: SweepFit) -> float:
     To first order: what the other place would add to the angle is fitted by the set as it is, and moves the
     size by so much or, with even odds, not at all.
     """
-    elements, evidence = fit.elements(), fit.evidence
-    if evidence.columns.ahead is not None or not {FRICTION, HARDENING} <= set(elements):
+    if not _place_open(fit):
         return 0.0
+    evidence = fit.evidence
     other = evidence.prepared((fit.added(FRICTION) * _softer(fit))[:, None])[:, 0]
     posterior = fit.posterior
     at = column_indices(evidence, posterior.terms)
@@ -47,16 +47,20 @@ def hardening_std(fit: SweepFit) -> float:
 def width_share_std(fit: SweepFit) -> float:
     """Of friction's size, as a share of it, by friction's place, where torque stays on one side of zero.
 
-    The loop at T = 0 is then told by loops elsewhere. Before the wind-up, friction makes it wider by as much
-    as the gear is softer there: by the hardening's ratio, or more, as chords from 5 % of the torque on say
-    the ratio. On both sides of zero the rows next to it show the width.
+    The loop at T = 0 is then told by loops elsewhere. Friction before the wind-up, or in parallel with it,
+    makes it wider there by as much as the gear is softer, about by the hardening's ratio, or, with even odds,
+    not at all. Where torque reaches both sides of zero the rows next to it show the width.
     """
-    sizes, history = fit.magnitudes(), fit.rig.history
-    if fit.evidence.columns.ahead is not None or not {FRICTION, HARDENING} <= set(sizes):
-        return 0.0
-    torque = history.torque_Nm[fit.evidence.kept]
+    torque = fit.rig.history.torque_Nm[fit.evidence.kept]
     least, most = sorted([max(0.0, float(torque.max())), max(0.0, -float(torque.min()))])
-    return 0.0 if least > BOTH_SIDES * most else abs(sizes[HARDENING] - 1)
+    if not _place_open(fit) or least > BOTH_SIDES * most:
+        return 0.0
+    return EVEN_ODDS**0.5 * abs(fit.magnitudes()[HARDENING] - 1)
+
+
+def _place_open(fit: SweepFit) -> bool:
+    """Whether friction lies beside hardening, and not ahead of the gap."""
+    return fit.evidence.columns.ahead is None and {FRICTION, HARDENING} <= set(fit.elements())
 
 
 def _softer(fit: SweepFit) -> np.ndarray:

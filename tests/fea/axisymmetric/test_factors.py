@@ -75,6 +75,29 @@ def test_small_ones_with_other_places_each_are_not_ordered(orderings: list[int])
     assert not orderings
 
 
+@needs_mkl
+def test_as_many_unknowns_and_entries_at_other_places_are_no_second_time(
+    orderings: list[int],
+) -> None:
+    solver, matrix = PatternSolver(), grid(2.0)
+    order = np.random.default_rng(0).permutation(matrix.shape[0])
+    other = csr_matrix(matrix[order][:, order])
+    assert other.nnz == matrix.nnz
+    x = np.cos(np.arange(matrix.shape[0]))
+    for one in (matrix, other):
+        assert solver.solve(one, one @ x) == pytest.approx(x, abs=1e-12)
+    assert not orderings
+
+
+def test_a_singular_matrix_that_comes_first_is_found_out() -> None:
+    """A chain held nowhere; rounding leaves pivots of 1e-16."""
+    chain = csr_matrix(diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(1600, 1600)).tolil())
+    free = chain.tolil()
+    free[0, 0] = free[-1, -1] = 1.0
+    with pytest.raises((SolveError, RuntimeError)):
+        PatternSolver().solve(csr_matrix(free), np.ones(1600))
+
+
 def test_many_loads_at_once() -> None:
     matrix = grid(3.0)
     x = np.random.default_rng(0).standard_normal((matrix.shape[0], 5))

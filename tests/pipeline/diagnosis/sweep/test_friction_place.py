@@ -88,9 +88,15 @@ def test_where_torque_stays_on_one_side_the_width_at_zero_is_as_open(tmp_path: P
         found = diagnosed(friction_Nm, tmp_path, one_sided)
         (cause,) = (c for c in found.causes if c.id == FRICTION)
         assert found.sweep is not None
-        open_share = width_share_std(found.sweep.explained.identified.fit)
-        assert (open_share > 0.05) == one_sided
+        fit = found.sweep.explained.identified.fit
+        open_share = width_share_std(fit)
+        ratio = fit.magnitudes()[HARDENING]
+        assert open_share == (pytest.approx((ratio - 1) / 2**0.5) if one_sided else 0.0)
         assert abs(cause.magnitude - truth) < 2.5 * cause.magnitude_std
+        # the doubt of place outweighs all others on one side, and is no part of it on both
+        least, most = (1.0, 1.1) if one_sided else (0.0, 0.05)
+        doubt = cause.magnitude_std / cause.magnitude
+        assert least * open_share <= doubt <= max(most * open_share, 0.05)
 
 
 def test_without_friction_there_is_none(tmp_path: Path) -> None:
