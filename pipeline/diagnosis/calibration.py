@@ -33,8 +33,8 @@ class Calibration:
     beside_effects: bool
     compliance: Estimate | None = None
 
-    def far_off(self, prediction: Prediction) -> tuple[FarOff, ...]:
-        """What lies more than `FAR_DEVIATIONS` of its stated deviations from the simulation."""
+    def far_off(self, prediction: Prediction, beyond: float = FAR_DEVIATIONS) -> tuple[FarOff, ...]:
+        """What lies more than so many of its stated deviations from the simulation."""
         measured = [("gap", self.gap_arcsec, prediction.gap_arcsec, prediction.gap_std_arcsec)]
         if self.compliance is not None:
             stated = prediction.compliance, prediction.compliance_std
@@ -42,7 +42,7 @@ class Calibration:
         return tuple(
             FarOff(name, found, abs(found.value - simulated) / std)
             for name, found, simulated, std in measured
-            if abs(found.value - simulated) > FAR_DEVIATIONS * std > 0
+            if abs(found.value - simulated) > beyond * std > 0
         )
 
 

@@ -36,6 +36,10 @@ SIZE_ALONE = "The simulated form, but not the simulated size"
 """The heading in place of `consistent`'s own where gap or compliance lies far off."""
 
 
+UNUSUAL_DEVIATIONS = 2.0
+"""A calibrated quantity that is farther off than one in twenty is said to be."""
+
+
 def verdict_heading(diagnosis: Diagnosis) -> str:
     """The verdict as a heading."""
     alone = diagnosis.verdict == "consistent" and _far_off(diagnosis)
@@ -66,6 +70,14 @@ def _far_off(diagnosis: Diagnosis) -> str:
     )
 
 
+def _within(diagnosis: Diagnosis) -> str:
+    """What contains all that was calibrated of a consistent record, where it is not `_far_off`."""
+    calibration = diagnosis.calibration
+    if calibration and calibration.far_off(diagnosis.prediction, UNUSUAL_DEVIATIONS):
+        return "three of its stated deviations"
+    return "its stated uncertainty"
+
+
 def _verdict(diagnosis: Diagnosis) -> str:
     outcome = diagnosis.outcome
     points, specimens = diagnosis.end_points, diagnosis.kind == "specimens"
@@ -74,7 +86,9 @@ def _verdict(diagnosis: Diagnosis) -> str:
             return f"Too little data to say anything: {_too_little(outcome)}."
         case "consistent":
             noise = "" if points else " and the noise"
-            return f"{AGREES[diagnosis.kind]} with the simulation within its stated uncertainty{noise}."
+            return (
+                f"{AGREES[diagnosis.kind]} with the simulation within {_within(diagnosis)}{noise}."
+            )
         case "named" if specimens:
             return f"The simulation is wrong in one thing or more: {_listed(outcome.causes)}."
         case "named":
