@@ -13,6 +13,7 @@ from flexspline.geometry.check_fillets import corner_wall
 from flexspline.geometry.design import Design
 from flexspline.geometry.fields import UM_PER_MM
 from flexspline.geometry.module_fit import module_hint, root_radius_mm
+from flexspline.geometry.outline import SAME
 from flexspline.geometry.percent import percent
 from flexspline.geometry.rated import rated_warnings
 
@@ -39,6 +40,7 @@ def warnings(design: Design) -> tuple[str, ...]:
         _proportions,
         _bending,
         _corner,
+        _grip,
         _wave_generator_room,
         _bolts,
         _play_edge,
@@ -125,6 +127,18 @@ def _corner(design: Design) -> Iterator[str]:
         yield (
             f"between inner_fillet_mm = {f.inner_fillet_mm:g} and outer_fillet_mm = "
             f"{f.outer_fillet_mm:g} only {wall:.3g} mm of wall is left, below half of {usual:g} mm"
+        )
+
+
+def _grip(design: Design) -> Iterator[str]:
+    """A step is easily clamped by mistake, and hardly any shaft is left that twists."""
+    shaft = design.shaft
+    last = shaft.segment[-1].length_mm
+    if len(shaft.segment) > 1 and shaft.grip_length_mm > last + SAME:
+        yield (
+            f"shaft.grip_length_mm = {shaft.grip_length_mm:g} is longer than the last segment, {last:g} mm: "
+            f"the step is clamped too, and only {shaft.length - shaft.grip_length_mm:.4g} of "
+            f"{shaft.length:g} mm twist"
         )
 
 

@@ -23,6 +23,7 @@ CASES = {
     "flexspline.boss_thickness_mm": (25.0, ("boss_thickness_mm = 25", "z = 22 mm")),
     "flexspline.bolt_circle_diameter_mm": (14.0, ("= 14", "shaft", "= 13")),
     "material.flexspline.fatigue_limit_MPa": (90.0, ("98 MPa", "= 90")),
+    "shaft.grip_length_mm": (25.0, ("= 25", "last segment, 24 mm", "only 3 of 28 mm")),
     "gear.flank_clearance_um": (0.003, ("flank_clearance_um = 0.003", "in mm?")),
     "bearing.radial_clearance_um": (0.012, ("radial_clearance_um = 0.012", "in mm?")),
     "uncertainty.radial_clearance_um": (7.0, ("12 ± 7", "24.12 µm")),
