@@ -15,20 +15,25 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
+from flexspline.fea.threads import one_thread
+
 T = TypeVar("T")
 _ALLOWED = ContextVar("allowed", default=False)
 
 
 @contextmanager
 def second_process() -> Iterator[None]:
-    """While open, `results_of` may take a second process.
+    """While open, `results_of` may take a second process, and BLAS takes one thread in each.
+
+    With two threads in each of two processes they wait for each other: 2.8 s in place of 0.4.
 
     Only where this process has no thread that might hold a lock at that moment: its copy would wait for it
     for ever. A server has such threads, a command has none.
     """
     token = _ALLOWED.set(_can_copy())
     try:
-        yield
+        with one_thread():
+            yield
     finally:
         _ALLOWED.reset(token)
 
