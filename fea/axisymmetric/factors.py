@@ -19,9 +19,9 @@ unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0, 
 0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress and about five for lobes."""
 
 
-LARGEST_RESIDUAL = 1e-6
-"""‖Ku − f‖/‖f‖ of SuperLU's solution. Of the worst meridians it is below 1e-9; of a body that is not held, or
-not quite, rounding leaves 1e-2 and more of an indefinite matrix."""
+LARGEST_RESIDUAL = 1e-3
+"""‖Ku − f‖/‖f‖ of SuperLU's solution. Of 252 meridians of cups it was 6e-12 at most, of a thin ring, whose
+condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.015 to 5."""
 
 
 class PatternSolver:
