@@ -22,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.step_place import (
     MOST_FIRST_ROWS,
     ROBUST_DEVIATIONS,
     looped_functions,
+    unlooped_functions,
     weighted_fit,
 )
 
@@ -51,7 +52,8 @@ def likeliest(fit: CrossingFit) -> float:
 class CrossedRecord:
     """A record, whose angle is smooth functions of torque with any loop, and the gap's step in one form.
 
-    `found` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen.
+    `found` : what else the angle may hold (n,), in any size. `most_rows` : looked at, evenly chosen. Without
+    `loops` there is no loop but the form's own, by the torque that the twist follows.
     """
 
     history: History
@@ -60,6 +62,7 @@ class CrossedRecord:
     noise_arcsec: float
     found: tuple[np.ndarray, ...] = ()
     most_rows: int = MOST_FIRST_ROWS
+    loops: bool = True
 
     @cached_property
     def rows(self) -> np.ndarray:
@@ -76,7 +79,8 @@ class CrossedRecord:
 
     @cached_property
     def smooth(self) -> np.ndarray:
-        return np.column_stack([looped_functions(self.history), *self.found])[self.rows]
+        functions = looped_functions if self.loops else unlooped_functions
+        return np.column_stack([functions(self.history), *self.found])[self.rows]
 
     @cached_property
     def width_Nm(self) -> float:

@@ -24,6 +24,8 @@ from flexspline.pipeline.diagnosis.sweep.torque_offset import OFFSET_REACH
 
 FILTER, DELAY, BOTH = "filter", "delay", "both"
 """Kinds of a late angle: through a filter, by a delay, or both readings through one filter."""
+RUBBED = "friction"
+"""Kind of a crossing behind friction ahead of the teeth."""
 SHORTEST_SHARE, LONGEST_SHARE, TIMES = 0.002, 0.4, 32
 """Times tried, as shares of a ramp, each 1.19 times the one before: the best one is refined."""
 SOFT_ENDS, SOFT_STEPS = (0.002, 0.1), 24
@@ -72,7 +74,7 @@ def behind_friction(
     carried = stops(history, torque, frictions_Nm, np.zeros(len(frictions_Nm)))
     at_teeth = history.torque_Nm[:, None] - carried
     return [
-        Tried("friction", friction, _sharp(torque - offset_Nm), torque)
+        Tried(RUBBED, friction, _sharp(torque - offset_Nm), torque)
         for friction, torque in zip(frictions_Nm.tolist(), at_teeth.T, strict=True)
     ]
 

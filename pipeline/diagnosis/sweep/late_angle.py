@@ -28,6 +28,7 @@ from flexspline.pipeline.diagnosis.sweep.crossing_forms import (
     BOTH,
     DELAY,
     FILTER,
+    RUBBED,
     Tried,
     at_a_place,
     behind_friction,
@@ -57,6 +58,8 @@ IMITATED = (
     "?direction", "?torque_rate", "?torque_Nm", "?angle_arcsec", "?time_s",
 )  # fmt: skip
 """Owners of terms that bend the curve near the gap or open a loop, as a late angle does."""
+ALL_EXPLAINED = 1.05
+"""Of the noise that functions with any loop leave: the scatter of thousand rows is known to 3 %."""
 OTHERS = ("torque", "twist", "delayed twist")
 """Forms of time that are no late angle: a late torque, and a twist that lags while the gap does not."""
 
@@ -108,18 +111,18 @@ def _searched(crossed: CrossedRecord) -> _Searched:
     # local polynomials take the gap's step for noise: what the best form leaves is less
     crossed = replace(crossed, noise_arcsec=_left_by(best))
     if best is not own:
-        other = crossed.best(_beside(forms[fits.index(best)], best))
-        return _Searched(crossed, crossed.of(own.tried), other)
+        # as fine as each other, before one is left: of three tried, one may lie far off
+        finer = [crossed.best(_beside(forms[fits.index(fit)], fit)) for fit in (own, best)]
+        own = crossed.best(_times_about(history, finer[0].tried))
+        if own.log_likelihood < finer[1].log_likelihood:
+            return _Searched(crossed, own, finer[1]).without_other_loops()
     fits = [crossed.best(_beside(*pair)) for pair in zip(forms, fits, strict=True)]
     best, own = max(fits, key=likeliest), max(fits[: len(LATE_KINDS)], key=likeliest)
     crossed = replace(crossed, noise_arcsec=_left_by(best))
-    if best is own:
-        fits += _rubbed(crossed, friction=fits[-1])
-        own = crossed.best(_times_about(history, own.tried))
-    else:
-        own = crossed.of(own.tried)
     others = [crossed.of(fit.tried) for fit in fits[len(LATE_KINDS) :]]
-    return _Searched(crossed, own, max(others, key=likeliest))
+    others += _rubbed(crossed, friction=fits[-1])
+    own = crossed.best(_times_about(history, own.tried))
+    return _Searched(crossed, own, max(others, key=likeliest)).without_other_loops()
 
 
 def _times_about(history: History, tried: Tried) -> list[Tried]:
@@ -184,6 +187,20 @@ class _Searched:
     crossed: CrossedRecord
     own: CrossingFit
     other: CrossingFit
+
+    def without_other_loops(self) -> _Searched:
+        """Of a delay and friction ahead of the teeth, each with its own loop alone, where that explains all.
+
+        At one rate both cross the gap at one place; at a turn friction holds the twist and a delay lets it go
+        on, which functions with any loop make alike.
+        """
+        if (self.own.tried.kind, self.other.tried.kind) != (DELAY, RUBBED):
+            return self
+        bare = replace(self.crossed, loops=False)
+        own, other = bare.of(self.own.tried), bare.of(self.other.tried)
+        if min(own.left_arcsec, other.left_arcsec) > ALL_EXPLAINED * self.crossed.noise_arcsec:
+            return self
+        return _Searched(bare, own, other)
 
     @property
     def nats(self) -> float:

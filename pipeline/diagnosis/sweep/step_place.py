@@ -42,19 +42,23 @@ TRIED_THRESHOLDS = (0.04, 0.12, 0.3)
 
 
 def looped_functions(history: History) -> np.ndarray:
-    """(n, k) zeros, a stiffness of each position, smooth functions of torque, friction elements, lags.
-
-    Of the torque without its noise: a lag is smoother than the reading, and would stand in for it.
-    """
+    """(n, k) `unlooped_functions`, friction elements, lags."""
     largest = float(np.abs(history.torque_Nm).max())
-    x = less_jitter(history).torque_Nm / largest
     limits = np.array(TRIED_THRESHOLDS) * largest
     torque = steadied(history, deadband_Nm(history))
     beside = stops(history, torque, limits, np.zeros(len(limits))) / limits
-    zeros, positions = zeros_of_cycles(history), stiffness_of_positions(history)
-    powers = [x, np.abs(x), x * np.abs(x), x**3]
     direction, lagging = direction_of_loading(history), lagging_torque(history) / largest
-    return np.column_stack([*zeros, positions, *powers, direction, beside, lagging])
+    return np.column_stack([unlooped_functions(history), direction, beside, lagging])
+
+
+def unlooped_functions(history: History) -> np.ndarray:
+    """(n, k) zeros, a stiffness of each position, smooth functions of torque.
+
+    Of the torque without its noise: a lag is smoother than the reading, and would stand in for it.
+    """
+    x = less_jitter(history).torque_Nm / float(np.abs(history.torque_Nm).max())
+    zeros, positions = zeros_of_cycles(history), stiffness_of_positions(history)
+    return np.column_stack([*zeros, positions, x, np.abs(x), x * np.abs(x), x**3])
 
 
 def zeros_of_cycles(history: History) -> list[np.ndarray]:
