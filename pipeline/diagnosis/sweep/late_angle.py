@@ -192,9 +192,12 @@ class _Searched:
         """Of a delay and friction ahead of the teeth, each with its own loop alone, where that explains all.
 
         At one rate both cross the gap at one place; at a turn friction holds the twist and a delay lets it go
-        on, which functions with any loop make alike.
+        on, which functions with any loop make alike. A step that is less than a row late says nothing.
         """
-        if (self.own.tried.kind, self.other.tried.kind) != (DELAY, RUBBED):
+        assert self.crossed.history.time_s is not None
+        row_s = float(np.median(np.diff(self.crossed.history.time_s)))
+        kinds = self.own.tried.kind, self.other.tried.kind
+        if kinds != (DELAY, RUBBED) or self.own.tried.value < row_s:
             return self
         bare = replace(self.crossed, loops=False)
         own, other = bare.of(self.own.tried), bare.of(self.other.tried)
