@@ -60,9 +60,8 @@ def results_of(tasks: Sequence[Callable[[], T]]) -> list[T]:
         second.join()
     if others is None:
         others = [task() for task in theirs]
-    found: list[T] = [*tasks]  # type: ignore[list-item]
-    found[::2], found[1::2] = mine, others
-    return found
+    both = iter(mine), iter(others)
+    return [next(both[number % 2]) for number in range(len(tasks))]
 
 
 def _can_copy() -> bool:
@@ -71,9 +70,8 @@ def _can_copy() -> bool:
 
 
 def _send_results(to: Connection, tasks: Sequence[Callable[[], T]]) -> None:
-    signal.signal(
-        signal.SIGINT, signal.SIG_IGN
-    )  # Ctrl-C reaches both; the first process ends the second
+    # Ctrl-C reaches both; the first process ends the second
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         to.send([task() for task in tasks])
     except BaseException:

@@ -17,8 +17,6 @@ PARDISO_AT_ONCE_FROM = 8_000
 machine. Below, Pardiso begins with the second matrix of the same places: of 1 200, 1 600, 4 400 and 5 800
 unknowns SuperLU took 1.4, 1.9, 9.0 and 11.5 ms (quiet, one core), Pardiso 2.0, 2.7, 11.3 and 15.1, and 0.5,
 0.6, 2.9 and 3.9 by an ordering that it has. A mesh has one matrix for stress and about five for lobes."""
-
-
 LARGEST_RESIDUAL = 1e-3
 """‖Ku − f‖/‖f‖ of SuperLU's solution. Of 252 meridians of cups it was 6e-12 at most, of a thin ring, whose
 condition number is 1e10, 2.5e-6; of a grid of springs that is held nowhere 0.015 to 5."""

@@ -29,15 +29,13 @@ AGREES = {
 }
 STANDS_OUT = 2.0
 """Times the noise, from which structure without a name is a part of the summary."""
+UNUSUAL_DEVIATIONS = 2.0
+"""A calibrated quantity that is farther off than one in twenty is said to be."""
 FAR_UNITS = {"gap": "arcsec", "compliance": "arcsec per N·m"}
 
 
 SIZE_ALONE = "The simulated form, but not the simulated size"
 """The heading in place of `consistent`'s own where gap or compliance lies far off."""
-
-
-UNUSUAL_DEVIATIONS = 2.0
-"""A calibrated quantity that is farther off than one in twenty is said to be."""
 
 
 def verdict_heading(diagnosis: Diagnosis) -> str:
