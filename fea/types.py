@@ -184,6 +184,10 @@ class MeshLevel:
         )
 
 
+StiffnessModel = Literal["solid", "axisymmetric"]
+"""By which a stiffness was solved."""
+
+
 @dataclass(frozen=True)
 class Stiffness:
     """A torsional stiffness with its error bounds, N·m/rad.
@@ -202,7 +206,7 @@ class Stiffness:
     lower_Nm_per_rad: float
     upper_Nm_per_rad: float
     guaranteed: bool
-    model: Literal["solid", "axisymmetric"]
+    model: StiffnessModel
     symmetry: str
     method: str
     levels: tuple[MeshLevel, ...]

@@ -1,24 +1,30 @@
-"""Two bodies of revolution around a flexspline with bolt holes: one lies inside it, it lies inside the other.
+"""Two simpler bodies around a part: one lies inside it, it lies inside the other.
 
-The whole body has no holes. The cut body has lost the annulus that the holes lie in, from bolt_circle/2 −
-hole/2 to bolt_circle/2 + hole/2, right through the boss or the flange, and with it what lies beyond: of a
-cup the ring around the bore, of a hat the flange's rim. That rest hangs on the mounted face alone, which
-holds it, so it is neither turned nor loaded. What is left is a cup with a larger bore, a hat with
-a smaller flange. Patches nest as the bodies do: `mesh` and `seat` are the same three times, `mount` is
-what each body has of the whole body's mounted face.
+Around a flexspline with bolt holes, bodies of revolution. The whole body has no holes. The cut body has
+lost the annulus that the holes lie in, from bolt_circle/2 − hole/2 to bolt_circle/2 + hole/2, right
+through the boss or the flange, and with it what lies beyond: of a cup the ring around the bore, of a hat
+the flange's rim. That rest hangs on the mounted face alone, which holds it, so it is neither turned nor
+loaded. What is left is a cup with a larger bore, a hat with a smaller flange. Patches nest as the bodies
+do: `mesh` and `seat` are the same three times, `mount` is what each body has of the whole body's mounted
+face.
+
+Around a shaft with fillets, shafts without: the cut one has sharp corners, in the whole one every step is
+moved by the fillet's radius over the thinner segment.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
+from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
-from flexspline.geometry.shaft_shape import Shaft
+from flexspline.geometry.shaft_shape import Shaft, ShaftSegment
 
 
 @dataclass(frozen=True)
 class NestedBodies:
-    """`cut` ⊂ the part with its holes ⊂ `whole`."""
+    """`cut` ⊂ the part ⊂ `whole`."""
 
     cut: Part
     whole: Part
@@ -44,3 +50,73 @@ def nested_bodies(part: Part) -> NestedBodies:
         edge = {shape.land.outer: 2 * (bolts.radius - bolts.hole_radius)}
     whole = part.without_holes()
     return NestedBodies(replace(whole, shape=whole.shape.model_copy(update=edge)), whole)
+
+
+def has_unfilleted_bodies(part: Part) -> bool:
+    """Whether a shaft lies between two without fillets: it has some, and no moved step reaches the grip."""
+    shape = part.shape
+    if not isinstance(shape, Shaft) or shape.fillet_mm <= SAME or len(shape.segment) == 1:
+        return False
+    *_, before, last = shape.segment
+    thinner = last.outer_diameter_mm < before.outer_diameter_mm - SAME
+    free = last.length_mm - (shape.fillet_mm if thinner else 0.0)
+    return (
+        shape.grip_length_mm <= free - SAME and shape.segment[0].length_mm > shape.fillet_mm + SAME
+    )
+
+
+def unfilleted_bodies(part: Part) -> NestedBodies:
+    """Of a shaft that `has_unfilleted_bodies`.
+
+    What a step is moved over has no bolt holes, so holes that reach under it end where they did.
+    """
+    shape = part.shape
+    if not isinstance(shape, Shaft):
+        raise ValueError("only a shaft lies between two without fillets")
+    sharp = shape.model_copy(update={"fillet_mm": 0.0})
+    moved = sharp.model_copy(update={"segment": _moved_steps(part, shape)})
+    return NestedBodies(replace(part, shape=sharp), replace(part, shape=moved))
+
+
+def _moved_steps(part: Part, shape: Shaft) -> tuple[ShaftSegment, ...]:
+    pieces: list[ShaftSegment] = []
+    outer = [0.0, *(s.outer_diameter_mm for s in shape.segment), 0.0]
+    for before, segment, after in zip(outer, shape.segment, outer[2:], strict=False):
+        own = segment.outer_diameter_mm
+        low, high = (shape.fillet_mm if o > own + SAME else 0.0 for o in (before, after))
+        for length, diameter in (
+            (low, before),
+            (segment.length_mm - low - high, own),
+            (high, after),
+        ):
+            if length > SAME:
+                piece = {"length_mm": length, "outer_diameter_mm": diameter}
+                pieces.append(segment.model_copy(update=piece))
+    return _joined(pieces, _holes_are_clear(part, shape))
+
+
+def _holes_are_clear(part: Part, shape: Shaft) -> bool:
+    """Whether the holes may end deeper, with the flange: nothing of the moved step's own lies above them."""
+    if (
+        part.bolts is None
+        or shape.segment[1].outer_diameter_mm > shape.segment[0].outer_diameter_mm
+    ):
+        return True
+    thinner = shape.segment[1].outer_diameter_mm / 2 + shape.fillet_mm
+    return part.bolts.radius - part.bolts.hole_radius >= thinner
+
+
+def _joined(pieces: list[ShaftSegment], with_first: bool) -> tuple[ShaftSegment, ...]:
+    """Neighbours of the same section as one; the first, in which the holes are, only if it may grow."""
+    found = pieces[:1]
+    for before, piece in pairwise(pieces):
+        same = (
+            abs(before.outer_diameter_mm - piece.outer_diameter_mm) <= SAME
+            and abs(before.inner_diameter_mm - piece.inner_diameter_mm) <= SAME
+        )
+        if same and (with_first or len(found) > 1):
+            length = found[-1].length_mm + piece.length_mm
+            found[-1] = found[-1].model_copy(update={"length_mm": length})
+        else:
+            found.append(piece)
+    return tuple(found)

@@ -33,6 +33,7 @@ from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.two_threads import beside
+from flexspline.pipeline.unfilleted_shaft import NO_FILLETS
 from flexspline.pipeline.wave_generator import sharp_edges
 
 
@@ -217,14 +218,16 @@ def torque_field(model: PartModel) -> SolidField:
     with model.context.progress.stage(f"stress of the {model.name} under torque"):
         solved = stress_field(
             twisted.meshed.mesh,
-            twisted.displacement * (torque / twisted.stiffness.upper_Nm_per_rad),
+            twisted.displacement * (torque / twisted.stiffness.levels[-1].K_Nm_per_rad),
             model.material,
             f"{model.name} under T_L = {torque:g} N·m",
             sharp_edges(model, twisted.meshed),
         )
         if not model.axisymmetric:
-            settled = replace(solved.peak, shortfall=twisted.stiffness.shortfall)
-            return replace(solved, peak=settled)
+            short = twisted.stiffness.shortfall
+            if twisted.without_fillets:
+                short = replace(short, words=f"{short}{', and ' if short else ''}{NO_FILLETS}")
+            return replace(solved, peak=replace(solved.peak, shortfall=short))
         exact = torsion_stress(
             model.part.meridian,
             model.material,

@@ -1,16 +1,16 @@
-"""K_b of a flexspline with bolt holes, between those of two bodies of revolution.
+"""K of a part between those of two simpler bodies: less material is never stiffer.
 
-Less material is never stiffer: K_b of the cut body ≤ K_b of the part ≤ K_b of the whole body, in every load
-case (`geometry.nested` says which bodies; docs/theory.md proves it).
+K of the cut body ≤ K of the part ≤ K of the whole body, in every load case (`geometry.nested` says which
+bodies; docs/theory.md proves it).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from flexspline.fea.solid.errors import NoBetterMeshError
-from flexspline.fea.types import MET, Stiffness
+from flexspline.fea.types import MET, Stiffness, StiffnessModel
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
@@ -18,6 +18,24 @@ from flexspline.geometry.percent import percent
 
 PARABOLA_SLACK = 1e-4
 """Of K: what parabolas for arcs may do to a solid model, ten times what was measured (`fea.solid.swept`)."""
+
+
+@dataclass(frozen=True)
+class Names:
+    """What messages call the two bodies, `less` and `more` material, and how both were solved."""
+
+    less: str
+    more: str
+    model: StiffnessModel
+    symmetry: str
+
+
+OF_HOLES = Names(
+    "the part with the ring of its holes cut out",
+    "the part without holes",
+    "axisymmetric",
+    "two bodies of revolution",
+)
 
 
 class NestingError(ComputationError):
@@ -49,14 +67,14 @@ def enclosed(part: Part, solve: Callable[[Part], Stiffness]) -> Stiffness:
     ComputationError : of `solve`.
     """
     bodies = nested_bodies(part)
-    return between(solve(bodies.cut), solve(bodies.whole))
+    return between(solve(bodies.cut), solve(bodies.whole), OF_HOLES)
 
 
-def between(cut: Stiffness, whole: Stiffness) -> Stiffness:
+def between(cut: Stiffness, whole: Stiffness, names: Names) -> Stiffness:
     """The enclosure by two solved bodies; K is its middle.
 
-    Ends that are estimates may cross where holes take off less than the estimates are wrong by: then the
-    bounds go from the one to the other.
+    Ends that are estimates may cross where the bodies differ by less than the estimates are wrong by: then
+    the bounds go from the one to the other.
 
     Raises
     ------
@@ -65,19 +83,18 @@ def between(cut: Stiffness, whole: Stiffness) -> Stiffness:
     lower, upper = cut.lower_Nm_per_rad, whole.upper_Nm_per_rad
     guaranteed = cut.guaranteed and whole.guaranteed
     if lower > upper and guaranteed:
-        raise NestingError("the part with the ring of its holes cut out", lower,
-                           "the part without holes", upper)  # fmt: skip
+        raise NestingError(names.less, lower, names.more, upper)
     gap = max(0.0, 1 - cut.K_Nm_per_rad / whole.K_Nm_per_rad)
     return Stiffness(
         K_Nm_per_rad=(lower + upper) / 2,
         lower_Nm_per_rad=min(lower, upper),
         upper_Nm_per_rad=max(lower, upper),
         guaranteed=guaranteed,
-        model="axisymmetric",
-        symmetry="two bodies of revolution",
+        model=names.model,
+        symmetry=names.symmetry,
         method=(
-            "from the part with the ring of its holes cut out to the part without holes (less material is "
-            f"never stiffer); their K differ by {percent(gap)}; of each: {whole.method}"
+            f"from {names.less} to {names.more} (less material is never stiffer); their K differ by "
+            f"{percent(gap)}; of each: {whole.method}"
         ),
         levels=whole.levels,
         error_scale=max(cut.error_scale, whole.error_scale),
@@ -149,8 +166,8 @@ def check_against(solid: Stiffness, enclosure: Stiffness) -> None:
         return
     if solid.lower_Nm_per_rad > enclosure.upper_Nm_per_rad:
         raise NestingError("the solid model", solid.lower_Nm_per_rad,
-                           "the part without holes", enclosure.upper_Nm_per_rad)  # fmt: skip
-    raise NestingError("the part with the ring of its holes cut out", enclosure.lower_Nm_per_rad,
+                           OF_HOLES.more, enclosure.upper_Nm_per_rad)  # fmt: skip
+    raise NestingError(OF_HOLES.less, enclosure.lower_Nm_per_rad,
                        "the solid model", solid.upper_Nm_per_rad)  # fmt: skip
 
 

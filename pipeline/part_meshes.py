@@ -22,6 +22,7 @@ from flexspline.fea.solid.swept import swept_mesh
 from flexspline.fea.solid.swept_edges import swept_edges
 from flexspline.fea.solid.swept_sizing import Finer
 from flexspline.fea.types import TetMesh
+from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.shaft_shape import Shaft
 from flexspline.geometry.tagged import TaggedSurface
 from flexspline.pipeline.parts import LAYERED_COARSER, PartModel
@@ -30,6 +31,8 @@ Kind = Literal["swept", "layered", "tetwild"]
 """Swept about the axis, a shaft's layers along it, or fTetWild's."""
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """In the order in which they are tried."""
+SWEEPS: tuple[Kind, ...] = ("swept", "layered")
+"""Those that no mesher makes."""
 
 COARSER_EDGES, COARSENINGS = 1.5, 3
 """Edges of the next, coarser try over the last: a third of the elements; and how many tries."""
@@ -42,6 +45,17 @@ ANOTHER = 0.8
 mesh and not in the next, and fTetWild takes minutes where a sweep takes a second."""
 EDGE_POINTS = 8
 """Of sharp edges, within the stress rule's distance from them."""
+
+
+class OtherKindError(FlexsplineError):
+    """Meshes of two kinds are no sequence: between them K moves by more than its bounds.
+
+    `kind` is the last one's.
+    """
+
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        super().__init__(f"the next mesh is another kind: {kind}")
 
 
 @dataclass(frozen=True)
@@ -60,6 +74,8 @@ class PartMeshes:
     model: PartModel
     kinds: tuple[Kind, ...] = KINDS
     """Those that are tried, of what the part allows."""
+    most_of_first: float = inf
+    """Elements of a first mesh, after all coarsening, beyond which it is not begun."""
 
     @cached_property
     def _failed(self) -> set[tuple[Kind, MeshSpec]]:
@@ -130,7 +146,7 @@ class PartMeshes:
                 if spec == before:
                     raise
                 return layered_mesh(part, degrees, before)
-        return layered_mesh(part, degrees, spec)
+        return layered_mesh(part, degrees, spec, self.most_of_first)
 
     def _of_sweep(self, mesh: TetMesh) -> MeshedPart:
         model = self.model
@@ -144,18 +160,22 @@ class PartMeshes:
 
         Raises
         ------
-        DesignError : as `PartModel.is_swept`. TooManyElementsError : the coarsest is too large to begin.
+        DesignError : as `PartModel.is_swept`. TooManyElementsError : the coarsest is too large to begin,
+            or has more than `most_of_first`.
         """
         model = self.model
         spec = before = model.first_spec
         if not model.is_swept or model.context.design.solver.edge_length_mm is not None:
             return spec
         for tried in range(COARSENINGS + 1):
-            most = most_elements if tried < COARSENINGS else inf
+            last = tried == COARSENINGS
+            most = self.most_of_first if last else most_elements
             try:
                 with model.context.progress.stage(f"mesh of the {model.name}"):
                     swept = self.swept(spec, most_elements=most)
             except TooManyElementsError:
+                if last:
+                    raise
                 spec, before = spec.scaled(COARSER_EDGES), spec
                 continue
             if swept is None:
@@ -173,6 +193,7 @@ class PartMeshes:
         Raises
         ------
         DesignError : as `PartModel.is_swept`. SolidError : a sweep is asked for and fails a check.
+        OtherKindError : of the `kinds` none is left.
         """
         return self._kept(spec, lambda: self._made(spec))
 
@@ -199,6 +220,8 @@ class PartMeshes:
                     f"the swept mesh of the {model.name} fails a check; solver.mesher"
                     ' "tetwild" or "auto" works'
                 )
+            if "tetwild" not in self.kinds:
+                raise OtherKindError("tetwild")
             progress.note("  the swept mesh fails a check: fTetWild instead")
         surface = self._surface  # by CAD, a stage of its own
         with progress.stage(f"mesh of the {model.name}"):

@@ -19,6 +19,7 @@ from flexspline.pipeline.solid_torsion import (
     copies_in_rim,
     twisted,
 )
+from flexspline.pipeline.unfilleted_shaft import may_leave_fillets_out, twisted_shaft
 
 
 def part_stiffness(model: PartModel) -> Stiffness:
@@ -93,6 +94,8 @@ def twisted_part(model: PartModel) -> TwistedPart:
                 found = twisted(model, inf)
                 if overlap(found.stiffness, enclosure):
                     return found
+            if may_leave_fillets_out(model):
+                return twisted_shaft(model, tolerance)
             return twisted(model, tolerance)
 
     key = {**model.torsion_key, "one_mesh": one_mesh}

@@ -15,9 +15,15 @@ from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.types import Stiffness, TetMesh
-from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.symmetry import sector_of
-from flexspline.pipeline.part_meshes import FIRST_ELEMENTS, KINDS, Kind, MeshedPart, PartMeshes
+from flexspline.pipeline.part_meshes import (
+    FIRST_ELEMENTS,
+    KINDS,
+    Kind,
+    MeshedPart,
+    OtherKindError,
+    PartMeshes,
+)
 from flexspline.pipeline.parts import PartModel
 
 SOLID_SECONDS = 30.0
@@ -39,21 +45,11 @@ UNLAYERED_LAST = 40_000
 RIM_ELEMENTS = 25_000
 """About 110 000 unknowns and 5 s for each of the two lobe cases. On a thick hat with holes (wall of 1/13 of
 the diameter) 92 790 gave K_b_lobes ± 0.07 % in half a minute, where 1 % was asked."""
-ENCLOSED_SECONDS, ENCLOSED_COARSER = 10.0, 4.0
-"""Of fTetWild, where bodies of revolution give K within the tolerance and the mesh gives the fields only;
-and how many times as long the edges are after that. A tall cup with one large hole took 284 s and 106 000
-elements, another 100 s and 35 000 with the longer edges: where K alone is asked for, there are none."""
-
-
-class OtherKindError(FlexsplineError):
-    """Meshes of two kinds are no sequence: between them K moves by more than its bounds.
-
-    `kind` is the last one's.
-    """
-
-    def __init__(self, kind: Kind) -> None:
-        self.kind = kind
-        super().__init__(f"the next mesh is another kind: {kind}")
+ENCLOSED_SECONDS, FIRST_SECONDS, COARSER_FIRST = 10.0, 30.0, 4.0
+"""Of fTetWild for a first mesh: where bodies of revolution give K within the tolerance and the mesh gives the
+fields only, and elsewhere; and how many times as long the edges are after that. A tall cup with one large
+hole took 284 s and 106 000 elements, another 100 s and 35 000 with the longer edges: where K alone is asked
+for, there are none."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +57,14 @@ class TwistedPart:
     """A solid part's stiffness and its displacement (n, 3) mm for a turn of 1 rad.
 
     `rim` is the finest of its meshes that, unfolded for the lobe cases, keeps within RIM_ELEMENTS.
+    `without_fillets`: a shaft's meshes have sharp corners in place of its fillets.
     """
 
     stiffness: Stiffness
     meshed: MeshedPart
     displacement: np.ndarray
     rim: MeshedPart
+    without_fillets: bool = False
 
 
 def by_fTetWild(model: PartModel) -> bool:
@@ -79,33 +77,48 @@ def copies_in_rim(model: PartModel) -> int:
     return round(sector_of(model.part, "ellipse").degrees / model.sector.degrees)
 
 
-def _enclosed_spec(meshes: PartMeshes, first: MeshSpec) -> MeshSpec:
-    """The mesh of a part that its enclosure answers for; a coarser one where fTetWild takes too long."""
-    if not by_fTetWild(meshes.model):
+def _spec_in_time(meshes: PartMeshes, first: MeshSpec, limit_s: float) -> MeshSpec:
+    """That of the first mesh, which is made; a coarser one where it fails, or fTetWild takes too long."""
+    if meshes.model.context.design.solver.edge_length_mm is not None:
         return first
     try:
-        meshes.meshed(replace(first, time_limit_s=ENCLOSED_SECONDS))
-    except SolidError:  # out of time, or no good mesh within it
-        return first.scaled(ENCLOSED_COARSER)
+        meshes.meshed(replace(first, time_limit_s=limit_s))
+    except (SolidError, OtherKindError):
+        return first.scaled(COARSER_FIRST)
     return first
 
 
-def twisted(model: PartModel, tolerance: float) -> TwistedPart:
-    """Where a kind's coarse mesh passes its checks and a finer one fails, the next kind makes all instead."""
-    meshes = PartMeshes(model)
+def twisted(
+    model: PartModel,
+    tolerance: float,
+    kinds: tuple[Kind, ...] = KINDS,
+    most_of_first: float = inf,
+    seconds: float = SOLID_SECONDS,
+) -> TwistedPart:
+    """Turned by 1 rad, refined until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
+
+    Where a kind's coarse mesh passes its checks and a finer one fails, the next kind makes all instead.
+
+    Raises
+    ------
+    TooManyElementsError : the first mesh has more than `most_of_first`.
+    SolidError, MemoryError : of the first mesh.
+    """
+    meshes = PartMeshes(model, kinds, most_of_first)
     first = meshes.coarsened(FIRST_ELEMENTS)
-    if tolerance == inf:
-        first = _enclosed_spec(meshes, first)
+    first = _spec_in_time(meshes, first, ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS)
     while True:
         try:
-            return _refined(meshes, first, tolerance)
+            return _refined(meshes, first, tolerance, seconds)
         except OtherKindError as other:
+            if other.kind not in kinds:
+                raise SolidError(f"the swept mesh of the {model.name} fails a check") from None
             model.context.progress.note(f"  {model.name}: all meshes are made anew, {other.kind}")
             first = model.first_spec
-            meshes = PartMeshes(model, KINDS[KINDS.index(other.kind) :])
+            meshes = PartMeshes(model, kinds[kinds.index(other.kind) :], most_of_first)
 
 
-def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPart:
+def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: float) -> TwistedPart:
     model = meshes.model
     made: list[MeshedPart] = []
 
@@ -141,7 +154,7 @@ def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float) -> TwistedPa
         tolerance,
         model.sector.label,
         lambda text: model.context.progress.note(f"  {model.name}: {text}"),
-        Deadline(SOLID_SECONDS),
+        Deadline(seconds),
         by_error,
         most,
     )

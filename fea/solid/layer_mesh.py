@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 
 from flexspline.fea.solid.bisect import Simplices
+from flexspline.fea.solid.errors import TooManyElementsError
 from flexspline.fea.solid.facet_surfaces import surfaces_of
 from flexspline.fea.solid.layers import Layers
 from flexspline.fea.solid.polar import cartesian
@@ -17,6 +19,8 @@ from flexspline.fea.solid.snap import undo_inverted
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.surfaces import SYMMETRY_END, SYMMETRY_START, Surface
 
+TETS_OF_PRISM = 3
+"""Of one that is no wedge on the axis: those lose a third."""
 SUNK = 0.5
 """Of the fillet's radius: how far the sharp corner under it moves into the material, so that no edge of
 the mesh is a tangent of the arc."""
@@ -25,10 +29,18 @@ SUNK_OF_NEXT = 0.3
 
 
 def coarsest(
-    layers: Layers, surfaces: Sequence[Surface], grading: Grading
+    layers: Layers, surfaces: Sequence[Surface], grading: Grading, most: float = inf
 ) -> tuple[np.ndarray, Simplices]:
-    """Corners (n, 3) [mm] and tetrahedra of the layers' prisms, as few as the lines allow."""
+    """Corners (n, 3) [mm] and tetrahedra of the layers' prisms, as few as the lines allow.
+
+    Raises
+    ------
+    MeshingError : as `Layers.plan`.
+    TooManyElementsError : more than `most` tetrahedra.
+    """
     polar, prisms = layers.prisms(grading.near, grading.far)
+    if TETS_OF_PRISM * len(prisms) > most:
+        raise TooManyElementsError(TETS_OF_PRISM * len(prisms), most)
     polar, prisms = _corners_first(layers, polar, prisms)
     tets = cut(prisms)
     used, compact = np.unique(tets, return_inverse=True)

@@ -45,8 +45,8 @@ def layered_mesh(
     layers = Layers.of(part, radians(sector_deg))
     surfaces = part_surfaces(part, sector_deg)
     grading = spec.grading
-    points, mesh = coarsest(layers, surfaces, grading)
     most = min(most_elements, MOST_ELEMENTS)
+    points, mesh = coarsest(layers, surfaces, grading, most)
     points, mesh = graded(points, mesh, surfaces, grading, most)
     return _curved(points, mesh, layers, surfaces, sector_deg, most)
 

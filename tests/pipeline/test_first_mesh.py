@@ -160,7 +160,7 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     assert found.model == "solid"  # as `solver.mesher` asks for it
     solid = part_stiffness.twisted_part(cup).stiffness
     first, second = asked
-    assert second.grading == first.grading.scaled(solid_torsion.ENCLOSED_COARSER)
+    assert second.grading == first.grading.scaled(solid_torsion.COARSER_FIRST)
     assert second.time_limit_s > first.time_limit_s
     assert part_stiffness.rim_mesh(cup).mesh.elements == solid.levels[0].elements
     assert len(asked) == len([first, second])

@@ -1,0 +1,80 @@
+"""K of shafts between those of two shafts without fillets.
+
+Two ways to know that the enclosure is right: bodies of revolution, whose K has bounds by theorem; and the
+tetrahedra of the shaft itself, fillets included.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from shaft_of import shaft_of
+
+from flexspline.fea.axisymmetric.torsion import torsional_stiffness
+from flexspline.fea.types import Elastic, Stiffness
+from flexspline.geometry.nested import unfilleted_bodies
+from flexspline.geometry.part import Part
+from flexspline.pipeline import unfilleted_shaft
+from flexspline.pipeline.cache import Cache
+from flexspline.pipeline.enclosure import overlap
+from flexspline.pipeline.parts import AnalysisContext
+from flexspline.pipeline.progress import Progress
+from flexspline.pipeline.solid_torsion import TwistedPart
+
+STEPS = [(4.0, 20.0, 6.0), (12.0, 14.0, 6.0), (6.0, 17.0, 5.0), (20.0, 12.0, 5.0)]
+KEYWAY = """
+grip_length_mm = 8
+[keyway]
+width_mm = 4.0
+depth_mm = 2.5
+length_mm = 12.0
+"""
+TOLERANCE = 0.01
+"""Of K: a few seconds of the solid model."""
+FINE = 1e-4
+"""Of the meridian's bounds: a tenth of what a fillet of 0.02 mm does to K."""
+
+
+def by_theorem(part: Part) -> Stiffness:
+    found = torsional_stiffness(part.meridian, Elastic.of(part.material), part.driven, FINE)
+    assert found.guaranteed
+    return found
+
+
+@pytest.mark.parametrize("fillet", [0.02, 0.1, 0.5, 1.0])
+def test_bodies_of_revolution(fillet: float) -> None:
+    part = shaft_of(STEPS, fillet=fillet).part("shaft")
+    bodies = unfilleted_bodies(part)
+    less, own, more = (by_theorem(body) for body in (bodies.cut, part, bodies.whole))
+    assert less.lower_Nm_per_rad < own.upper_Nm_per_rad
+    assert own.lower_Nm_per_rad < more.upper_Nm_per_rad
+    apart = more.K_Nm_per_rad / less.K_Nm_per_rad - 1
+    # three moved steps in 42 mm less the grip: each makes one fillet of length up to (20/12)^4 times as stiff
+    assert 0 < apart < 3 * fillet / (42 - 5) * 8
+    if fillet >= 0.1:  # beyond what the bounds leave open
+        assert less.upper_Nm_per_rad < own.lower_Nm_per_rad < own.upper_Nm_per_rad
+        assert own.upper_Nm_per_rad < more.lower_Nm_per_rad
+
+
+@pytest.fixture
+def both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[TwistedPart, TwistedPart]:
+    """A keyed shaft as it is, and where its mesh with fillets has too many elements."""
+    design = shaft_of(STEPS, KEYWAY, fillet=0.4)
+    model = AnalysisContext(design, Cache(tmp_path), Progress()).part("shaft")
+    usual = unfilleted_shaft.twisted_shaft(model, TOLERANCE)
+    monkeypatch.setattr(unfilleted_shaft, "LAYERED_ELEMENTS", 10)
+    return usual, unfilleted_shaft.twisted_shaft(model, TOLERANCE)
+
+
+def test_a_keyed_shaft(both: tuple[TwistedPart, TwistedPart]) -> None:
+    usual, between = both
+    assert not usual.without_fillets
+    assert between.without_fillets
+    found = between.stiffness
+    assert not found.guaranteed
+    assert overlap(usual.stiffness, found)
+    # its own error, and three steps of 0.4 mm: 3 % of the length twists less
+    assert found.half_width < TOLERANCE + 0.03
+    assert bool(found.shortfall) == (found.half_width > TOLERANCE)
+    assert found.lower_Nm_per_rad < usual.stiffness.K_Nm_per_rad < found.upper_Nm_per_rad
