@@ -165,7 +165,8 @@ class PartMeshes:
         """
         model = self.model
         spec = before = model.first_spec
-        if not model.is_swept or model.context.design.solver.edge_length_mm is not None:
+        stated = model.context.design.solver.edge_length_mm is not None
+        if not model.is_swept or "swept" not in self.kinds or stated:
             return spec
         for tried in range(COARSENINGS + 1):
             last = tried == COARSENINGS

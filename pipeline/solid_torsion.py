@@ -14,6 +14,7 @@ from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
+from flexspline.fea.solid.tetwild import MESHER_SECONDS
 from flexspline.fea.types import Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import (
@@ -77,17 +78,6 @@ def copies_in_rim(model: PartModel) -> int:
     return round(sector_of(model.part, "ellipse").degrees / model.sector.degrees)
 
 
-def _spec_in_time(meshes: PartMeshes, first: MeshSpec, limit_s: float) -> MeshSpec:
-    """That of the first mesh, which is made; a coarser one where it fails, or fTetWild takes too long."""
-    if meshes.model.context.design.solver.edge_length_mm is not None:
-        return first
-    try:
-        meshes.meshed(replace(first, time_limit_s=limit_s))
-    except (SolidError, OtherKindError):
-        return first.scaled(COARSER_FIRST)
-    return first
-
-
 def twisted(
     model: PartModel,
     tolerance: float,
@@ -98,6 +88,8 @@ def twisted(
     """Turned by 1 rad, refined until half of the bounds' distance is `tolerance`·K or `seconds` have passed.
 
     Where a kind's coarse mesh passes its checks and a finer one fails, the next kind makes all instead.
+    Where the first mesh fails, or fTetWild is slow, and nobody has stated its edges, they are
+    COARSER_FIRST times as long.
 
     Raises
     ------
@@ -106,16 +98,30 @@ def twisted(
     """
     meshes = PartMeshes(model, kinds, most_of_first)
     first = meshes.coarsened(FIRST_ELEMENTS)
-    first = _spec_in_time(meshes, first, ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS)
+    again = model.context.design.solver.edge_length_mm is None
+    if again:
+        limit_s = ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS
+        first = replace(first, time_limit_s=limit_s)
     while True:
         try:
             return _refined(meshes, first, tolerance, seconds)
         except OtherKindError as other:
-            if other.kind not in kinds:
-                raise SolidError(f"the swept mesh of the {model.name} fails a check") from None
-            model.context.progress.note(f"  {model.name}: all meshes are made anew, {other.kind}")
-            first = model.first_spec
-            meshes = PartMeshes(model, kinds[kinds.index(other.kind) :], most_of_first)
+            if other.kind in kinds:
+                model.context.progress.note(
+                    f"  {model.name}: all meshes are made anew, {other.kind}"
+                )
+                first = replace(model.first_spec, time_limit_s=first.time_limit_s)
+                kinds = kinds[kinds.index(other.kind) :]
+                meshes = PartMeshes(model, kinds, most_of_first)
+                continue
+            fault = SolidError(f"the swept mesh of the {model.name} fails a check")
+        except SolidError as failed:
+            fault = failed
+        if not again:
+            raise fault
+        model.context.progress.note(f"  {model.name}: made anew with longer edges, {fault}")
+        again = False
+        first = replace(first.scaled(COARSER_FIRST), time_limit_s=MESHER_SECONDS)
 
 
 def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: float) -> TwistedPart:
