@@ -10,6 +10,7 @@ from scipy.sparse import csr_matrix
 from flexspline.fea.pardiso import PardisoFactors, pardiso
 from flexspline.fea.solid.errors import SolveError
 from flexspline.fea.superlu import superlu
+from flexspline.geometry.above_zero import ABOVE_ZERO
 
 PARDISO_AT_ONCE_FROM = 8_000
 """Unknowns from which oneMKL's Pardiso takes less time than SuperLU even for one matrix alone, where it is:
@@ -54,10 +55,15 @@ class PatternSolver:
 
 def _checked(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
     found = solved(matrix, loads)
-    off = np.linalg.norm(matrix @ found - loads)
-    if not off <= LARGEST_RESIDUAL * np.linalg.norm(loads):
+    if not relative_residual(matrix, found, loads) <= LARGEST_RESIDUAL:
         raise SolveError("the direct solver left a residual: part of the model may be unsupported")
     return found
+
+
+def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
+    """‖Ax − b‖/‖b‖, of b = 0 that of x = 0."""
+    off, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
+    return float(off) / max(float(of_load), ABOVE_ZERO)
 
 
 def _same_places(one: csr_matrix, other: csr_matrix) -> bool:

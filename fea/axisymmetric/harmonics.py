@@ -27,9 +27,9 @@ from flexspline.fea.axisymmetric.couplings import (
     TANGENTIAL,
     Couplings,
 )
-from flexspline.fea.axisymmetric.factors import PatternSolver
+from flexspline.fea.axisymmetric.factors import PatternSolver, relative_residual
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.space import Space, at_points, curved, relative_residual
+from flexspline.fea.axisymmetric.space import Space, at_points, curved
 from flexspline.fea.types import Elastic
 from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.errors import ComputationError

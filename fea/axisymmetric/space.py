@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_matrix
 from skfem import ElementTriP2
 
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh, MeshingError, edge_middles
@@ -157,8 +156,3 @@ def shape_functions(at: np.ndarray) -> np.ndarray:
     """
     element = ElementTriP2()
     return np.stack([element.lbasis(at, i)[0] for i in range(6)])
-
-
-def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> float:
-    """‖Ax - b‖/‖b‖."""
-    return float(np.linalg.norm(matrix @ x - load) / np.linalg.norm(load))

@@ -36,10 +36,10 @@ from scipy.sparse import csr_matrix
 from skfem import BilinearForm, Functional, condense
 from skfem.helpers import dot, grad
 
-from flexspline.fea.axisymmetric.factors import solved
+from flexspline.fea.axisymmetric.factors import relative_residual, solved
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
 from flexspline.fea.axisymmetric.patches import Boundary
-from flexspline.fea.axisymmetric.space import Space, moved, relative_residual, straight
+from flexspline.fea.axisymmetric.space import Space, moved, straight
 
 WEIGHTED_LAPLACE = BilinearForm(lambda u, v, w: w.weight * dot(grad(u), grad(v)))
 WEIGHTED_ENERGY = Functional(lambda w: w.weight * dot(grad(w.field), grad(w.field)))

@@ -24,9 +24,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from skfem import BilinearForm, Functional, LinearForm, bmat, condense
 
-from flexspline.fea.axisymmetric.factors import solved
+from flexspline.fea.axisymmetric.factors import relative_residual, solved
 from flexspline.fea.axisymmetric.meridian_mesh import MeridianMesh
-from flexspline.fea.axisymmetric.space import Space, relative_residual, straight
+from flexspline.fea.axisymmetric.space import Space, straight
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.tooth import ToothCell
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexspline.geometry.listed import listed
+from flexspline.pipeline.diagnosis.calibration import FAR_DEVIATIONS
 from flexspline.pipeline.diagnosis.decision import is_significant
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -58,7 +59,7 @@ def summary(diagnosis: Diagnosis) -> str:
 
 
 def _far_off(diagnosis: Diagnosis) -> str:
-    """Calibrated quantities beyond three of their stated deviations, whatever else is named; "" of none."""
+    """Calibrated quantities more than FAR_DEVIATIONS off, whatever else is named; "" of none."""
     calibration = diagnosis.calibration
     far = () if calibration is None else calibration.far_off(diagnosis.prediction)
     return "; the ".join(
@@ -72,7 +73,7 @@ def _within(diagnosis: Diagnosis) -> str:
     """What contains all that was calibrated of a consistent record, where it is not `_far_off`."""
     calibration = diagnosis.calibration
     if calibration and calibration.far_off(diagnosis.prediction, UNUSUAL_DEVIATIONS):
-        return "three of its stated deviations"
+        return f"{FAR_DEVIATIONS:g} of its stated deviations"
     return "its stated uncertainty"
 
 
