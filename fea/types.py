@@ -145,6 +145,7 @@ class SolidField:
     ----------
     displacement : (n, 3) mm at the mesh's nodes.
     mises : (n,) MPa, averaged at the nodes.
+    left_out : what the part has and the mesh has not, "" of nothing.
     """
 
     mesh: TetMesh
@@ -152,6 +153,7 @@ class SolidField:
     displacement: np.ndarray
     mises: np.ndarray
     peak: StressPeak
+    left_out: str = ""
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.two_threads import beside
-from flexspline.pipeline.unfilleted_shaft import NO_FILLETS
+from flexspline.pipeline.unfilleted_shaft import without_fillets
 from flexspline.pipeline.wave_generator import sharp_edges
 
 
@@ -224,10 +224,9 @@ def torque_field(model: PartModel) -> SolidField:
             sharp_edges(model, twisted.meshed),
         )
         if not model.axisymmetric:
-            short = twisted.stiffness.shortfall
-            if twisted.without_fillets:
-                short = replace(short, words=f"{short}{', and ' if short else ''}{NO_FILLETS}")
-            return replace(solved, peak=replace(solved.peak, shortfall=short))
+            settled = replace(solved.peak, shortfall=twisted.stiffness.shortfall)
+            solved = replace(solved, peak=settled)
+            return without_fillets(solved) if twisted.without_fillets else solved
         exact = torsion_stress(
             model.part.meridian,
             model.material,

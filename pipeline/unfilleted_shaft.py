@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexspline.fea.solid.errors import SolidError
-from flexspline.fea.types import MET, Shortfall
+from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.nested import has_unfilleted_bodies, unfilleted_bodies
 from flexspline.pipeline.enclosure import Names, between
 from flexspline.pipeline.part_meshes import SWEEPS
@@ -20,6 +20,7 @@ LESS, MORE = "the shaft without its fillets", "the shaft whose steps are moved b
 BODY_SHARE = 0.7
 """Of the tolerance, for each of the two shafts: fillets of 0.3 % of the diameter leave ± 0.01 to 0.2 %."""
 NO_FILLETS = "the mesh leaves out the fillets, where the stress is higher"
+FILLETS = "its fillets"
 DIFFER = Shortfall(f"{LESS} and {MORE} differ by more")
 
 
@@ -39,6 +40,14 @@ def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
     except SolidError as fault:
         model.context.progress.note(f"  {model.name}: fTetWild makes all meshes, {fault}")
     return twisted(model, tolerance, ("tetwild",))
+
+
+def without_fillets(field: SolidField) -> SolidField:
+    """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
+    peak, short = field.peak, field.peak.shortfall
+    words = f"{short}, and {NO_FILLETS}" if short else NO_FILLETS
+    judged = replace(peak, at_excluded_border=True, shortfall=replace(short, words=words))
+    return replace(field, peak=judged, left_out=FILLETS)
 
 
 def may_leave_fillets_out(model: PartModel) -> bool:

@@ -75,6 +75,8 @@ def of_field(context: AnalysisContext, name: str, field: SolidField) -> Iterator
         context.design.load.torque_Nm,
         context.part(part).torsion_key,
     )
+    if field.left_out:
+        title += f" without {field.left_out}"
     yield Drawing(f"{part}_mesh", "part", solved, write_mesh_picture, (field.mesh, title))
     inputs = {**solved, "torque_Nm": torque}
     shown = field, title, torque
