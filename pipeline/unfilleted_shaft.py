@@ -46,7 +46,12 @@ def without_fillets(field: SolidField) -> SolidField:
     """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
     peak, short = field.peak, field.peak.shortfall
     words = f"{short}, and {NO_FILLETS}" if short else NO_FILLETS
-    judged = replace(peak, at_excluded_border=True, shortfall=replace(short, words=words))
+    judged = replace(
+        peak,
+        excluded=f"{peak.excluded}, and {FILLETS}, which the mesh leaves out",
+        at_excluded_border=True,
+        shortfall=replace(short, words=words),
+    )
     return replace(field, peak=judged, left_out=FILLETS)
 
 

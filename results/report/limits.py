@@ -70,9 +70,10 @@ def assumptions(content: ReportContent) -> list[list[str]]:
                 "Peak stress",
                 "Left out of the peaks: "
                 + "; ".join(stated)
-                + ". Values there do not converge with mesh refinement; fillets are included. The stress of "
-                "the wave generator and that of the torque act together in service; they are given one "
-                "by one and not added. " + f"“{BORDER}” says that {MEANING}.",
+                + ". Values there do not converge with mesh refinement; fillets that are not named here are "
+                "included. The stress of the wave generator and that of the torque act together in "
+                "service; they are given one by one and not added. "
+                + f"“{BORDER}” says that {MEANING}.",
             ]
         )
     return found
