@@ -29,7 +29,7 @@ class PatternSolver:
     def __init__(self) -> None:
         self._lock = Lock()  # factors serve one thread at a time
         self._factors: PardisoFactors | None = None
-        self._last: csr_matrix | None = None
+        self._places: tuple[np.ndarray, np.ndarray] | None = None
 
     def solve(self, matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
         """K⁻¹ f of loads (N,) or (N, k).
@@ -44,9 +44,9 @@ class PatternSolver:
         with self._lock:
             last, self._factors = self._factors, None
             if last is None or not last.replace(matrix):
-                before, self._last = self._last, matrix
-                alone = before is None or not _same_places(before, matrix)
-                if alone and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
+                before, self._places = self._places, (matrix.indptr, matrix.indices)
+                again = before is not None and all(map(np.array_equal, before, self._places))
+                if not again and matrix.shape[0] < PARDISO_AT_ONCE_FROM:
                     return _checked(matrix, loads)
                 last = PardisoFactors(matrix, single=False)
             self._factors = last
@@ -64,10 +64,6 @@ def relative_residual(matrix: csr_matrix, x: np.ndarray, load: np.ndarray) -> fl
     """‖Ax − b‖/‖b‖, of b = 0 that of x = 0."""
     off, of_load = np.linalg.norm(matrix @ x - load), np.linalg.norm(load)
     return float(off) / max(float(of_load), ABOVE_ZERO)
-
-
-def _same_places(one: csr_matrix, other: csr_matrix) -> bool:
-    return np.array_equal(one.indptr, other.indptr) and np.array_equal(one.indices, other.indices)
 
 
 def solved(matrix: csr_matrix, loads: np.ndarray) -> np.ndarray:
