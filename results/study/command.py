@@ -36,7 +36,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.results.study.best_stress import draw_best_stress
         from flexspline.results.study.failures import nothing_built
         from flexspline.results.study.figures import write_figures
-        from flexspline.results.study.notes import border_warnings, preloaded
+        from flexspline.results.study.notes import border_warnings, preloaded, unsettled
         from flexspline.results.study.progress import Watch
         from flexspline.results.study.record import summary, words
         from flexspline.results.study.report import write_study_reports
@@ -64,7 +64,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
         of_best = tuple(best_warnings(result))
-        for line in (*border_warnings(result), *preloaded(result), *of_best):
+        for line in (*unsettled(result), *border_warnings(result), *preloaded(result), *of_best):
             tell(f"warning: {line}")
         table = table_of(result)
         write_csv(folder / "study.csv", table)

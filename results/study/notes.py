@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import inf
 
+from flexspline.geometry.above_zero import ABOVE_ZERO
 from flexspline.geometry.design import Design
 from flexspline.geometry.gear_assumptions import gear_assumptions
 from flexspline.geometry.part_name import PART_NAMES
+from flexspline.geometry.percent import percent
 from flexspline.pipeline.gear import T1_SHARE, T2_SHARE
 from flexspline.pipeline.stress_limits import PART_OF
 from flexspline.pipeline.study.evaluate import STUDY_LOBE_TOLERANCE, STUDY_TORSION_TOLERANCE
@@ -20,6 +23,10 @@ from flexspline.results.study.record import LISTED_DESIGNS
 from flexspline.results.study.why import unfollowed
 
 PRELOAD = "preload_tooth_force_N"
+LATE_SHARE = 0.25
+"""Of a search's designs, the last: what words call a quarter."""
+MOVED = 0.005
+"""Of the best figure: half of what bounds of K are wide in a study (STUDY_LOBE_TOLERANCE)."""
 PEAKS = tuple(f"{name}_mises_MPa" for name in PART_OF)
 
 
@@ -32,6 +39,7 @@ def notes(result: StudyResult, of_best: Sequence[str] = ()) -> list[str]:
         *_holes(result),
         _mass(result.study.design),
     ]
+    said += map(sentence, unsettled(result))
     said += _borders(result)
     said += _whole_gear(result)
     said += map(sentence, of_best)
@@ -70,6 +78,25 @@ def _used(result: StudyResult, key: str) -> str:
     roles = (("an objective", [*file.objective]), ("a constraint", [*file.constraint]))
     said = " and ".join(role for role, keys in roles if key in keys)
     return f"{said} of this study" if said else ""
+
+
+def unsettled(result: StudyResult) -> Iterable[str]:
+    """A line for each objective of a search whose best still moved in the last LATE_SHARE of its designs."""
+    if result.study.file.run.method != "optimize":
+        return
+    last = (1 - LATE_SHARE) * len(result.rows)
+    for key, sense in result.study.file.objective.items():
+        sign = 1.0 if sense == "minimize" else -1.0
+        found = [(r.slot, sign * r.outcome.figures[key]) for r in result.feasible]
+        early = min((value for slot, value in found if slot < last), default=inf)
+        best = min((value for _, value in found), default=inf)
+        gain = (early - best) / max(abs(best), ABOVE_ZERO) if early < inf else inf
+        if best < inf and gain > MOVED:
+            moved = "was first found" if gain == inf else f"still got {percent(gain)} better"
+            yield (
+                f"the search has not settled: its best {key} {moved} in the last quarter of the "
+                f"{len(result.rows)} designs; more evaluations (run.evaluations) may find a better one"
+            )
 
 
 def preloaded(result: StudyResult) -> Iterable[str]:
