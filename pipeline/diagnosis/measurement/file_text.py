@@ -83,9 +83,9 @@ def _decoded(path: Path, raw: bytes) -> tuple[FileText, ...]:
             unread = max(unread, error.start)
     if not found:
         byte, line = raw[unread], raw[:unread].count(b"\n") + 1
-        raise MeasurementError(
-            path, line, f"byte {byte:#04x} is neither UTF-8 nor Latin-1; save the file as UTF-8"
-        )
+        known = " or ".join(SINGLE_BYTE)
+        reason = f"byte {byte:#04x} is no text in UTF-8, {known}; save the file as UTF-8"
+        raise MeasurementError(path, line, reason)
     return tuple(found)
 
 
