@@ -317,7 +317,7 @@ def test_an_encoder_that_passes_a_full_turn_is_told_from_a_wrong_unit(tmp_path: 
         "no readable .xlsx"),
      (b"\xff\xfet", "begins as UTF-16"),
      (b"torque\x81,angle\n", "no text in UTF-8, cp1252 or cp1250"),
-    (b"\xe7,\x81\n", "byte 0x81 no text in UTF-8, cp1252 or cp1250"),
+    (b"\xe7,\x81\n", "byte 0x81 is no text in UTF-8, cp1252 or cp1250"),
          (b"\x1f\x8b\x08", "compressed")],
 )  # fmt: skip
 def test_other_files_are_named(begin: bytes, needle: str, tmp_path: Path) -> None:
