@@ -42,12 +42,14 @@ class ReachedStress:
 class LinearLimit:
     """A torque beyond which stiffness, stress and backlash by the linear model are not valid, and why.
 
-    `results/limit_words.py` says it. `peaks_solved`: whether the peak stress of notches was asked too.
+    `results/limit_words.py` says it. `peaks_solved`: whether the peak stress of notches was asked too;
+    `not_counted`: parts whose peak was, and says nothing of the part alone.
     """
 
     torque_Nm: float
     why: ToothTwist | ReachedStress
     peaks_solved: bool = True
+    not_counted: tuple[PartName, ...] = ()
 
 
 def linear_limit(
@@ -60,7 +62,16 @@ def linear_limit(
     limits lie lower: buckling, the teeth and bolts are not in it.
     """
     least = min(_limits(design, K_series_Nm_per_rad, peaks or {}), key=lambda x: x.torque_Nm)
-    return replace(least, peaks_solved=peaks is not None)
+    not_counted = tuple(
+        PART_OF[name]
+        for name, peak in (peaks or {}).items()
+        if _of_torque(name) and peak.at_excluded_border
+    )
+    return replace(least, peaks_solved=peaks is not None, not_counted=not_counted)
+
+
+def _of_torque(name: str) -> bool:
+    return name != "wave_generator_peak"
 
 
 def _limits(design: Design, K: float, peaks: Mapping[str, StressPeak]) -> Iterator[LinearLimit]:
@@ -70,7 +81,7 @@ def _limits(design: Design, K: float, peaks: Mapping[str, StressPeak]) -> Iterat
         why = ReachedStress(part, place, size, *_limit(design, part))
         yield LinearLimit(why.limit_MPa / stress, why)
     for name, peak in peaks.items():
-        if name != "wave_generator_peak" and not peak.at_excluded_border:
+        if _of_torque(name) and not peak.at_excluded_border:
             part = PART_OF[name]
             why = ReachedStress(part, "peak", None, *_limit(design, part))
             yield LinearLimit(design.load.torque_Nm * why.limit_MPa / peak.mises_MPa, why)

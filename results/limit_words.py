@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, assert_never
 
 from flexspline.pipeline.linear_limit import LinearLimit, ReachedStress, ToothTwist
+from flexspline.results.peaks import BORDER
 
 if TYPE_CHECKING:
     from flexspline.geometry.design import Design
@@ -59,7 +60,10 @@ def reason(limit: LinearLimit) -> str:
             said = f"{_place(why)} under torque alone reaches {_stress(why)}"
         case _:
             assert_never(why)
-    return said if limit.peaks_solved else f"{said} ({NOT_SOLVED})"
+    if not limit.peaks_solved:
+        return f"{said} ({NOT_SOLVED})"
+    parts = " and ".join(f"the {part}'s peak" for part in limit.not_counted)
+    return f"{said} ({parts}, {BORDER}, not counted)" if parts else said
 
 
 def load_beyond(limit: LinearLimit, design: Design) -> Iterator[str]:

@@ -12,6 +12,7 @@ from flexspline.geometry.design import Design
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.linear_limit import ReachedStress, ToothTwist, linear_limit
+from flexspline.results.limit_words import reason
 
 SOFT, STIFF = 1.0, 1e9
 """N·m/rad: so soft that the twist decides, so stiff that it never does."""
@@ -58,6 +59,8 @@ def test_a_peak_counts_only_where_it_is_the_parts(border: bool, counts: bool) ->
     found = linear_limit(cup(), STIFF, {"shaft_torque_peak": peak})
     # 100 MPa at the load torque of 0.5 N·m, limit 500 MPa
     assert (found.torque_Nm == pytest.approx(2.5)) == counts
+    assert ("shaft" in found.not_counted) != counts
+    assert ("the shaft's peak, at excluded border, not counted" in reason(found)) != counts
 
 
 def test_without_a_fatigue_limit_the_highest_strength_stands_in() -> None:

@@ -67,7 +67,7 @@ def shaft(tmp_path: Path) -> PartModel:
 
 def without_fillets(shaft: PartModel, monkeypatch: pytest.MonkeyPatch) -> TwistedPart:
     """What is answered where its mesh with fillets has too many elements."""
-    monkeypatch.setattr(unfilleted_shaft, "LAYERED_ELEMENTS", 10)
+    monkeypatch.setattr(unfilleted_shaft, "MOST_WITH_FILLETS", 10)
     return unfilleted_shaft.twisted_shaft(shaft, TOLERANCE)
 
 

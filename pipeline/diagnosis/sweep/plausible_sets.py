@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
 from flexspline.pipeline.diagnosis.sweep.fit import SweepFit, fit_regressors
@@ -29,6 +30,11 @@ OF_TORQUE_NOISE = 0.7
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
 TOGETHER_RATIO = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
+UNDONE = 0.5
+"""Of a hardening's shape over the torque: how much of it an unnamed term may take back. On a locked gear the
+output's angle is nearly a function of the torque, and a ripple over it any curve. In made-up records of
+friction and a joint that softens beyond a load, such a ripple took back 0.94 to 2.6 times of a hardening that
+was not there."""
 UNNAMED_TOGETHER = 2.0
 """The same of two nuisance terms: three quarters of their power is then gone. Nothing says that either is
 there, and what a lock lets go and a drift brings back at once has not moved."""
@@ -53,7 +59,7 @@ def fits_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
     if not nuisance and not driven:
         return False
     fit = fit_regressors(evidence, c.terms)
-    if nuisance and _cancels(fit, owners):
+    if nuisance and (_cancels(fit, owners) or _undone(fit, owners)):
         return True
     return bool(driven) and _is_torque_noise(fit, driven)
 
@@ -81,6 +87,19 @@ def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
     pairs = np.triu(np.logical_or.outer(nuisance, nuisance), 1)
     most = np.where(np.logical_and.outer(nuisance, nuisance), UNNAMED_TOGETHER, TOGETHER_RATIO)
     return bool((pairs & (own > most**2 * (own + 2 * products))).any())
+
+
+def _undone(fit: SweepFit, owners: Collection[str]) -> bool:
+    """Whether unnamed terms take back the shape of a hardening, less what is straight in the torque."""
+    if HARDENING not in owners:
+        return False
+    kept = fit.evidence.kept
+    torque = fit.evidence.columns.rig.history.torque_Nm[kept]
+    straight = np.column_stack([np.ones_like(torque), torque])
+    unnamed = sum(fit.added(o)[kept] for o in owners if o.startswith("?"))
+    parts = np.column_stack([fit.added(HARDENING)[kept], unnamed])
+    own, others = (parts - straight @ np.linalg.lstsq(straight, parts, rcond=None)[0]).T
+    return bool(own @ others < -UNDONE * (own @ own))
 
 
 def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
