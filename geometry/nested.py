@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import inf
 
 from flexspline.geometry.outline import SAME
 from flexspline.geometry.part import Part
@@ -92,29 +93,30 @@ def _moved_steps(part: Part, shape: Shaft) -> tuple[ShaftSegment, ...]:
             if length > SAME:
                 piece = {"length_mm": length, "outer_diameter_mm": diameter}
                 pieces.append(segment.model_copy(update=piece))
-    return _joined(pieces, _holes_are_clear(part, shape))
+    if part.bolts is None:
+        return _joined(pieces, inf)
+    return _joined(pieces, 1 if _holes_may_deepen(part, shape) else 0)
 
 
-def _holes_are_clear(part: Part, shape: Shaft) -> bool:
-    """Whether the holes may end deeper, with the flange: nothing of the moved step's own lies above them."""
-    if (
-        part.bolts is None
-        or shape.segment[1].outer_diameter_mm > shape.segment[0].outer_diameter_mm
-    ):
-        return True
-    thinner = shape.segment[1].outer_diameter_mm / 2 + shape.fillet_mm
-    return part.bolts.radius - part.bolts.hole_radius >= thinner
+def _holes_may_deepen(part: Part, shape: Shaft) -> bool:
+    """Whether holes may go through the flange's moved step too: nothing of the part is over them."""
+    assert part.bolts is not None
+    flange, above = shape.segment[:2]
+    if above.outer_diameter_mm > flange.outer_diameter_mm - SAME:
+        return False
+    beside = above.outer_diameter_mm / 2 + shape.fillet_mm
+    return part.bolts.radius - part.bolts.hole_radius >= beside
 
 
-def _joined(pieces: list[ShaftSegment], with_first: bool) -> tuple[ShaftSegment, ...]:
-    """Neighbours of the same section as one; the first, in which the holes are, only if it may grow."""
+def _joined(pieces: list[ShaftSegment], to_first: float) -> tuple[ShaftSegment, ...]:
+    """Neighbours of the same section as one; so many join the first, in which the holes are."""
     found = pieces[:1]
-    for before, piece in pairwise(pieces):
+    for number, (before, piece) in enumerate(pairwise(pieces)):
         same = (
             abs(before.outer_diameter_mm - piece.outer_diameter_mm) <= SAME
             and abs(before.inner_diameter_mm - piece.inner_diameter_mm) <= SAME
         )
-        if same and (with_first or len(found) > 1):
+        if same and (len(found) > 1 or number < to_first):
             length = found[-1].length_mm + piece.length_mm
             found[-1] = found[-1].model_copy(update={"length_mm": length})
         else:

@@ -33,7 +33,7 @@ from flexspline.pipeline.stiffnesses import Stiffnesses, in_order
 from flexspline.pipeline.storage import cache_folder
 from flexspline.pipeline.stress_limits import PEAK_OF, STRESS_CASES
 from flexspline.pipeline.two_threads import beside
-from flexspline.pipeline.unfilleted_shaft import without_fillets
+from flexspline.pipeline.unfilleted_shaft import FILLETS, without_fillets
 from flexspline.pipeline.wave_generator import sharp_edges
 
 
@@ -236,4 +236,5 @@ def torque_field(model: PartModel) -> SolidField:
             PEAK_STRESS_TOLERANCE,
             Deadline(STAGE_SECONDS),
         )
-    return replace(solved, peak=exact.peak)
+    left_out = FILLETS if twisted.without_fillets else ""
+    return replace(solved, peak=exact.peak, left_out=left_out)

@@ -205,7 +205,9 @@ class PartMeshes:
         inputs = {
             **model.geometry_key,
             "spec": wanted,
-            "mesher": model.mesher if self.kinds == KINDS else self.kinds[0],
+            "mesher": model.mesher
+            if self.kinds == KINDS
+            else ", ".join((model.mesher, *self.kinds)),
         }
         return model.context.cache.get("mesh", inputs, make)[0]
 

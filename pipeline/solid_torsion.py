@@ -98,7 +98,7 @@ def twisted(
     """
     meshes = PartMeshes(model, kinds, most_of_first)
     first = meshes.coarsened(FIRST_ELEMENTS)
-    again = model.context.design.solver.edge_length_mm is None
+    again = model.context.design.solver.edge_length_mm is None and model.mesher != "swept"
     if again:
         limit_s = ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS
         first = replace(first, time_limit_s=limit_s)
@@ -106,22 +106,18 @@ def twisted(
         try:
             return _refined(meshes, first, tolerance, seconds)
         except OtherKindError as other:
-            if other.kind in kinds:
-                model.context.progress.note(
-                    f"  {model.name}: all meshes are made anew, {other.kind}"
-                )
-                first = replace(model.first_spec, time_limit_s=first.time_limit_s)
-                kinds = kinds[kinds.index(other.kind) :]
-                meshes = PartMeshes(model, kinds, most_of_first)
-                continue
-            fault = SolidError(f"the swept mesh of the {model.name} fails a check")
-        except SolidError as failed:
-            fault = failed
-        if not again:
-            raise fault
-        model.context.progress.note(f"  {model.name}: made anew with longer edges, {fault}")
-        again = False
-        first = replace(first.scaled(COARSER_FIRST), time_limit_s=MESHER_SECONDS)
+            later = kinds[kinds.index(other.kind) :] if other.kind in kinds else ()
+            if not later or later == kinds:
+                raise SolidError(f"a swept mesh of the {model.name} fails a check") from None
+            model.context.progress.note(f"  {model.name}: all meshes are made anew, {other.kind}")
+            kinds, first = later, replace(model.first_spec, time_limit_s=first.time_limit_s)
+            meshes = PartMeshes(model, kinds, most_of_first)
+        except SolidError as fault:
+            if not again:
+                raise
+            model.context.progress.note(f"  {model.name}: made anew with longer edges, {fault}")
+            again = False
+            first = replace(first.scaled(COARSER_FIRST), time_limit_s=MESHER_SECONDS)
 
 
 def _refined(meshes: PartMeshes, first: MeshSpec, tolerance: float, seconds: float) -> TwistedPart:

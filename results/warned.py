@@ -28,6 +28,7 @@ def shortfalls(
         *map(passed_line, limits_passed(design, peaks)),
         *_wide(design, found),
         *_unsettled(peaks),
+        *_left_out(fields or {}),
         *_missing(found),
     )
 
@@ -68,6 +69,13 @@ def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
         if peak.shortfall:
             title = quantity(f"{name}_mises_MPa").name
             yield f"{title}: may still change with a finer mesh, {peak.shortfall}"
+
+
+def _left_out(fields: Mapping[str, SolidField]) -> Iterator[str]:
+    for name, field in fields.items():
+        if field.left_out:
+            title = quantity(f"{PEAK_OF[name]}_mises_MPa").name
+            yield f"{title}: the mesh leaves out {field.left_out}, where the stress is higher"
 
 
 def _missing(found: Stiffnesses) -> Iterator[str]:

@@ -116,3 +116,18 @@ def test_holes_under_a_step_keep_their_depth() -> None:
         holes = f"bolt_count = 4\nbolt_circle_diameter_mm = {circle}\nbolt_hole_diameter_mm = 2"
         part = shaft_of([(4.0, 20.0, 6.0), (12.0, 10.0, 6.0)], holes).part("shaft")
         assert unfilleted_bodies(part).whole.hole_depth == depth
+
+
+@pytest.mark.parametrize("second", [2.0, 2.5])
+def test_a_groove_as_wide_as_its_fillets(second: float) -> None:
+    """Filled by them altogether: the holes of the flange are not let through what is beyond it."""
+    holes = "bolt_count = 4\nbolt_circle_diameter_mm = 16.5\nbolt_hole_diameter_mm = 2"
+    part = shaft_of(
+        [(4.0, 20.0, 6.0), (second, 12.0, 6.0), (14.0, 20.0, 6.0)], holes, fillet=1.0
+    ).part("shaft")
+    bodies = unfilleted_bodies(part)
+    assert bodies.whole.hole_depth == 5.0  # the flange and its moved step
+    rng = np.random.default_rng(3)
+    rz = rng.uniform(0, 1, (POINTS, 2)) * (10.0, part.length)
+    phi = rng.uniform(0, 2 * np.pi, len(rz))
+    assert not (in_material(part, rz, phi) & ~in_material(bodies.whole, rz, phi)).any()
