@@ -28,8 +28,8 @@ MOST_WITH_FILLETS = 60_000
 of 0.1 % of its diameter had 52 149, of 0.6 % 40 269; two without, of 36 561 and 37 857, take longer."""
 REVOLVED_TOLERANCE, SMALL_DIFFERENCE = 2e-3, 0.01
 """Of K of both shafts without holes; and half of what they may differ by where fTetWild is not tried first.
-With fillets of 5 to 10 % of the diameter five random shafts were known to ± 8 to 15 % so, by fTetWild to ± 0.2
-to 0.6 % in as much time; those of 0.3 % differ by 0.01 to 3 %."""
+With fillets of 5 to 10 % of the diameter five random shafts were known to ± 8 to 15 % so, by fTetWild to
+± 0.2 to 0.6 % in as much time; those of 0.3 % differ by 0.01 to 3 %."""
 REMEDY = "a stated solver.edge_length_mm meshes its fillets, however long that takes"
 DIFFER = Shortfall(f"{LESS} and {MORE} differ by more")
 
