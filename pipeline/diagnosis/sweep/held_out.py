@@ -45,7 +45,8 @@ def gains_of(
     """The error on cycles, positions or units between others, None where nothing can be spared; and, where
     causes are named, on each whole amplitude, rate and temperature, learnt on the others."""
     prepared = explained.prepared
-    between = between_others(prepared.rig.history, prepared.sweep.cycles)
+    history = prepared.rig.history
+    between = between_others(history, prepared.sweep.cycles, ~settling(history))
     levels: list[Split] = []
     if causes:
         timed = prepared.sweep.history.time_s is not None

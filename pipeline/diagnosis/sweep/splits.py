@@ -48,17 +48,21 @@ class Split:
     rows: np.ndarray
 
 
-def between_others(history: History, names: tuple[tuple[float, ...], ...]) -> Split | None:
+def between_others(
+    history: History, names: tuple[tuple[float, ...], ...], judged: np.ndarray
+) -> Split | None:
     """Whole cycles, or positions, or units.
 
     Every third cycle, never the first: the last is kept for fitting where there are more than two, so
     that what changes from cycle to cycle is not extrapolated. None where nothing can be spared. `names` are
-    the file's own numbers of each unit's cycles.
+    the file's own numbers of each unit's cycles; `judged` (n,) the rows on which a prediction may be: where
+    amplitudes rise, whole cycles come before the first turn from the largest.
     """
     present = np.unique(history.cycle)
     count = len(present)
     if count >= 2:
-        places = [1] if count == 2 else [c for c in range(1, count - 1) if c % EVERY == 1]
+        inner = [c for c in range(1, count - 1) if judged[history.cycle == present[c]].any()]
+        places = inner[::EVERY] or [1]
         chosen = present[places]
         own = names[0] if len(names[0]) == count else tuple(present + 1.0)
         left = LeftOut("cycle", tuple(float(own[c]) for c in places))

@@ -18,6 +18,7 @@ from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
 from flexspline.pipeline.diagnosis.sweep.held_out import gains_of, refuted
 from flexspline.pipeline.diagnosis.sweep.prepare import prepare
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
+from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 from flexspline.pipeline.diagnosis.sweep.splits import between_others, whole_levels
 from flexspline.results.diagnosis.channels import left_out_words
 
@@ -48,10 +49,12 @@ def test_rows_in_the_gap_s_crossing_are_left_out() -> None:
 
 def test_many_cycles_held_out_are_counted_and_not_all_listed() -> None:
     history = sweep(cycles=30, hold=0, rows=1200)
-    split = between_others(history, (tuple(float(n) for n in range(1, 31)),))
+    everywhere = np.ones(len(history), bool)
+    split = between_others(history, (tuple(float(n) for n in range(1, 31)),), everywhere)
     assert split is not None
     assert left_out_words(split.what) == "cycles 2, 5, 8, … 29 (10 cycles)"
-    few = between_others(sweep(cycles=8, hold=0, rows=800), (tuple(range(1, 9)),))
+    eight = sweep(cycles=8, hold=0, rows=800)
+    few = between_others(eight, (tuple(range(1, 9)),), np.ones(len(eight), bool))
     assert few is not None
     assert few.what == LeftOut("cycle", (2.0, 5.0))
 
@@ -70,6 +73,17 @@ def levels(amplitudes: tuple[float, ...], seconds: tuple[float, ...]) -> History
             )
         )  # fmt: skip
     return joined(parts)
+
+
+def test_cycles_before_the_first_large_turn_are_not_held_out() -> None:
+    """Amplitudes that rise: nobody knows what friction remembers there, so nothing is judged in them."""
+    rising = levels((0.2, 0.4, 0.7, 1.0, 0.2, 0.4, 0.7, 1.0), (1.0,) * 8)
+    judged = ~settling(rising)
+    assert not judged[rising.cycle == 1].any()  # the second cycle, which else is the first held out
+    split = between_others(rising, (tuple(range(1, 9)),), judged)
+    assert split is not None
+    assert all(judged[rising.cycle == number - 1].any() for number in split.what.values)
+    assert split.rows.any()
 
 
 def test_each_amplitude_rate_and_temperature_is_held_out_as_a_whole() -> None:
