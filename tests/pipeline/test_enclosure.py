@@ -14,7 +14,7 @@ from flexspline.fea.types import Shortfall, Stiffness
 from flexspline.geometry.load import load_design
 from flexspline.geometry.nested import nested_bodies
 from flexspline.geometry.part import Part
-from flexspline.pipeline.enclosure import NestingError, between, enclosed
+from flexspline.pipeline.enclosure import OF_HOLES, NestingError, between, enclosed
 from flexspline.pipeline.revolved import contact, lobes, torsion
 
 FINE = 2e-4
@@ -58,7 +58,7 @@ def test_the_other_way_round_is_an_error() -> None:
     bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
     cut, whole = torsion(bodies.cut, FINE), torsion(bodies.whole, FINE)
     with pytest.raises(NestingError) as caught:
-        between(whole, cut)
+        between(whole, cut, OF_HOLES)
     assert caught.value.softer_Nm_per_rad == whole.lower_Nm_per_rad
     assert caught.value.stiffer_Nm_per_rad == cut.upper_Nm_per_rad
 
@@ -66,18 +66,18 @@ def test_the_other_way_round_is_an_error() -> None:
 def test_the_bounds_are_theorems_where_both_bodies_are() -> None:
     bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
     cut, whole = torsion(bodies.cut, CHEAP), torsion(bodies.whole, CHEAP)
-    assert between(cut, whole).guaranteed
-    assert not between(replace(cut, guaranteed=False), whole).guaranteed
-    assert not between(cut, replace(whole, guaranteed=False)).guaranteed
+    assert between(cut, whole, OF_HOLES).guaranteed
+    assert not between(replace(cut, guaranteed=False), whole, OF_HOLES).guaranteed
+    assert not between(cut, replace(whole, guaranteed=False), OF_HOLES).guaranteed
 
 
 def test_what_fell_short_is_said() -> None:
     bodies = nested_bodies(load_design(EXAMPLES / "xb1-40.toml").part("flexspline"))
     cut, whole = torsion(bodies.cut, CHEAP), torsion(bodies.whole, CHEAP)
     short = Shortfall("no time")
-    assert between(replace(cut, shortfall=short), whole).shortfall == short
-    assert between(cut, replace(whole, shortfall=short)).shortfall == short
-    assert not between(cut, whole).shortfall
+    assert between(replace(cut, shortfall=short), whole, OF_HOLES).shortfall == short
+    assert between(cut, replace(whole, shortfall=short), OF_HOLES).shortfall == short
+    assert not between(cut, whole, OF_HOLES).shortfall
 
 
 def test_a_long_thin_tube_is_loaded_too() -> None:
