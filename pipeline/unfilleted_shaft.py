@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from flexspline.fea.axisymmetric.torsion import torsional_stiffness
-from flexspline.fea.deadline import STAGE_SECONDS, Deadline
 from flexspline.fea.solid.errors import SolidError, TooManyElementsError
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
@@ -17,6 +15,7 @@ from flexspline.geometry.nested import has_unfilleted_bodies, unfilleted_bodies
 from flexspline.pipeline.enclosure import Names, between
 from flexspline.pipeline.part_meshes import SWEEPS
 from flexspline.pipeline.parts import PartModel
+from flexspline.pipeline.revolved import torsion
 from flexspline.pipeline.solid_torsion import SOLID_SECONDS, TwistedPart, twisted
 
 LESS, MORE = "the shaft without its fillets", "the shaft whose steps are moved by the fillet"
@@ -83,14 +82,7 @@ def _hardly_differ(model: PartModel, tolerance: float) -> bool:
     bodies = unfilleted_bodies(model.part)
     try:
         less, more = (
-            torsional_stiffness(
-                body.without_holes().meridian,
-                model.material,
-                body.driven,
-                REVOLVED_TOLERANCE,
-                Deadline(STAGE_SECONDS),
-            )
-            for body in (bodies.cut, bodies.whole)
+            torsion(body.without_holes(), REVOLVED_TOLERANCE) for body in (bodies.cut, bodies.whole)
         )
     except ComputationError:
         return False
