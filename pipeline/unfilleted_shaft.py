@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from flexspline.fea.deadline import Deadline
 from flexspline.fea.solid.errors import SolidError, TooManyElementsError
 from flexspline.fea.types import MET, Shortfall, SolidField
 from flexspline.geometry.errors import ComputationError
 from flexspline.geometry.nested import has_unfilleted_bodies, unfilleted_bodies
+from flexspline.geometry.part import Part
 from flexspline.pipeline.enclosure import Names, between
 from flexspline.pipeline.part_meshes import SWEEPS
 from flexspline.pipeline.parts import PartModel
@@ -92,10 +94,13 @@ def _hardly_differ(model: PartModel, tolerance: float) -> bool:
 
 def _between_shafts(model: PartModel, tolerance: float) -> TwistedPart:
     bodies, share = unfilleted_bodies(model.part), BODY_SHARE * tolerance
-    less, more = (
-        twisted(replace(model, part=part), share, SWEEPS, seconds=SOLID_SECONDS / 2)
-        for part in (bodies.cut, bodies.whole)
-    )
+    both = Deadline(SOLID_SECONDS)
+
+    def solved(part: Part, seconds: float) -> TwistedPart:
+        return twisted(replace(model, part=part), share, SWEEPS, seconds=seconds)
+
+    less = solved(bodies.cut, SOLID_SECONDS / 2)
+    more = solved(bodies.whole, max(SOLID_SECONDS / 2, SOLID_SECONDS - both.elapsed()))
     names = Names(LESS, MORE, "solid", model.sector.label)
     found = between(less.stiffness, more.stiffness, names)
     levels, short = less.stiffness.levels, found.half_width > tolerance

@@ -9,6 +9,7 @@ import numpy as np
 from flexspline.pipeline.diagnosis.causes.creep import CREEP
 from flexspline.pipeline.diagnosis.causes.friction_hysteresis import FRICTION
 from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
+from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.stiffness_hardening import HARDENING
 from flexspline.pipeline.diagnosis.measurement.torque_noise import torque_noise_Nm
 from flexspline.pipeline.diagnosis.sweep.evidence import GaussianEvidence
@@ -30,11 +31,14 @@ OF_TORQUE_NOISE = 0.7
 so large. In made-up records true ones begin at 1.2; from noise alone a set of three terms had 0.47."""
 TOGETHER_RATIO = 3.0
 """Times that many effects may be larger, each for itself, than what they are together."""
+CURVES = {SERIES: 1, HARDENING: 2}
+"""Causes whose angle is a curve over the torque, and what of such a curve may be the gear's own: its zero;
+of a hardening its compliance too. As powers of the torque below that one."""
 UNDONE = 0.5
-"""Of a hardening's shape over the torque: how much of it an unnamed term may take back. On a locked gear the
-output's angle is nearly a function of the torque, and a ripple over it any curve. In made-up records of
-friction and a joint that softens beyond a load, such a ripple took back 0.94 to 2.6 times of a hardening that
-was not there."""
+"""Of such a curve: how much of it unnamed terms may take back. On a locked gear the output's angle is nearly
+a function of the torque, and a ripple over it any curve. In made-up records of friction and a joint that
+softens beyond a load, such a ripple took back 0.94 to 2.6 times of a hardening that was not there; of the
+joint alone, a gear 12 % stiffer."""
 UNNAMED_TOGETHER = 2.0
 """The same of two nuisance terms: three quarters of their power is then gone. Nothing says that either is
 there, and what a lock lets go and a drift brings back at once has not moved."""
@@ -90,16 +94,18 @@ def _cancels(fit: SweepFit, owners: Collection[str]) -> bool:
 
 
 def _undone(fit: SweepFit, owners: Collection[str]) -> bool:
-    """Whether unnamed terms take back the shape of a hardening, less what is straight in the torque."""
-    if HARDENING not in owners:
-        return False
+    """Whether unnamed terms take back the curve over the torque that a cause makes."""
     kept = fit.evidence.kept
     torque = fit.evidence.columns.rig.history.torque_Nm[kept]
-    straight = np.column_stack([np.ones_like(torque), torque])
     unnamed = sum(fit.added(o)[kept] for o in owners if o.startswith("?"))
-    parts = np.column_stack([fit.added(HARDENING)[kept], unnamed])
-    own, others = (parts - straight @ np.linalg.lstsq(straight, parts, rcond=None)[0]).T
-    return bool(own @ others < -UNDONE * (own @ own))
+    for cause_id, powers in CURVES.items():
+        if cause_id in owners:
+            parts = np.column_stack([fit.added(cause_id)[kept], unnamed])
+            basis = torque[:, None] ** np.arange(powers)
+            own, others = (parts - basis @ np.linalg.lstsq(basis, parts, rcond=None)[0]).T
+            if own @ others < -UNDONE * (own @ own):
+                return True
+    return False
 
 
 def cancels_itself(evidence: GaussianEvidence, c: Candidate, owner: str) -> bool:
