@@ -61,14 +61,19 @@ class Noise:
         return self.white + self.coloured * (1 + self.memory) / (1 - self.memory)
 
     def whitened(self, values: np.ndarray, stretches: list[slice]) -> np.ndarray:
-        """(n, …) values that would be independent with variance 1 were they this noise.
+        """(n, …) values that would be independent with variance 1 were they this noise."""
+        return self.whitener(stretches)(values)
+
+    def whitener(self, stretches: list[slice]) -> Whitener:
+        """What whitens columns of those stretches, each of which starts anew.
 
         The sum of the two parts is an ARMA(1,1) process: its innovations, with the memory ρ and a
-        moving-average root θ, are e_t = x_t − ρ x_{t−1} + θ e_{t−1}. Each stretch starts anew.
+        moving-average root θ, are e_t = x_t − ρ x_{t−1} + θ e_{t−1}.
         """
         rho, total = self.memory, self.variance
+        n = stretches[-1].stop if stretches else 0
         if self.coloured <= ROUNDING_OF_SUMS * total:
-            return values / np.sqrt(total)
+            return Whitener(None, None, np.full(n, np.sqrt(total)))
         # (1 + θ²)s² and −θs² are the moving average's covariances at lags 0 and 1
         zero = total * (1 + rho**2) - 2 * rho * rho * self.coloured
         one = rho * (self.coloured - total)  # = −ρ·white
@@ -76,15 +81,32 @@ class Noise:
         theta = ratio - np.sqrt(ratio**2 - 1) if np.isfinite(ratio) else 0.0
         s2 = -one / theta if theta > 0 else zero
         starts = np.array([s.start for s in stretches])
-        since = np.arange(len(values)) - np.repeat(starts, [_length(s) for s in stretches])
+        since = np.arange(n) - np.repeat(starts, [_length(s) for s in stretches])
         goes_on = (since[1:] > 0).astype(float)
-        changed = values.astype(float, order="F")
-        shape = (-1,) + (1,) * (values.ndim - 1)
-        changed[1:] -= rho * goes_on.reshape(shape) * values[:-1]
-        innovations = first_order(theta * goes_on, changed)
         # a start from rest: the first innovations have a larger variance, which decays as θ^2k
         extra = (total - s2) * np.float64(theta**2) ** since
-        return innovations / np.sqrt(s2 + extra).reshape(shape)
+        return Whitener(rho * goes_on, theta * goes_on, np.sqrt(s2 + extra))
+
+
+@dataclass(frozen=True)
+class Whitener:
+    """Innovations e_t = x_t − `before`·x_{t−1} + `again`·e_{t−1} over their deviation `std` (n,).
+
+    `before` and `again` (n − 1,) : None where rows are independent.
+    """
+
+    before: np.ndarray | None
+    again: np.ndarray | None
+    std: np.ndarray
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """(n, …) whitened."""
+        shape = (-1,) + (1,) * (values.ndim - 1)
+        if self.before is None or self.again is None:
+            return values / self.std.reshape(shape)
+        changed = values.astype(float, order="F")
+        changed[1:] -= self.before.reshape(shape) * values[:-1]
+        return first_order(self.again, changed) / self.std.reshape(shape)
 
 
 def stretches_of(history: History, kept: np.ndarray) -> list[slice]:

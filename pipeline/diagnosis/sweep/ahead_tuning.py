@@ -133,7 +133,7 @@ class _Trial:
             blocks.append(own * term.prior)
             precision.append(np.ones(own.shape[1]))
         target = sweep.angle_arcsec - p.prediction.for_race.angle_arcsec(history)
-        white = self.evidence.prepared(np.column_stack([*blocks, target]))
+        white = self.evidence.whitened(np.column_stack([*blocks, target]))
         return white[:, :-1], np.concatenate(precision), white[:, -1]
 
     def at(self, point: np.ndarray) -> _State:

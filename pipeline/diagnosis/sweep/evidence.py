@@ -9,14 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from flexspline.pipeline.diagnosis.causes.cause import Shape
-from flexspline.pipeline.diagnosis.measurement.known_ways import known_ways
-from flexspline.pipeline.diagnosis.measurement.noise import Noise, stretches_of
-from flexspline.pipeline.diagnosis.measurement.torque_jitter import reading_of
+from flexspline.pipeline.diagnosis.measurement.noise import Noise
 from flexspline.pipeline.diagnosis.sweep.regressors import DesignMatrix, Regressor
-
-MOST_WHITENED_ROWS = 4000
-"""Whitened rows beyond this are summed in blocks: linear, so nothing is bent."""
-
+from flexspline.pipeline.diagnosis.sweep.whitening import Whitening
 
 COLUMNS_AT_ONCE = 64
 """Columns whitened together: 3 MB of 6000 rows."""
@@ -29,12 +24,11 @@ class GaussianEvidence:
     Attributes
     ----------
     gram (P, P), right (P,) : of columns scaled to unit prior, less what the base explains.
-    base_gain : evidence of the base alone. rows : number of whitened rows. total : yᵀy whitened.
+    rows : number of whitened rows. total : yᵀy whitened.
     """
 
     columns: DesignMatrix
-    noise: Noise
-    kept: np.ndarray
+    whitened: Whitening
     target: np.ndarray
     """(n,) measured less nominal angle."""
     gram: np.ndarray
@@ -50,40 +44,14 @@ class GaussianEvidence:
     x: np.ndarray
     """(r,), (r, b), (r, P) whitened; x scaled to unit prior."""
 
-    def prepared(self, values: np.ndarray) -> np.ndarray:
-        """(n, k) further columns of the record, whitened like all others."""
-        block = max(1, int(self.kept.sum()) // MOST_WHITENED_ROWS)
-        values = self._white_by_rows(values)
-        for rows, basis, less in self._white_by_ways:
-            values[rows] -= basis @ (less[:, None] * (basis.T @ values[rows]))
-        return _summed(values, block)
+    @property
+    def kept(self) -> np.ndarray:
+        """(n,) rows that are explained."""
+        return self.whitened.kept
 
-    def _white_by_rows(self, values: np.ndarray) -> np.ndarray:
-        """(m, k) kept rows, but for what the noise of the torque does to whole ways."""
-        stretches = stretches_of(self.columns.rig.history, self.kept)
-        return self.noise.whitened(values[self.kept].astype(float), stretches)
-
-    @cached_property
-    def _white_by_ways(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of each way whose torque few numbers tell: kept rows (m,), directions (m, k) and what goes of each.
-
-        The numbers' doubts are noise of whole ways, whatever noise the rows have.
-        """
-        history = self.columns.rig.history
-        ways = known_ways(reading_of(history))
-        if not ways:
-            return []
-        doubts = np.zeros((len(history), max(w.doubt_Nm.shape[1] for w in ways)))
-        for way in ways:
-            doubts[way.rows, : way.doubt_Nm.shape[1]] = way.doubt_Nm
-        white = self._white_by_rows(self.columns.rig.prediction.compliance * doubts)
-        place, found = np.cumsum(self.kept) - 1, []
-        for way in ways:
-            rows = place[way.rows[self.kept[way.rows]]]
-            own = white[rows, : way.doubt_Nm.shape[1]]
-            directions, size, _ = np.linalg.svd(own, full_matrices=False)
-            found.append((rows, directions, 1 - 1 / np.hypot(1, size)))
-        return found
+    @property
+    def noise(self) -> Noise:
+        return self.whitened.noise
 
     def base_with(self, blocks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Columns (r, p) of the base and of blocks of unit prior; inverse variances (p,) of their priors."""
@@ -106,29 +74,23 @@ def gaussian_evidence(
     columns: DesignMatrix, target: np.ndarray, kept: np.ndarray, noise: Noise
 ) -> GaussianEvidence:
     """Whiten the kept rows and form all products."""
-    empty = np.empty((0, 0))
-    bare = GaussianEvidence(
-        columns, noise, kept, target, empty, np.empty(0), np.empty(0), empty, np.empty(0), empty,
-        0.0, 0, np.empty(0), empty, empty,
-    )  # fmt: skip
-    y = bare.prepared(target[:, None])[:, 0]
-    base = bare.prepared(columns.base)
+    whitened = Whitening(columns.rig, kept, noise)
+    y = whitened(target[:, None])[:, 0]
+    base = whitened(columns.base)
     prior = np.concatenate([t.prior for t in columns.terms]) if columns.terms else np.empty(0)
     wide = [
-        bare.prepared(columns.all[:, i : i + COLUMNS_AT_ONCE])
+        whitened(columns.all[:, i : i + COLUMNS_AT_ONCE])
         for i in range(0, columns.all.shape[1], COLUMNS_AT_ONCE)
     ]
     x = np.hstack(wide) * prior if wide else np.empty((len(y), 0))
-    block = max(1, int(kept.sum()) // MOST_WHITENED_ROWS)
     base_gram = base.T @ base + np.diag(columns.base_prior**-2)
     base_right = base.T @ y
     cross = base.T @ x
     solved = np.linalg.solve(base_gram, np.column_stack([base_right, cross]))
-    gram = x.T @ x - cross.T @ solved[:, 1:]
-    right = x.T @ y - cross.T @ solved[:, 0]
-    return replace(
-        bare, gram=gram, right=right, scale=prior, base_gram=base_gram, base_right=base_right,
-        base_cross=cross, total=float(y @ y), rows=len(y) * block, y=y, base=base, x=x,
+    return GaussianEvidence(
+        columns, whitened, target, gram=x.T @ x - cross.T @ solved[:, 1:],
+        right=x.T @ y - cross.T @ solved[:, 0], scale=prior, base_gram=base_gram, base_right=base_right,
+        base_cross=cross, total=float(y @ y), rows=len(y) * whitened.block, y=y, base=base, x=x,
     )  # fmt: skip
 
 
@@ -154,7 +116,7 @@ def with_shapes(
         return old
     new = np.hstack(blocks)
     prior = np.concatenate([t.prior for t in terms[len(old.terms) :]])
-    x = old.prepared(new) * prior
+    x = old.whitened(new) * prior
     cross = old.base.T @ x
     solved = np.linalg.solve(old.base_gram, np.column_stack([old.base_right, cross]))
     mixed = old.x.T @ x - old.base_cross.T @ solved[:, 1:]
@@ -178,13 +140,6 @@ def with_shapes(
 def shape_key(owner: str, shape: Shape) -> tuple[str, tuple[tuple[str, float], ...]]:
     """By which two shapes are one, but for rounding."""
     return owner, tuple(sorted((k, float(f"{v:.6g}")) for k, v in shape.items()))
-
-
-def _summed(values: np.ndarray, block: int) -> np.ndarray:
-    if block == 1:
-        return values
-    n = len(values) // block * block
-    return values[:n].reshape(-1, block, values.shape[1]).sum(axis=1) / np.sqrt(block)
 
 
 @dataclass(frozen=True)

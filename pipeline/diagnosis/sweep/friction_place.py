@@ -35,7 +35,7 @@ def hardening_std(fit: SweepFit) -> float:
     if not _place_open(fit):
         return 0.0
     evidence = fit.evidence
-    other = evidence.prepared((fit.added(FRICTION) * _softer(fit))[:, None])[:, 0]
+    other = evidence.whitened((fit.added(FRICTION) * _softer(fit))[:, None])[:, 0]
     posterior = fit.posterior
     at = column_indices(evidence, posterior.terms)
     scale = np.concatenate([np.ones(posterior.base_count), evidence.scale[at]])

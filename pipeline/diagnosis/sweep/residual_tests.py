@@ -78,7 +78,7 @@ class Residual:
 
     def tested(self, channel: str, codes: np.ndarray) -> ChannelTest:
         """Its structure in bins (n,), numbered from 0."""
-        bins = self.evidence.prepared((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
+        bins = self.evidence.whitened((codes[:, None] == np.arange(codes.max() + 1)).astype(float))
         bins -= self.model @ (self.model.T @ bins)
         basis, size, _ = np.linalg.svd(bins, full_matrices=False)
         own = basis[:, size > RANK_SHARE * size.max()]

@@ -65,7 +65,7 @@ def rivals_of(
 def _is_calibration(fit: SweepFit, owner: str) -> bool:
     """Whether the record shows nothing of an owner's effect but a change of zero, compliance and gap."""
     evidence = fit.evidence
-    effect = evidence.prepared(fit.added(owner)[:, None])[:, 0]
+    effect = evidence.whitened(fit.added(owner)[:, None])[:, 0]
     left = effect - evidence.base @ np.linalg.lstsq(evidence.base, effect, rcond=None)[0]
     return float(left @ left) / 2 < RIVAL_EVIDENCE
 

@@ -72,7 +72,7 @@ def _possible(term: Regressor, shape: Shape) -> bool:
 def _block(evidence: GaussianEvidence, term: Regressor, shape: Shape) -> np.ndarray:
     assert term.cause is not None
     spread = term.cause.spread(shape, evidence.columns.rig)
-    return evidence.prepared(term.cause.columns(shape, evidence.columns.rig.history)) * spread
+    return evidence.whitened(term.cause.columns(shape, evidence.columns.rig.history)) * spread
 
 
 def _value(evidence: GaussianEvidence, blocks: list[np.ndarray]) -> float:

@@ -58,7 +58,7 @@ def unit_amplitudes(identified: Identification, cause: str) -> UnitAmplitudes:
         if evidence.terms[i].owner != cause
     ]
     rest, prior = evidence.base_with(others)
-    apart = evidence.prepared(np.column_stack([effect * (unit == u) for u in range(count)]))
+    apart = evidence.whitened(np.column_stack([effect * (unit == u) for u in range(count)]))
     common = apart.sum(axis=1, keepdims=True)
     found, separate = _fit(evidence.y, rest, prior, apart)
     _, together = _fit(evidence.y, rest, prior, common)

@@ -37,7 +37,7 @@ def test_what_the_torque_s_noise_leaves_is_white_afterwards() -> None:
     drawn = white_rows.std_arcsec * rng.normal(size=(ROWS, DRAWN))
     for way in ways:
         drawn[way.rows] += PREDICTION.compliance * way.doubt_Nm @ rng.normal(size=(2, DRAWN))
-    white = evidence.prepared(drawn)
+    white = evidence.whitened(drawn)
     place = np.cumsum(prepared.kept) - 1
     worst = 0.0
     for way in ways:
