@@ -126,6 +126,8 @@ class StressPeak:
     """Why the refinement ended before its tolerance was met."""
     stands_for: str = ""
     """Why this peak, of another body, is the part's; "" where the part itself was solved."""
+    left_out: str = ""
+    """What the part has and the body solved has not; "" of nothing. The part's stress is higher there."""
 
     def times(self, factor: float) -> StressPeak:
         """The same under `factor` times the load."""

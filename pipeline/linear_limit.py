@@ -11,7 +11,12 @@ from flexspline.fea.types import NMM_PER_NM, StressPeak
 from flexspline.geometry.design import Design
 from flexspline.geometry.part_name import PartName
 from flexspline.geometry.tube import polar_moment_mm4
-from flexspline.pipeline.stress_limits import HIGHEST_STRENGTH_MPA, PART_OF
+from flexspline.pipeline.stress_limits import (
+    HIGHEST_STRENGTH_MPA,
+    ON_ELLIPSE,
+    PART_OF,
+    is_compared,
+)
 
 
 @dataclass(frozen=True)
@@ -65,13 +70,9 @@ def linear_limit(
     not_counted = tuple(
         PART_OF[name]
         for name, peak in (peaks or {}).items()
-        if _of_torque(name) and peak.at_excluded_border
+        if name != ON_ELLIPSE and not is_compared(name, peak)
     )
     return replace(least, peaks_solved=peaks is not None, not_counted=not_counted)
-
-
-def _of_torque(name: str) -> bool:
-    return name != "wave_generator_peak"
 
 
 def _limits(design: Design, K: float, peaks: Mapping[str, StressPeak]) -> Iterator[LinearLimit]:
@@ -81,7 +82,7 @@ def _limits(design: Design, K: float, peaks: Mapping[str, StressPeak]) -> Iterat
         why = ReachedStress(part, place, size, *_limit(design, part))
         yield LinearLimit(why.limit_MPa / stress, why)
     for name, peak in peaks.items():
-        if _of_torque(name) and not peak.at_excluded_border:
+        if name != ON_ELLIPSE and is_compared(name, peak):
             part = PART_OF[name]
             why = ReachedStress(part, "peak", None, *_limit(design, part))
             yield LinearLimit(design.load.torque_Nm * why.limit_MPa / peak.mises_MPa, why)

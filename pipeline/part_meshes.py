@@ -119,9 +119,8 @@ class PartMeshes:
             return None  # `swept` has tried what there is
         if ("layered", spec) in self._failed:
             return None
-        stated = model.context.design.solver.edge_length_mm is not None
         try:
-            if stated:
+            if model.states_edges:
                 return self._of_sweep(layered_mesh(model.part, model.sector.degrees, spec))
             return self._of_sweep(self._coarsened_layers(spec.scaled(LAYERED_COARSER)))
         except (MeshQualityError, MeshingError, TooManyElementsError):
@@ -165,8 +164,7 @@ class PartMeshes:
         """
         model = self.model
         spec = before = model.first_spec
-        stated = model.context.design.solver.edge_length_mm is not None
-        if not model.is_swept or "swept" not in self.kinds or stated:
+        if not model.is_swept or "swept" not in self.kinds or model.states_edges:
             return spec
         for tried in range(COARSENINGS + 1):
             last = tried == COARSENINGS
@@ -205,6 +203,7 @@ class PartMeshes:
         inputs = {
             **model.geometry_key,
             "spec": wanted,
+            "states_edges": model.states_edges,
             "mesher": model.mesher
             if self.kinds == KINDS
             else ", ".join((model.mesher, *self.kinds)),

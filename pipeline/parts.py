@@ -91,9 +91,8 @@ class PartModel:
     @property
     def first_spec(self) -> MeshSpec:
         """Of its first, coarse mesh."""
-        edge = self.context.design.solver.edge_length_mm
-        spec = first_spec(self.part, edge)
-        if edge is None and self.name == "shaft" and not goes_about_axis(self.part):
+        spec = first_spec(self.part, self.context.design.solver.edge_length_mm)
+        if not self.states_edges and self.name == "shaft" and not goes_about_axis(self.part):
             return spec.scaled(LAYERED_COARSER)
         return spec
 
@@ -115,7 +114,18 @@ class PartModel:
     @property
     def torsion_key(self) -> Mapping[str, Any]:
         """What the solid solution depends on."""
-        return {**self.revolved_key, "spec": asdict(self.first_spec), "mesher": self.mesher}
+        return {
+            **self.revolved_key,
+            "spec": asdict(self.first_spec),
+            "states_edges": self.states_edges,
+            "model": self.context.design.solver.model,
+            "mesher": self.mesher,
+        }
+
+    @property
+    def states_edges(self) -> bool:
+        """Whether the design states the edges of solid meshes: no mesh then has others to save time."""
+        return self.context.design.solver.edge_length_mm is not None
 
     @property
     def mesher(self) -> str:

@@ -9,13 +9,18 @@ import numpy as np
 
 from flexspline.fea.deadline import Deadline
 from flexspline.fea.scaled_estimate import ERROR_RATIOS
-from flexspline.fea.solid.errors import MeshQualityError, SolidError, TooManyElementsError
+from flexspline.fea.solid.errors import (
+    MesherTimeError,
+    MeshQualityError,
+    SolidError,
+    TooManyElementsError,
+)
 from flexspline.fea.solid.layer_curving import LayeredMesh
 from flexspline.fea.solid.layered import finer_layers
 from flexspline.fea.solid.mesh import MeshSpec
 from flexspline.fea.solid.stiffness import solid_stiffness
 from flexspline.fea.solid.tetwild import MESHER_SECONDS
-from flexspline.fea.types import Stiffness, TetMesh
+from flexspline.fea.types import MET, Shortfall, Stiffness, TetMesh
 from flexspline.geometry.symmetry import sector_of
 from flexspline.pipeline.part_meshes import (
     FIRST_ELEMENTS,
@@ -70,7 +75,7 @@ class TwistedPart:
 
 def by_fTetWild(model: PartModel) -> bool:
     """Whether it makes the first mesh, and nobody has stated its edges."""
-    return not model.is_swept and model.context.design.solver.edge_length_mm is None
+    return not model.is_swept and not model.states_edges
 
 
 def copies_in_rim(model: PartModel) -> int:
@@ -89,7 +94,7 @@ def twisted(
 
     Where a kind's coarse mesh passes its checks and a finer one fails, the next kind makes all instead.
     Where the first mesh fails, or fTetWild is slow, and nobody has stated its edges, they are
-    COARSER_FIRST times as long.
+    COARSER_FIRST times as long; a slow machine is then the `shortfall` of what met its tolerance too.
 
     Raises
     ------
@@ -98,13 +103,16 @@ def twisted(
     """
     meshes = PartMeshes(model, kinds, most_of_first)
     first = meshes.coarsened(FIRST_ELEMENTS)
-    again = model.context.design.solver.edge_length_mm is None and model.mesher != "swept"
+    again = not model.states_edges and model.mesher != "swept"
     if again:
         limit_s = ENCLOSED_SECONDS if tolerance == inf else FIRST_SECONDS
         first = replace(first, time_limit_s=limit_s)
+    slow = MET
     while True:
         try:
-            return _refined(meshes, first, tolerance, seconds)
+            found = _refined(meshes, first, tolerance, seconds)
+            short = found.stiffness.shortfall or slow
+            return replace(found, stiffness=replace(found.stiffness, shortfall=short))
         except OtherKindError as other:
             later = kinds[kinds.index(other.kind) :] if other.kind in kinds else ()
             if not later or later == kinds:
@@ -117,6 +125,8 @@ def twisted(
                 raise
             model.context.progress.note(f"  {model.name}: made anew with longer edges, {fault}")
             again = False
+            if isinstance(fault, MesherTimeError):
+                slow = Shortfall(f"{fault.reason}: the mesh has longer edges", of_the_machine=True)
             first = replace(first.scaled(COARSER_FIRST), time_limit_s=MESHER_SECONDS)
 
 

@@ -14,8 +14,10 @@ from flexspline.geometry.part_name import PartName
 HIGHEST_STRENGTH_MPA = 2000.0
 """Spring wire, maraging steel and metallic glass yield at about this; nothing that a flexspline is made of is
 linear elastic beyond."""
+ON_ELLIPSE = "wave_generator_peak"
+"""The peak that no torque makes, as result.json names it."""
 PART_OF: Mapping[str, PartName] = {
-    "wave_generator_peak": "flexspline",
+    ON_ELLIPSE: "flexspline",
     "torque_peak": "flexspline",
     "shaft_torque_peak": "shaft",
 }
@@ -26,7 +28,7 @@ STRESS_CASES: tuple[StressCase, ...] = get_args(StressCase)
 PEAK_OF: Mapping[str, str] = {
     "flexspline_torque": "torque_peak",
     "shaft_torque": "shaft_torque_peak",
-    "wave_generator": "wave_generator_peak",
+    "wave_generator": ON_ELLIPSE,
 }
 """result.json's name of the peak of a case."""
 
@@ -78,15 +80,20 @@ def stated_limit(design: Design, name: str) -> tuple[float, str] | None:
     return None if limit is None else (limit, f"material.{own}.fatigue_limit_MPa")
 
 
-def limits_passed(design: Design, peaks: Mapping[str, Peak]) -> Iterator[PassedLimit]:
-    """What is passed, for `peaks` by their names in result.json.
+def is_compared(name: str, peak: Peak) -> bool:
+    """Whether a limit is compared with a peak, by its name in result.json.
 
     On the wave generator a peak at the excluded border counts too: there the stress is at least so large,
     so a limit that it passes is passed, while one that it keeps need not be kept. Under torque such a peak
     comes from a clamped or bolted face that yields in truth, and passes nothing.
     """
+    return name == ON_ELLIPSE or not peak.at_excluded_border
+
+
+def limits_passed(design: Design, peaks: Mapping[str, Peak]) -> Iterator[PassedLimit]:
+    """What is passed, for `peaks` by their names in result.json."""
     for name, peak in peaks.items():
-        if peak.at_excluded_border and name != "wave_generator_peak":
+        if not is_compared(name, peak):
             continue
         stated = stated_limit(design, name)
         if stated is not None and peak.mises_MPa > stated[0]:

@@ -42,7 +42,7 @@ def twisted_shaft(model: PartModel, tolerance: float) -> TwistedPart:
 
     Raises
     ------
-    SolidError, NestingError, MemoryError
+    SolidError, MemoryError
     """
     if not _hardly_differ(model, tolerance):
         try:
@@ -68,14 +68,13 @@ def without_fillets(field: SolidField) -> SolidField:
     """A field of a shaft's cut body as one of the shaft: its peak is compared with no limit."""
     peak = field.peak
     excluded = f"{peak.excluded}, and {FILLETS}, which the mesh leaves out"
-    judged = replace(peak, excluded=excluded, at_excluded_border=True)
+    judged = replace(peak, excluded=excluded, at_excluded_border=True, left_out=FILLETS)
     return replace(field, peak=judged, left_out=FILLETS)
 
 
 def may_leave_fillets_out(model: PartModel) -> bool:
     """Whether `twisted_shaft` may answer: no mesher and no edge length is asked for."""
-    solver = model.context.design.solver
-    free = solver.mesher == "auto" and solver.edge_length_mm is None
+    free = model.mesher == "auto" and not model.states_edges
     return free and has_unfilleted_bodies(model.part)
 
 

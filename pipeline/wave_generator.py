@@ -103,7 +103,7 @@ def _refined_at(flexspline: PartModel, *places: tuple[float, float]) -> MeshedPa
     design = flexspline.context.design
     spec = flexspline.first_spec
     far = spec.grading.far
-    if design.solver.edge_length_mm is None:
+    if not flexspline.states_edges:
         far *= ELSEWHERE
     even = replace(spec, grading=replace(spec.grading, near=far, far=far))
     edge = EDGE_WALLS * design.flexspline.wall_thickness_mm

@@ -28,7 +28,7 @@ def shortfalls(
         *map(passed_line, limits_passed(design, peaks)),
         *_wide(design, found),
         *_unsettled(peaks),
-        *_left_out(fields or {}),
+        *_left_out(peaks),
         *_missing(found),
     )
 
@@ -71,11 +71,11 @@ def _unsettled(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
             yield f"{title}: may still change with a finer mesh, {peak.shortfall}"
 
 
-def _left_out(fields: Mapping[str, SolidField]) -> Iterator[str]:
-    for name, field in fields.items():
-        if field.left_out:
-            title = quantity(f"{PEAK_OF[name]}_mises_MPa").name
-            yield f"{title}: the mesh leaves out {field.left_out}, where the stress is higher"
+def _left_out(peaks: Mapping[str, StressPeak]) -> Iterator[str]:
+    for name, peak in peaks.items():
+        if peak.left_out:
+            title = quantity(f"{name}_mises_MPa").name
+            yield f"{title}: the mesh leaves out {peak.left_out}, where the stress is higher"
 
 
 def _missing(found: Stiffnesses) -> Iterator[str]:

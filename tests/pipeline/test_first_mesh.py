@@ -3,6 +3,7 @@ becomes of a sweep that fails a check."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 from types import SimpleNamespace
@@ -115,6 +116,21 @@ def test_a_sweep_that_fails_a_check_is_tried_once_more(
     assert not any("fTetWild" in line for line in said)
 
 
+def test_edges_stated_as_they_are_chosen_are_another_question(tmp_path: Path) -> None:
+    """To save time a mesh may have longer ones, where nobody has stated them."""
+    usual = AnalysisContext(DESIGN, Cache(tmp_path), Progress()).part("flexspline")
+    edge = usual.first_spec.grading.far
+    stated = replace(usual.context, design=DESIGN.changed({"solver.edge_length_mm": edge})).part(
+        "flexspline"
+    )
+    assert stated.first_spec == usual.first_spec
+    assert stated.torsion_key != usual.torsion_key
+    PartMeshes(usual).meshed(usual.first_spec)
+    assert len(list(tmp_path.glob("**/mesh/*"))) == 1
+    PartMeshes(stated).meshed(stated.first_spec)
+    assert len(list(tmp_path.glob("**/mesh/*"))) == 2
+
+
 @pytest.mark.parametrize("stated", [False, True])
 def test_a_first_mesh_in_layers_is_made_coarser_too(
     stated: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -165,6 +181,12 @@ def test_fTetWild_has_little_time_where_an_enclosure_answers(
     assert second.time_limit_s > first.time_limit_s
     assert part_stiffness.rim_mesh(cup).mesh.elements == solid.levels[0].elements
     assert len(asked) == len([first, second])
+    # another run may do better: said of its stress, and not kept
+    assert solid.shortfall.of_the_machine
+    assert "longer edges" in solid.shortfall.words
+    again = AnalysisContext(cup.context.design, Cache(tmp_path), Progress()).part("flexspline")
+    part_stiffness.twisted_part(again)
+    assert asked[2:] == [first]  # the mesh with longer edges is kept
 
 
 def test_nobody_waits_for_fTetWild_where_an_enclosure_answers(

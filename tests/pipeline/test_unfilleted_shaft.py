@@ -6,6 +6,7 @@ tetrahedra of the shaft itself, fillets included.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from flexspline.geometry.part import Part
 from flexspline.pipeline import analysis, unfilleted_shaft
 from flexspline.pipeline.cache import Cache
 from flexspline.pipeline.enclosure import overlap
+from flexspline.pipeline.part_stiffness import twisted_part
 from flexspline.pipeline.parts import AnalysisContext, PartModel
 from flexspline.pipeline.progress import Progress
 from flexspline.pipeline.solid_torsion import TwistedPart
@@ -95,6 +97,7 @@ def test_its_stress_is_compared_with_no_limit(
     assert field.left_out == "its fillets"
     assert field.peak.at_excluded_border
     assert "its fillets, which the mesh leaves out" in field.peak.excluded
+    assert field.peak.left_out == "its fillets"
     torque = shaft.context.design.load.torque_Nm
     mesh, mine = twisted.meshed.mesh, shaft.part.driven
     # the grip turns by T/K of its own mesh, at every radius
@@ -103,3 +106,15 @@ def test_its_stress_is_compared_with_no_limit(
     radius = np.hypot(*mesh.nodes[grip, :2].T)
     K = twisted.stiffness.levels[-1].K_Nm_per_rad
     assert turned / radius == pytest.approx(torque / K, rel=1e-9)
+
+
+def test_the_peak_of_a_body_of_revolution_has_its_fillets(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the meridian's, whatever mesh the picture has."""
+    model = AnalysisContext(shaft_of(STEPS, fillet=0.4), Cache(tmp_path), Progress()).part("shaft")
+    twisted = replace(twisted_part(model), without_fillets=True)
+    monkeypatch.setattr(analysis, "twisted_part", lambda _: twisted)
+    field = analysis.torque_field(model)
+    assert field.left_out == "its fillets"
+    assert not field.peak.left_out
