@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, inf, pi, sin
 
 from pydantic import Field
 
 from flexspline.geometry.fields import BoltCount, DesignTable, Length
+
+
+def pitch(circle: float, count: int) -> float:
+    """Chord between neighbours of `count` points on a circle of that diameter; infinite for one."""
+    return circle * sin(pi / count) if count > 1 else inf
 
 
 @dataclass(frozen=True)
@@ -17,6 +22,21 @@ class BoltCircle:
     count: int
     radius: float
     hole_radius: float
+
+    @property
+    def inner(self) -> float:
+        """Radius of the circle inside all holes [mm]."""
+        return self.radius - self.hole_radius
+
+    @property
+    def outer(self) -> float:
+        """Radius of the circle around all holes [mm]."""
+        return self.radius + self.hole_radius
+
+    @property
+    def pitch(self) -> float:
+        """Between the axes of neighbours, straight [mm]; infinite for one hole."""
+        return pitch(2 * self.radius, self.count)
 
     @property
     def centres(self) -> list[tuple[float, float]]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asin, ceil, pi, sin
+from math import asin, ceil, pi
 
+from flexspline.geometry.bolts import pitch
 from flexspline.geometry.bounds import GAP_mm, above, below, lengths
 from flexspline.geometry.errors import MISSING, DesignError
 from flexspline.geometry.fields import SMALLEST_MM
@@ -52,8 +53,8 @@ def bolt_faults(
             f"{needs}{verb} {lengths(low, high)} mm so that holes of bolt_hole_diameter_mm = "
             f"{hole:g} stay between {land}",
         )
-    elif n >= 2 and circle * sin(pi / n) <= hole + GAP_mm:
-        smaller = lengths(0, below(circle * sin(pi / n)), 4)
+    elif pitch(circle, n) <= hole + GAP_mm:
+        smaller = lengths(0, below(pitch(circle, n)), 4)
         also = f"; {n} holes take a diameter {smaller} mm" if smaller else ""
         yield DesignError(
             prefix + "bolt_count",
@@ -66,8 +67,7 @@ def bolt_faults(
 def _room_on(circle: float, count: int, inner: float, outer: float, alone: bool) -> str | None:
     """Diameters of holes that fit on a circle; None where it leaves no room for any."""
     inside = outer if alone else circle - inner
-    apart = circle * sin(pi / count) if count > 1 else outer
-    return lengths(0, below(min(inside, outer - circle, apart)))
+    return lengths(0, below(min(inside, outer - circle, pitch(circle, count))))
 
 
 def _most_holes(circle: float, hole: float) -> int:

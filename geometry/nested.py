@@ -46,9 +46,9 @@ def nested_bodies(part: Part) -> NestedBodies:
     if bolts is None or isinstance(shape, Shaft):
         raise ValueError("only a flexspline with bolt holes lies between two bodies of revolution")
     if shape.inward:
-        edge = {shape.land.inner: 2 * (bolts.radius + bolts.hole_radius)}
+        edge = {shape.land.inner: 2 * bolts.outer}
     else:
-        edge = {shape.land.outer: 2 * (bolts.radius - bolts.hole_radius)}
+        edge = {shape.land.outer: 2 * bolts.inner}
     whole = part.without_holes()
     return NestedBodies(replace(whole, shape=whole.shape.model_copy(update=edge)), whole)
 
@@ -105,7 +105,7 @@ def _holes_may_deepen(part: Part, shape: Shaft) -> bool:
     if above.outer_diameter_mm > flange.outer_diameter_mm - SAME:
         return False
     beside = above.outer_diameter_mm / 2 + shape.fillet_mm
-    return part.bolts.radius - part.bolts.hole_radius >= beside
+    return part.bolts.inner >= beside
 
 
 def _joined(pieces: list[ShaftSegment], to_first: float) -> tuple[ShaftSegment, ...]:

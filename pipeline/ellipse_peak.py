@@ -8,7 +8,7 @@ same peak at the same place, and the stress about the holes is below it, the hol
 from __future__ import annotations
 
 from dataclasses import replace
-from math import dist, pi, sin
+from math import dist, pi
 
 import numpy as np
 
@@ -118,14 +118,14 @@ def _at_holes_of(field: SolidField, part: Part, bolts: BoltCircle) -> float:
 
 
 def _in_holes_ring(r: np.ndarray, z: np.ndarray, part: Part, bolts: BoltCircle) -> np.ndarray:
-    return (abs(r - bolts.radius) <= bolts.hole_radius) & (z <= part.hole_depth)
+    return (bolts.inner <= r) & (r <= bolts.outer) & (z <= part.hole_depth)
 
 
 def raised(stress_MPa: float, bolts: BoltCircle) -> float:
     """What round holes in a row make of a stress that the plate without them has."""
-    pitch = 2 * bolts.radius * sin(pi / bolts.count) if bolts.count > 1 else np.inf
-    ligament = pitch - 2 * bolts.hole_radius
-    return KIRSCH * stress_MPa * (pitch / ligament if np.isfinite(pitch) else 1.0)
+    if bolts.count == 1:
+        return KIRSCH * stress_MPa
+    return KIRSCH * stress_MPa * bolts.pitch / (bolts.pitch - 2 * bolts.hole_radius)
 
 
 def _of_body(

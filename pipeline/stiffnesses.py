@@ -86,6 +86,13 @@ class Stiffnesses:
         return series_stiffness(self.in_sum(design).K_Nm_per_rad, self.K_e.K_Nm_per_rad)
 
 
+def series_bounds_Nm_per_rad(K_b: Stiffness, K_e: Stiffness) -> tuple[float, float]:
+    """1/(1/K_b + 1/K_e) at both parts' lower and at both parts' upper bounds."""
+    low = series_stiffness(K_b.lower_Nm_per_rad, K_e.lower_Nm_per_rad)
+    high = series_stiffness(K_b.upper_Nm_per_rad, K_e.upper_Nm_per_rad)
+    return low, high
+
+
 class NotFoundError(ComputationError):
     """A figure that the answer needs failed: its `name`, and all that was `found` beside it."""
 

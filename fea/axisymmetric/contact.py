@@ -72,8 +72,8 @@ def contact_stiffness(
         model="axisymmetric",
         symmetry=supported.symmetry,
         method=(
-            f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} of the K with the"
-            f" seat held; bounds from that K's and from {_bounded_by(len(found.ratios))}"
+            f"unilateral contact at {ANGLES} angles per half turn: {ratio:.4f} times K with the seat"
+            f" held; bounds: those of that K, times the ratio's {_doubt_of(len(found.ratios))}"
         ),
         levels=tuple(found.levels),
         shortfall=shortfall,
@@ -129,8 +129,8 @@ def settling(ratios: Sequence[float]) -> tuple[float, float]:
     return ratios[-1] + to_go, abs(to_go)
 
 
-def _bounded_by(meshes: int) -> str:
-    return f"{meshes} meshes" if meshes > 1 else "the seat's that is free and that is held"
+def _doubt_of(meshes: int) -> str:
+    return f"doubt by {meshes} meshes" if meshes > 1 else "bounds, a free seat's and 1"
 
 
 def lift_off_forces(seat: SeatCompliance) -> np.ndarray:

@@ -9,9 +9,10 @@ from pathlib import Path
 from flexspline.fea.toothed_ring.equivalent import EquivalentRing
 from flexspline.fea.types import Stiffness, StressPeak
 from flexspline.geometry.design import Design
-from flexspline.pipeline.backlash import Backlash, series_stiffness
+from flexspline.pipeline.backlash import Backlash
 from flexspline.pipeline.gear import GearCurve
 from flexspline.pipeline.linear_limit import LinearLimit
+from flexspline.pipeline.stiffnesses import series_bounds_Nm_per_rad
 from flexspline.results.report.attached import Attachment
 
 
@@ -85,8 +86,5 @@ class ReportContent:
 
     @property
     def K_series_bounds_Nm_per_rad(self) -> tuple[float, float]:
-        """1/(1/K_b + 1/K_e) at both parts' lower and at both parts' upper bounds."""
-        K_b, K_e = self.K_b_in_sum, self.K_e
-        low = series_stiffness(K_b.lower_Nm_per_rad, K_e.lower_Nm_per_rad)
-        high = series_stiffness(K_b.upper_Nm_per_rad, K_e.upper_Nm_per_rad)
-        return low, high
+        """Of the two springs of the sum."""
+        return series_bounds_Nm_per_rad(self.K_b_in_sum, self.K_e)
