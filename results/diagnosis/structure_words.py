@@ -50,6 +50,11 @@ FORMS: Mapping[tuple[FormKind, str], str] = {
     ("own_gap", "input_angle_deg"): "a gap of its own at each position",
     ("own_gap", "unit"): "a gap",
     ("changing_zero", "temperature_C"): "a zero that changes with temperature",
+    (
+        "changing_zero",
+        "input_angle_deg",
+    ): "a zero that changes along the wave generator's way, as with an "
+    "eccentric encoder at the output",
     ("changing_stiffness", "time_s"): "a stiffness that changes with time",
     ("changing_stiffness", "row"): "a stiffness that changes along the record",
     ("changing_stiffness", "cycle"): "a stiffness that changes from cycle to cycle",

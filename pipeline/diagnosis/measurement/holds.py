@@ -56,7 +56,10 @@ def _holds(history: History) -> list[np.ndarray]:
         floor = 2 * DEADBAND_SIGMAS * noise / np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
         limit = np.minimum(np.maximum(HOLD_RATE_SHARE * fast, floor), MOVING * fast)
         torque = history.torque_Nm[rows]
-        for i, j in _joined(runs(rate < limit), torque, t, width, noise, fast):
+        # rows of a hold may lie far apart in time, and a ramp begin between two of them
+        moved = np.abs(torque[width:] - torque[:-width])
+        still = (rate < limit) & (moved < span + RANGE_SIGMAS * noise)
+        for i, j in _joined(runs(still), torque, t, width, noise, fast):
             beside = width + BESIDE_ROWS
             before, after = rate[max(0, i - beside) : i], rate[j : j + beside]
             sharp = all(len(side) == 0 or side.max() > MOVING * fast for side in (before, after))

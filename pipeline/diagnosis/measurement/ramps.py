@@ -73,8 +73,11 @@ def rates_of(history: History, rows: np.ndarray) -> Rates:
             break
         width = min(2 * width, fewest)
     span = np.maximum(t[width:] - t[:-width], LEAST_TIME_S)
-    told = span > SHORT_SPAN * np.median(span)
-    return Rates(width, (torque[width:] - torque[:-width]) / span, beyond(moved(width)) * told)
+    travel = beyond(moved(width))
+    # a hold may be logged far slower than a ramp, and have most of the rows
+    usual = min(by_travel(span, travel, 0.5) or np.inf, float(np.median(span)))
+    told = span > SHORT_SPAN * usual
+    return Rates(width, (torque[width:] - torque[:-width]) / span, travel * told)
 
 
 def moving_rates(history: History, rows: np.ndarray) -> Rates | None:

@@ -28,6 +28,9 @@ STEADY_K = 0.6
 class B, at 0 °C), and a metal's stiffness changes by 0.03 %/K."""
 LEAST_BENT = 0.02
 """Of the square's own size: where temperatures lie at two levels or close together nothing is bent."""
+TURNS_DEGREE = 2
+"""Of the polynomial over the wave generator's angle: of a sine over an eighth of its period, an eccentric
+encoder's error in 4 to 20 input turns, it leaves 0.3 % of the amplitude."""
 DEGREES = (1, 2, 3)
 """Of the polynomial in time by which a stiffness changes: evenly, with a bend, with a turn."""
 
@@ -148,6 +151,20 @@ def over_position(rig: Rig) -> Made:
         yield "input_angle_deg", UnnamedForm("own_zero"), own
         yield "input_angle_deg", UnnamedForm("own_stiffness"), own * torque[:, None]
     yield "input_angle_deg", UnnamedForm("own_gap"), own * rig.history.sign[:, None]
+
+
+def over_turns(rig: Rig) -> Made:
+    """A zero that goes on with the wave generator's angle, not periodic in it.
+
+    So does an eccentric encoder's at the output, in part of an output turn. Where positions are taken in
+    order it is a drift in steps from cycle to cycle, and at few positions a kinematic error.
+    """
+    angle = rig.history.input_angle_deg
+    if angle is None or len(np.unique(angle)) <= TURNS_DEGREE:
+        return
+    turned = 2 * (angle - angle.min()) / np.ptp(angle) - 1
+    for degree in range(1, TURNS_DEGREE + 1):
+        yield "input_angle_deg", UnnamedForm("changing_zero"), smooth(turned, degree)
 
 
 def over_unit(rig: Rig) -> Made:

@@ -45,6 +45,23 @@ def test_rate_and_holds_of_a_creep_test(noise_Nm: float, step_s: float, back: fl
         assert np.ptp(made.time_s[rows]) == pytest.approx(test.hold_s, abs=3 * step_s)
 
 
+@pytest.mark.parametrize("slower", [1, 4, 10, 30])
+def test_holds_that_are_logged_slower_than_ramps(slower: int) -> None:
+    """Rows 0.2 s apart in ramps, up to 6 s in holds, of which most rows then are."""
+    made = history(CreepTest(PEAK, step_s=0.2), 0.002)
+    held = np.isin(np.arange(len(made)), np.concatenate(holds(made)))
+    rows = np.flatnonzero(~held | (np.arange(len(made)) % slower == 0))
+    assert made.time_s is not None
+    zero = np.zeros(len(rows), int)
+    thinned = History(made.torque_Nm[rows], zero, zero, made.time_s[rows])
+    assert ramp_rate(thinned) == pytest.approx(ramp_rate(made), rel=0.1)
+    lasting = [
+        [seconds for h in holds(found) if (seconds := float(np.ptp(found.time_s[h]))) > 10 * slower]
+        for found in (made, thinned)
+    ]
+    assert lasting[1] == pytest.approx(lasting[0], abs=2 * 0.2 * slower)
+
+
 def test_steps_of_a_staircase_stay_apart() -> None:
     """25 steps of 4 % of the largest torque, noise a twentieth of a step."""
     levels = np.repeat(np.arange(26) / 25 * PEAK, 30)
