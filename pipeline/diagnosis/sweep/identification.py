@@ -20,8 +20,9 @@ NAMING_NATS, SECOND_NATS = 4.5, 7.0
 """A cause must raise the score by this over the best set without it: beside others by more, as their misfit
 may feed it, unless they have but one shape."""
 STATED_NATS = 1.0
-"""The same of a compliance or a gap alone: the evidence is then that of its stated uncertainty, and neither
-has a shape to miss. About four deviations are named, as one right simulation in 10 000 would be."""
+"""The same of a compliance or a gap alone, or of more rms than all causes of several shapes have together,
+whose misfit it is not: the evidence is then that of its stated uncertainty, and neither has a shape to miss.
+About four deviations are named, as one right simulation in 10 000 would be."""
 STAND_IN_NATS = 3.0
 """The same over a set with a nuisance term in its place: something is there, and of two that explain it alike
 the nuisance term, which costs 4.5 more, is not the one."""
@@ -118,14 +119,18 @@ def _worth(
     weak: dict[str, Candidate] = {}
     present = best.named(evidence)
     inexact = {c for c in present if not known_causes()[c].exact}
+    fit = fit_regressors(evidence, best.terms)
+    of_misfit = rms_together(fit, sorted(inexact))
 
     def too_little(without: Candidate, cause: str) -> bool:
         if _stands_in(evidence, best, without):
             needed = STAND_IN_NATS
+        elif cause in LINEAR and not beside and rms_together(fit, (cause,)) > of_misfit:
+            needed = STATED_NATS
         elif beside or inexact - {cause}:
             needed = SECOND_NATS
         else:
-            needed = STATED_NATS if cause in LINEAR else NAMING_NATS
+            needed = NAMING_NATS
         return best.score - without.score < needed
 
     for cause in present:
