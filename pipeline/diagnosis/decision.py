@@ -26,6 +26,8 @@ RIVAL_EVIDENCE = 4.0
 """Nats, docs/contract.md: odds of 55 to 1. A cause that is less far behind in evidence is a rival."""
 RIVAL_LIKELIHOOD = 6.0
 """Nats of log likelihood less ½ log n for each amplitude (half of Schwarz's BIC), docs/contract.md."""
+EVEN_ODDS = 0.5
+"""Probability at which a cause is as likely as not."""
 UNEXPLAINED_SHARE = 0.5
 """Of the named causes' rms, docs/contract.md: with more left unexplained the verdict is `unknown`."""
 
@@ -119,7 +121,8 @@ def decided(
     left = tuple(unexplained)
     if unnamed_rms > UNEXPLAINED_SHARE * named_rms:
         # beside what has no name a mere suspicion is none
-        return Decision("unknown", tuple(c for c in found if is_significant(c)), left)
+        likely = (c for c in found if is_significant(c) and c.probability >= EVEN_ODDS)
+        return Decision("unknown", tuple(likely), left)
     if not found:
         return Decision("unknown", (), left) if structure else CONSISTENT
     open_ = not sure or any(c.alternatives for c in found)

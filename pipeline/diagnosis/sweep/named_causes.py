@@ -11,7 +11,7 @@ from flexspline.pipeline.diagnosis.causes.rate_dependence import RATE
 from flexspline.pipeline.diagnosis.causes.sensor_drift import DRIFT
 from flexspline.pipeline.diagnosis.causes.series_compliance import SERIES
 from flexspline.pipeline.diagnosis.causes.torque_offset import OFFSET
-from flexspline.pipeline.diagnosis.decision import probability, probability_of_gain
+from flexspline.pipeline.diagnosis.decision import EVEN_ODDS, probability, probability_of_gain
 from flexspline.pipeline.diagnosis.outcome import NamedCause
 from flexspline.pipeline.diagnosis.sweep.dashpot import dashpot_explains
 from flexspline.pipeline.diagnosis.sweep.drift_or_temperature import may_follow_temperature
@@ -19,6 +19,7 @@ from flexspline.pipeline.diagnosis.sweep.fit import fit_regressors
 from flexspline.pipeline.diagnosis.sweep.identification import Identification
 from flexspline.pipeline.diagnosis.sweep.magnitudes import magnitudes
 from flexspline.pipeline.diagnosis.sweep.moving_zero import zero_moves
+from flexspline.pipeline.diagnosis.sweep.plausible_sets import explanations
 from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep
 from flexspline.pipeline.diagnosis.sweep.rate_blind import LOOPS, at_one_rate_on_ramps, loop_tells
 
@@ -34,7 +35,7 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     """The causes identified, the offset of the torque reading among them."""
     identified = explained.identified
     evidence = identified.search.evidence
-    sets = [(c.named(evidence), c.score) for c in identified.search.best.values()]
+    sets = [(c.named(evidence), c.score) for c in explanations(evidence, identified.search)]
     magnitude, std = magnitudes(identified)
     timed = explained.prepared.sweep.history.time_s is not None
     told = loop_tells(evidence, identified.best, timed)
@@ -42,7 +43,9 @@ def named_causes(explained: ExplainedSweep) -> tuple[NamedCause, ...]:
     found = []
     for c in identified.named:
         rivals = (*identified.rivals[c], *_other_rivals(explained, c, told, timed))
-        chance, nats = probability(c, sets), identified.evidence_nats.get(c, 0.0)
+        chance = probability(c, sets)
+        # where likelier explanations do without it, its gain over others says nothing
+        nats = identified.evidence_nats.get(c, 0.0) if chance >= EVEN_ODDS else 0.0
         if c == FRICTION and ahead is not None:
             chance, nats = probability_of_gain(ahead.nats), ahead.nats
             std[c] = hypot(std[c], _std_ahead_arcsec(explained))

@@ -34,6 +34,8 @@ TOGETHER_RATIO = 3.0
 CURVES = {SERIES: 1, HARDENING: 2}
 """Causes whose angle is a curve over the torque, and what of such a curve may be the gear's own: its zero;
 of a hardening its compliance too. As powers of the torque below that one."""
+NEGLIGIBLE_NATS = 20.0
+"""Behind the best set, 1 to 500 million: a few hundred such sets change no third digit of a probability."""
 UNDONE = 0.5
 """Of such a curve: how much of it unnamed terms may take back. On a locked gear the output's angle is nearly
 a function of the torque, and a ripple over it any curve. In made-up records of friction and a joint that
@@ -53,6 +55,13 @@ def plausible(evidence: GaussianEvidence, search: Search, best: Candidate) -> Ca
         if not fits_noise(evidence, c):
             return c
     return search.candidate(())
+
+
+def explanations(evidence: GaussianEvidence, search: Search) -> list[Candidate]:
+    """The sets that count for a probability: those near the best by evidence, and plausible."""
+    least = search.top.score - NEGLIGIBLE_NATS
+    close = [c for c in search.best.values() if c.score > least]
+    return [c for c in close if not fits_noise(evidence, c)] or [search.top]
 
 
 def fits_noise(evidence: GaussianEvidence, c: Candidate) -> bool:
