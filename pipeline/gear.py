@@ -59,7 +59,8 @@ class GearCurve:
     assumed : each value that the design file does not state.
     warnings : what makes it another gear than was meant; `notes` : what was simplified.
     preload_tooth_force_N : largest force of a pair of teeth without torque, where both flanks press; else 0.
-    tooth_angle_deg, tooth_force_N : teeth within reach of one lobe at rated torque, front less back flank.
+    tooth_angle_deg, tooth_force_N : stations within reach of one lobe, and the force of a pair of teeth at
+        each, front less back flank, at rated torque.
     ball_angle_deg, ball_force_N : balls of half a turn at rated torque.
     terms_arcsec : between ± `terms_torque_Nm`, T_L, in place of the backlash sum's terms
         (`pipeline.gear_terms`); empty where nobody asked.

@@ -85,17 +85,16 @@ def run(
         from flexspline.pipeline.analysis import run as run_chain
         from flexspline.pipeline.diagnosis.model.extended_backlash import extended_backlash
         from flexspline.results.gear_words import gear_notes
-        from flexspline.results.limit_words import load_beyond
         from flexspline.results.pictures import RunDrawings, write_pictures
         from flexspline.results.records import Record, extended_record, run_record
         from flexspline.results.report.build import write_run_page, write_run_report
         from flexspline.results.report.content import ExtendedSum
+        from flexspline.results.warned import solved_warnings
 
         with RunDrawings(job.context) as drawings:
             with kept(job, json):
                 result = run_chain(job.context, drawings.add_field)
-            warn(job.design, result.stiffnesses, result.fields)
-            tell_all(load_beyond(result.linear_limit, job.design))
+            tell_all(solved_warnings(result))
             for line in gear_notes(result.gear) if result.gear else ():
                 tell(f"note: {line}")
             extended = None

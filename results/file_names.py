@@ -25,7 +25,8 @@ GEAR_RECORD, GEAR_CSV = "gear.json", "torque_angle.csv"
 """The folder may hold the result.json of a run of the same design."""
 DIAGNOSIS = "diagnosis"
 """Of the record and the reports: the folder may hold `report.pdf` of a run of the same design."""
-EXTENDED_MODEL = "extended_model.toml"
+EXTENDED_MODEL, PREVIOUS_MODEL = "extended_model.toml", "extended_model.previous.toml"
+"""That of the measurement, and that of another one whose diagnosis was there."""
 PREDICTION = "prediction.csv"
 BEST_DESIGN, BEST_STRESS = "best.toml", "best_stress.png"
 SENSITIVITY = "sensitivity.json"
@@ -51,7 +52,7 @@ STUDY = (
 def of_diagnosis(figures: Iterable[str]) -> tuple[str, ...]:
     """`figures`: names of all that a diagnosis may have."""
     record = f"{DIAGNOSIS}.json"
-    return record, EXTENDED_MODEL, *_reports(DIAGNOSIS), *_pictures(*figures)
+    return record, EXTENDED_MODEL, PREVIOUS_MODEL, *_reports(DIAGNOSIS), *_pictures(*figures)
 
 
 def of_export(formats: Iterable[str], deck: bool) -> tuple[str, ...]:

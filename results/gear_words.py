@@ -48,7 +48,8 @@ def _warning(warning: GearWarning) -> str:
         case PressingFlanks(force):
             return (
                 f"teeth press on both flanks without torque, up to {_rounded(force)} N each: "
-                f"{_why_pressing(warning)}"
+                f"{_why_pressing(warning)}. Nothing is free then: the clearances in the sum of four "
+                "terms are not there"
             )
         case CuttingFlanks(shape, start, overlap, most, depth):
             said = (

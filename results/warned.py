@@ -35,8 +35,12 @@ def shortfalls(
 
 def all_warnings(result: RunResult) -> tuple[str, ...]:
     """Of a run: the design's own, then those of the figures."""
+    return (*result.warnings, *solved_warnings(result))
+
+
+def solved_warnings(result: RunResult) -> tuple[str, ...]:
+    """Of a run's figures."""
     return (
-        *result.warnings,
         *load_beyond(result.linear_limit, result.design),
         *shortfalls(result.design, result.stiffnesses, result.fields),
         *(f"whole gear: {line}" for line in (gear_warnings(result.gear) if result.gear else ())),

@@ -11,7 +11,7 @@ from flexspline.results.diagnosis.console import diagnosis_table
 from flexspline.results.diagnosis.files import write_diagnosis
 from flexspline.results.diagnosis.record import diagnosis_record
 from flexspline.results.diagnosis.summary import summary, verdict_heading
-from flexspline.results.job import Job
+from flexspline.results.job import Job, tell
 from flexspline.results.records import as_json
 
 
@@ -54,7 +54,9 @@ def diagnose_and_write(
     record = diagnosis_record(found)
     with job.progress.stage("figures and report"):
         try:
-            write_diagnosis(job.folder, found, record, used, (job.file,))
+            note = write_diagnosis(job.folder, found, record, used, (job.file,))
         except OSError as fault:
             raise UnwrittenError(fault, found) from fault
+    if note is not None:
+        tell(f"note: {note}")
     return as_json(record) if json else diagnosis_table(found, job.folder)

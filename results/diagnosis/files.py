@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 from flexspline import __version__
 from flexspline.pipeline.diagnosis.diagnose import Diagnosis
@@ -17,7 +19,7 @@ from flexspline.results.diagnosis.channels import left_out_words
 from flexspline.results.diagnosis.record import Record
 from flexspline.results.figures.diagnosis.captions import CAPTIONS
 from flexspline.results.figures.diagnosis.draw import draw_figures
-from flexspline.results.file_names import DIAGNOSIS, EXTENDED_MODEL, of_diagnosis
+from flexspline.results.file_names import DIAGNOSIS, EXTENDED_MODEL, PREVIOUS_MODEL, of_diagnosis
 from flexspline.results.records import as_json
 from flexspline.results.report.attached import Attachment
 from flexspline.results.report.both import reports_of
@@ -30,12 +32,17 @@ def write_diagnosis(
     record: Record,
     used: StiffnessPair,
     attached: tuple[Attachment, ...] = (),
-) -> list[Path]:
+) -> str | None:
     """Write diagnosis.json, the extended model, the figures and the reports into `folder`.
 
     Nothing is written before all of it is computed; a failure leaves what was there. What an earlier
-    diagnosis wrote there and this one has not is taken away.
+    diagnosis wrote there and this one has not is taken away, but for the model of another measurement.
+
+    Returns
+    -------
+    str | None : the note, where another measurement's diagnosis was there.
     """
+    other = _other_measurement(folder, record["measurement"])
     made: dict[str, bytes] = {f"{DIAGNOSIS}.json": (as_json(record) + "\n").encode()}
     if diagnosis.model is not None:
         made[EXTENDED_MODEL] = _model(diagnosis, used).encode()
@@ -44,10 +51,26 @@ def write_diagnosis(
         made |= {f.path.name: f.path.read_bytes() for f in figures}
         document = diagnosis_document(diagnosis, figures, used, attached)
         made |= reports_of(document, {f.path.stem: f.path for f in figures}, name=DIAGNOSIS)
-    written = write_together(folder, made)
-    for name in set(of_diagnosis(CAPTIONS)) - set(made):
+    has_model = other is not None and (folder / EXTENDED_MODEL).exists()
+    if has_model:
+        made[PREVIOUS_MODEL] = (folder / EXTENDED_MODEL).read_bytes()
+    write_together(folder, made)
+    for name in set(of_diagnosis(CAPTIONS)) - {*made, PREVIOUS_MODEL}:
         (folder / name).unlink(missing_ok=True)
-    return written
+    if other is None:
+        return None
+    kept = f"; its model is kept as {PREVIOUS_MODEL}" if has_model else ""
+    return f"the diagnosis of {other} that was here is replaced{kept}; --out DIR keeps both"
+
+
+def _other_measurement(folder: Path, measurement: dict[str, Any]) -> str | None:
+    """File name of the measurement whose diagnosis is in the folder, where that is another one."""
+    try:
+        earlier = json.loads((folder / f"{DIAGNOSIS}.json").read_bytes())["measurement"]
+        same, name = earlier["sha256"] == measurement["sha256"], str(earlier["file"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return None if same else name
 
 
 def _model(diagnosis: Diagnosis, used: StiffnessPair) -> str:

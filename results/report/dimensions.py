@@ -36,7 +36,7 @@ def weights(design: Design) -> str:
 
 
 def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """The file's tables in its order, the shaft's segments one by one, by the names they have there."""
+    """The file's tables in its order, the shaft's segments one by one, by the names that keys have."""
     whole: Mapping[str, Any] = design.tables
     for name, table in whole.items():
         if not isinstance(table, dict):
@@ -49,7 +49,7 @@ def _tables(design: Design) -> Iterator[tuple[str, Mapping[str, Any]]]:
             if isinstance(deeper, dict):
                 yield f"{name}.{inner}", deeper
             elif isinstance(deeper, list):
-                yield from ((f"{name}.{inner} {i}", each) for i, each in enumerate(deeper, 1))
+                yield from ((f"{name}.{inner}[{i}]", each) for i, each in enumerate(deeper))
 
 
 def _said(name: str, table: Mapping[str, Any]) -> Words:

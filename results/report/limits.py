@@ -19,6 +19,10 @@ ENTERS = {
     "lobes": "the torque at the two ends of the major axis",
 }
 """Where the torque enters, by `solver.load_case`."""
+OF_A_HAT = (
+    " A hat’s flange touches only the outer part of it, and K_e is then too large: by 9 and 19 % on two "
+    "shafts, against the same with their first 0.5 mm hollowed to the flange."
+)
 
 
 def assumptions(content: ReportContent) -> list[list[str]]:
@@ -30,8 +34,7 @@ def assumptions(content: ReportContent) -> list[list[str]]:
             "Material and size of motion",
             "Isotropic and linear elastic, small displacements. Each part is solved alone; its "
             "mounting face is held, so the bolted joint between them counts as rigid. The shaft’s is its "
-            "whole first face. A hat’s flange touches only the outer part of it, and K_e is then too large: "
-            "by 9 and 19 % on two shafts, against the same with their first 0.5 mm hollowed to the flange.",
+            "whole first face." + ("" if content.design.flexspline.inward else OF_A_HAT),
         ],
         ["Teeth", _teeth(content)],
         [
@@ -92,7 +95,7 @@ def fatigue(content: ReportContent) -> str:
         beyond = " It is above that limit." if share > 1 else ""
         return (
             f"{said} is {100 * share:.0f} % of the stated fatigue limit of {limit:g} MPa.{beyond} Surface, "
-            "size and mean stress are not considered."
+            "size, mean stress, tooth roots and the torque's stress are not considered."
         )
     if peak.mises_MPa > limit:
         return (

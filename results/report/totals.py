@@ -38,7 +38,8 @@ def totals_and_terms(content: ReportContent) -> Words:
         + plain(") includes teeth, rim contact and bearing, but no clearance: compare it, not ")
         + symbol(_SERIES.symbol)
         + plain(
-            ", with a catalogue. Its lost motion includes the clearances. Bolts, "
-            "housing and friction are in none of these."
+            ", with a catalogue. Its lost motion includes the clearances"
+            + (", of which none is left free" if curve.free_angle_arcsec == 0 else "")
+            + ". Bolts, housing and friction are in none of these."
         )
     )

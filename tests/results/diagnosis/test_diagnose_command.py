@@ -140,6 +140,23 @@ def test_same_input_gives_the_same_files_and_says_it_in_words(
     assert max(map(len, result.stdout.splitlines())) <= 120
 
 
+def test_another_record_s_model_is_kept(done: tuple[Path, dict], tmp_path: Path) -> None:
+    """The default folder is the design's, whatever is diagnosed."""
+    folder, _ = done
+    for name in ("diagnosis.json", "extended_model.toml"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    shorter = tmp_path / "shorter.csv"
+    shorter.write_text("".join(SWEEP.read_text("utf-8").splitlines(True)[:-40]), "utf-8")
+    result = flexspline("diagnose", CUP, shorter, *GIVEN, "--out", tmp_path)
+    note = f"the diagnosis of {SWEEP.name} that was here is replaced; its model is kept as "
+    assert f"{note}extended_model.previous.toml" in result.stderr
+    kept = (tmp_path / "extended_model.previous.toml").read_bytes()
+    assert kept == (folder / "extended_model.toml").read_bytes()
+    again = flexspline("diagnose", CUP, shorter, *GIVEN, "--out", tmp_path)
+    assert "replaced" not in again.stderr
+    assert (tmp_path / "extended_model.previous.toml").read_bytes() == kept
+
+
 def test_predict_gives_back_the_record_to_its_noise(
     done: tuple[Path, dict], tmp_path: Path
 ) -> None:

@@ -54,7 +54,7 @@ def test_twenty_segments_are_all_there(tmp_path):
     made = content(design=Design.model_validate(tables))
     for text in both(made, tmp_path):
         for i in range(20):
-            assert letters(f"segment {i + 1}length {2.0 + i / 100:g} mm") in text
+            assert letters(f"segment[{i}]length {2.0 + i / 100:g} mm") in text
 
 
 def test_ratio_and_masses(tmp_path):
