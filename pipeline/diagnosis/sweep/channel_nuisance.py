@@ -157,8 +157,8 @@ def over_turns(rig: Rig) -> Made:
     """A zero that goes on with the wave generator's angle, not periodic in it.
 
     So does an eccentric encoder's at the output, in part of an output turn. Where positions are taken in
-    order it is a drift in steps from cycle to cycle, and where turns alias a kinematic error. Few positions are
-    left to that.
+    order it is a drift in steps from cycle to cycle, and where turns alias a kinematic error. Few positions
+    are left to that.
     """
     angle = rig.history.input_angle_deg
     if angle is None or len(np.unique(angle)) <= TELLING:
