@@ -20,6 +20,8 @@ class History:
         the wave generator was locked.
     readings : (n,) of how many readings each row is the mean; None where it is one of each.
     exact : whether torque is a calculated course, which has no noise.
+    number : (n,) of each row, or the mean number of the rows that it is the mean of, where time was not
+        recorded; None where rows are as they were read.
     """
 
     torque_Nm: np.ndarray
@@ -30,6 +32,7 @@ class History:
     input_angle_deg: np.ndarray | None = None
     readings: np.ndarray | None = None
     exact: bool = False
+    number: np.ndarray | None = None
     memo: dict[tuple[str, float], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -53,7 +56,7 @@ class History:
         return History(
             self.torque_Nm[chosen], self.unit[chosen], self.cycle[chosen],
             part(self.time_s), part(self.temperature_C), part(self.input_angle_deg),
-            part(self.readings), self.exact,
+            part(self.readings), self.exact, part(self.number),
         )  # fmt: skip
 
     def shifted(self, offset_Nm: float) -> History:
@@ -62,7 +65,11 @@ class History:
 
     def time_or_rows(self, rows: np.ndarray) -> np.ndarray:
         """(m,) time of some rows, by their indices; where it was not recorded, their numbers, from 0."""
-        return np.arange(len(rows), dtype=float) if self.time_s is None else self.time_s[rows]
+        if self.time_s is not None:
+            return self.time_s[rows]
+        if self.number is None:
+            return np.arange(len(rows), dtype=float)
+        return self.number[rows] - self.number[rows[:1]]
 
     def timed(self) -> History:
         """With time; rows are seconds where it was not recorded."""

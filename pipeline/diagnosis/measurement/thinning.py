@@ -150,6 +150,7 @@ def _averaged(
         torque, h.unit[first], h.cycle[first],
         maybe(h.time_s), maybe(h.temperature_C),
         None if h.input_angle_deg is None else h.input_angle_deg[first], np.array(sizes),
+        number=mean(np.arange(len(sweep), dtype=float)) if h.time_s is None else None,
     )  # fmt: skip
     return replace(
         sweep, history=history, angle_arcsec=angle, line=sweep.line[first],

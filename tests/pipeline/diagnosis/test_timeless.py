@@ -11,6 +11,8 @@ from example_files import EXAMPLES
 from histories import sweep
 
 from flexspline.geometry.load import load_design
+from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
+from flexspline.pipeline.diagnosis.measurement.thinning import thinned
 from flexspline.pipeline.diagnosis.model.doubt import Deviation
 from flexspline.pipeline.diagnosis.model.extrapolation import extrapolated
 from flexspline.pipeline.diagnosis.model.span import span_of
@@ -102,3 +104,22 @@ def test_what_lies_beyond_the_record_too(timed: bool, unit: str) -> None:
     far = Deviation(np.ones(len(record)), {"torque_rate": 3})
     (line,) = map(beyond_words, extrapolated(far, span_of(record), record, timed))
     assert line.count(unit) == 2
+
+
+def test_a_shortened_record_counts_its_own_rows(tmp_path: Path) -> None:
+    """A lag is told in rows of the file, as `predict` counts them, not in means of several rows."""
+    rows, cycles = 24_000, 4
+    share = np.interp(np.arange(rows) * cycles / rows % 1, [0, 0.5, 1], [0, 1, 0])
+    text = "".join(
+        f"{i * cycles // rows + 1},{0.3 + 0.2 * s:.6f},{10 * s:.4f}\n" for i, s in enumerate(share)
+    )
+    path = tmp_path / "long.csv"
+    path.write_text("cycle,torque_Nm,angle_arcsec\n" + text, encoding="utf-8")
+    read = read_measurement(path)
+    assert isinstance(read, Sweep)
+    short = thinned(read)
+    numbers = short.history.time_or_rows(np.arange(len(short)))
+    assert len(short) < rows / 2
+    torque = 0.3 + 0.2 * np.interp(numbers * cycles / rows % 1, [0, 0.5, 1], [0, 1, 0])
+    # the first block's mean is number 0; blocks are some four rows, and a corner is rounded over one
+    assert short.history.torque_Nm == pytest.approx(torque, abs=0.2 * 2 * cycles / rows * 5)
