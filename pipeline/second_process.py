@@ -50,7 +50,10 @@ def results_of(tasks: Sequence[Callable[[], T]]) -> list[T]:
     copying = get_context("fork")
     here, there = copying.Pipe(duplex=False)
     second = copying.Process(target=_send_results, args=(there, theirs), daemon=True)
-    second.start()
+    try:
+        second.start()
+    except OSError:  # no process more is allowed, or no memory
+        return [task() for task in tasks]
     there.close()
     try:
         mine = [task() for task in tasks[::2]]
@@ -79,8 +82,8 @@ def _send_results(to: Connection, tasks: Sequence[Callable[[], T]]) -> None:
 
 
 def _received(sent: Connection) -> Any:
-    """None where the second process ended without an answer."""
+    """None where the second process ended without an answer, or in the middle of one."""
     try:
         return sent.recv()
-    except EOFError:
+    except Exception:  # what it sent may fail in any way as it is made again
         return None

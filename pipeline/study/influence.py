@@ -96,7 +96,7 @@ def _may_help(result: StudyResult, best: Row, key: str, outward: int) -> bool:
         return True
     x = np.array([[r.values[k] for k in keys] for r in rows])
     plane = np.column_stack(
-        [np.ones(len(rows)), x / np.maximum(np.ptp(x, axis=0), SMALLEST_NUMBER)]
+        [np.ones(len(rows)), (x - x.min(axis=0)) / np.maximum(np.ptp(x, axis=0), SMALLEST_NUMBER)]
     )
 
     def slope(values: list[float]) -> float:

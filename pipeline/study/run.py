@@ -10,7 +10,13 @@ from pathlib import Path
 
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
-from flexspline.pipeline.study.drive import Source, StudyProgress, evaluate_all, is_complete
+from flexspline.pipeline.study.drive import (
+    Source,
+    StudyProgress,
+    evaluate_all,
+    is_complete,
+    within,
+)
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate, fast_K_e
 from flexspline.pipeline.study.figures import USUAL_SOLVES
 from flexspline.pipeline.study.holes import DRIFT, HolesEffect, UnknownEffect, drifts, holes_of
@@ -127,7 +133,7 @@ def run_study(
 
         if not is_complete(source, store):
             evaluate_all(source, store, opened(), evaluation, watch)
-        rows = tuple(store.rows()[: source.size])
+        rows = within(store.rows(), source.size)
         result = _scattered(StudyResult(study, rows), source)
         return replace(result, verified=verify(result, store, opened, source.task, say))
 

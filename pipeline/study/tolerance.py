@@ -171,10 +171,14 @@ class Scattered(Planned):
         return {x.key: FloatDistribution(x.low, x.high) for x in self.inputs}
 
     def task(self, values: Mapping[str, float]) -> Task:
-        """Young's modulus is one for both parts' doubt, as in the backlash's standard deviation."""
+        """Young's modulus is one for both parts' doubt, as in the backlash's standard deviation.
+
+        Unless the study file says how the shaft's own scatters.
+        """
         changed = linked(self.study, values)
         material = self.study.design.material
-        if MODULUS in values and material.shaft is not None:
+        own = SHAFT_MODULUS in values or SHAFT_MODULUS in self.study.file.link
+        if MODULUS in values and material.shaft is not None and not own:
             ratio = values[MODULUS] / material.flexspline.youngs_modulus_GPa
             changed[SHAFT_MODULUS] = material.shaft.youngs_modulus_GPa * ratio
         return Task(self._tables, changed, self.solves, self.holes)
@@ -188,6 +192,10 @@ def scattered(study: Study, holes: HolesEffect | None) -> Scattered:
     StudyError
     """
     inputs = inputs_of(study)
+    for key, link in study.file.link.items():
+        if key in {x.key for x in inputs}:
+            reason = "the same key scatters by [tolerance] or the design's [uncertainty]; keep one"
+            raise StudyError(f'link."{key}"', link.of, reason)
     base = base_size(study, len(inputs))
     points = saltelli(inputs, base, study.file.run.seed)
     solves = solves_of(study, ("torsion",))

@@ -100,3 +100,24 @@ def test_ctrl_c_ends_both_without_a_word_of_the_second(tmp_path: Path) -> None:
     assert ran.returncode == 130
     assert said == ""
     assert not any(Path(f"/proc/{pid}").exists() for pid in pids)
+
+
+class _Unreadable(ValueError):
+    """It can be sent, but not made again."""
+
+    def __init__(self, a: int, b: int) -> None:
+        super().__init__(f"{a}{b}")
+
+
+@pytest.mark.parametrize("fails", ["unreadable", "not started"])
+def test_whatever_fails_elsewhere_is_done_here(fails: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    if fails == "not started":
+
+        def refused(_: object) -> None:
+            raise BlockingIOError("Resource temporarily unavailable")
+
+        monkeypatch.setattr("multiprocessing.context.ForkProcess.start", refused)
+    with second_process():
+        first, second = results_of([lambda: 1, lambda: _Unreadable(1, 2)])
+    assert first == 1
+    assert str(second) == "12"

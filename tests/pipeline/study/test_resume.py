@@ -11,7 +11,8 @@ import pytest
 from study_bench import GRID, LENGTH, WALL, quick, study_of, threads
 
 from flexspline.pipeline.study.evaluate import Outcome, Task
-from flexspline.pipeline.study.run import run_study, trial_store_of
+from flexspline.pipeline.study.run import run_study, source_of, trial_store_of
+from flexspline.pipeline.study.store import Finished
 
 SIZE = 40
 LONG_GRID = GRID.replace("steps = 3", f"steps = {SIZE // 2}")
@@ -135,3 +136,18 @@ def test_a_study_without_an_objective_has_no_best_and_ends(tmp_path: Path) -> No
     result = run_study(study, trial_store_of(study, tmp_path), threads, silent, quick)
     assert len(result.feasible) == 6
     assert result.best(5) == ()
+
+
+def test_a_study_made_shorter_has_its_own_designs(tmp_path: Path) -> None:
+    """A design that an earlier, longer one left out is none of those beyond."""
+    sobol = GRID.replace(", steps = 3", "").replace("grid", "sobol") + "evaluations = "
+    longer = study_of(f"{sobol}8")
+    store, source = trial_store_of(longer, tmp_path), source_of(longer)
+    jobs = source.claim(store, 6)
+    done = [Finished(job, quick(source.task(job.values)), None) for job in jobs if job.slot != 2]
+    source.store(store, done)
+    store.give_up(jobs[2])
+    shorter = study_of(f"{sobol}4")
+    again = trial_store_of(shorter, tmp_path)
+    result = run_study(shorter, again, threads, silent, quick)
+    assert [row.slot for row in result.rows] == [0, 1, 2, 3]

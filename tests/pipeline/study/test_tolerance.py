@@ -20,6 +20,7 @@ from flexspline.results.study.record import summary, words
 from flexspline.results.study.report import study_document
 
 DIAPHRAGM = "flexspline.diaphragm_thickness_mm"
+MODULUS = "material.flexspline.youngs_modulus_GPa"
 STUDY = f"""
 design = "xb1-40.toml"
 [tolerance]
@@ -201,9 +202,21 @@ def test_a_study_whose_designs_all_fail_keeps_its_rows(tmp_path: Path) -> None:
         ("plus_minus = 0.02", "plus_minus = 0.02, std = 0.1", "plus_minus = … } or { std"),
         ("[run]", "[run]\nevaluations = 10", "must be at least 64"),
         ("[tolerance]", "[vary]", "unknown key"),
+        ("[run]", f'[link]\n"{WALL}" = {{ of = "{LENGTH}" }}\n[run]', "keep one"),
+        ("[run]", f'[link]\n"{MODULUS}" = {{ of = "{LENGTH}" }}\n[run]', "keep one"),
     ],
 )
 def test_a_wrong_tolerance_is_refused(old: str, new: str, said: str) -> None:
     with pytest.raises(StudyError) as caught:
         source_of(study_of(STUDY.replace(old, new, 1)))
     assert said in str(caught.value)
+
+
+def test_a_shaft_of_its_own_modulus_scatters_by_its_own_tolerance() -> None:
+    """The flexspline's ratio, by the design's [uncertainty], is not put over it."""
+    shaft = "material.shaft.youngs_modulus_GPa"
+    text = STUDY.replace("[run]", f'"{shaft}" = {{ plus_minus = 10.0 }}\n[run]', 1)
+    text = text.replace("xb1-40.toml", "keyed-shaft.toml")
+    source = source_of(study_of(text))
+    values = {WALL: 0.4, LENGTH: 30.0, DIAPHRAGM: 0.6, MODULUS: 190.0, shaft: 203.0}
+    assert source.task(values).values[shaft] == 203.0
