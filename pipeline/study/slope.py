@@ -20,7 +20,8 @@ class Slope:
     why : why one of them is None.
     solved_error : what the bounds of K and the extrapolation leave open of it.
     K_Nm_per_rad : of the part, hole-free.
-    backlash_arcsec_per_mm : d(wind-up of the part between −T_L and +T_L)/dp.
+    backlash_arcsec_per_mm : d(wind-up of the part between −T_L and +T_L)/dp, by the K that enters the sum;
+        None where that has no slope.
     """
 
     key: str
@@ -30,7 +31,7 @@ class Slope:
     solved: float | None
     solved_error: float
     K_Nm_per_rad: float
-    backlash_arcsec_per_mm: float
+    backlash_arcsec_per_mm: float | None
     why: Shortfall = MET
 
     @property

@@ -2,12 +2,14 @@
 
 First from the energy with the field held (`fea.axisymmetric.shape_slope`), from one solution. Then from
 K solved anew on either side, with two step sizes and Richardson's extrapolation. Both by the axisymmetric
-model: bolt holes and keyway are left out.
+model: bolt holes and keyway are left out. They are of the load case "uniform"; the sum's term follows
+`solver.load_case`, at lobes by the second way alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
 from flexspline.fea.axisymmetric.twist import Twist, twist
@@ -19,7 +21,7 @@ from flexspline.geometry.keys import lengths, with_values
 from flexspline.geometry.part import Part
 from flexspline.geometry.part_name import PartName
 from flexspline.pipeline.backlash import ARCSEC_PER_RAD
-from flexspline.pipeline.revolved import revolved, torsion
+from flexspline.pipeline.revolved import lobes, revolved, torsion
 from flexspline.pipeline.study.slope import Slope, Slopes
 
 HELD_STEP = 1e-4
@@ -59,6 +61,13 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
         def K(v: dict[str, float], name: PartName = part.name) -> float:
             return settled(torsion(changed(v, name), K_TOLERANCE)).K_Nm_per_rad
 
+        @cache
+        def at_lobes(v: tuple[tuple[str, float], ...]) -> float:
+            return settled(lobes(changed(dict(v), "flexspline"), True, K_TOLERANCE)).K_Nm_per_rad
+
+        def K_lobes(v: dict[str, float]) -> float:
+            return at_lobes(tuple(v.items()))
+
         here = K({})
         own = []
         for key, p in lengths(part).items():
@@ -76,8 +85,14 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
             if held is None and again is None:
                 missing[key] = why
                 continue
-            best = held if held is not None else (again or 0.0)
-            windup = -2 * design.load.torque_Nm / here**2 * best * ARCSEC_PER_RAD
+            best: float | None = held if held is not None else again
+            of_sum = here
+            if part.name == "flexspline" and design.solver.K_b_in_sum == "K_b_lobes":
+                of_sum = K_lobes({})
+                best = _richardson(K_lobes, key, p, of_sum)[0]
+            windup = None
+            if best is not None:
+                windup = -2 * design.load.torque_Nm / of_sum**2 * best * ARCSEC_PER_RAD
             why = why or no_room
             own.append(Slope(key, part.name, p, held, again, error, here, windup, why))
         found += sorted(own, key=lambda s: -abs(s.elasticity))

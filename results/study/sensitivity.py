@@ -45,10 +45,10 @@ def _entry(s: Slope) -> dict[str, Any]:
         found["agree"] = s.agree
     if s.why:
         found["one_way_because"] = s.why.words
-    return found | {
-        "pct_per_pct": s.elasticity,
-        "backlash_arcsec_per_mm": s.backlash_arcsec_per_mm,
-    }
+    found["pct_per_pct"] = s.elasticity
+    if s.backlash_arcsec_per_mm is not None:
+        found["backlash_arcsec_per_mm"] = s.backlash_arcsec_per_mm
+    return found
 
 
 def write_sensitivity(folder: Path, said: dict[str, Any]) -> None:
@@ -66,14 +66,16 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
     for s in slopes:
         held = "-" if s.held is None else f"{s.held:.1f}"
         solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
+        of_sum = "-" if s.backlash_arcsec_per_mm is None else f"{s.backlash_arcsec_per_mm:.3f}"
         word = {True: "", False: "  DISAGREE", None: f"  one way only: {s.why}"}[s.agree]
         out.append(
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
-            f"{s.backlash_arcsec_per_mm:10.3f}{word}"
+            f"{of_sum:>10}{word}"
         )
     out.append(
         "dK/dp in N·m/rad per mm: of K_b by keys of the flexspline, of K_e by keys of the shaft, both "
-        "without bolt holes and keyway"
+        f'without bolt holes and keyway, load case "uniform"; arcsec/mm of the sum, load case '
+        f'"{design.solver.load_case}"'
     )
     if design.flexspline.teeth != "none":
         out.append(
