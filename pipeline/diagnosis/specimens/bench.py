@@ -55,19 +55,27 @@ class Bench:
         return mine / other / nominal
 
     def _model(self, design: Design, part: PartName) -> float:
-        lobed = part == "flexspline" and design.solver.load_case == "lobes"
+        lobed = enters_at_lobes(design, part)
         if self.full and not lobed:
             return 1 / part_stiffness(replace(self.context, design=design).part(part)).K_Nm_per_rad
         return self.plain(design, part, lobed)
 
-    def plain(self, design: Design, part: PartName, lobed: bool = False) -> float:
+    def as_in_sum(self, design: Design, part: PartName) -> float:
+        """`plain` for the load case of the sum, fine enough for slopes."""
+        return self.plain(
+            design, part, enters_at_lobes(design, part), tolerance=BENCH_TORSION_TOLERANCE
+        )
+
+    def plain(
+        self, design: Design, part: PartName, lobed: bool = False, tolerance: float | None = None
+    ) -> float:
         """Compliance [rad per N·m] of the part without holes."""
         solid = replace(self.context, design=design).part(part).context.design
         own = without_holes(solid).part(part)
         material = Elastic.of(own.material)
         # where nothing is drilled, a circle and a diameter of holes may still be stated
         shape = own.shape.model_copy(update=NO_HOLES).model_dump(mode="json")
-        tolerance = BENCH_LOBE_TOLERANCE if lobed else BENCH_TORSION_TOLERANCE
+        tolerance = tolerance or (BENCH_LOBE_TOLERANCE if lobed else BENCH_TORSION_TOLERANCE)
 
         def make() -> float:
             found = lobes(own, True, tolerance) if lobed else torsion(own, tolerance)
@@ -76,6 +84,11 @@ class Bench:
         inputs = {"part": part, "shape": shape, "material": asdict(material), "lobed": lobed,
                   "tolerance": tolerance}  # fmt: skip
         return float(self.context.cache.get("specimen", inputs, make)[0])
+
+
+def enters_at_lobes(design: Design, part: PartName) -> bool:
+    """Whether the torque enters a part at the lobes, in the load case of the sum."""
+    return part == "flexspline" and design.solver.load_case == "lobes"
 
 
 def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:

@@ -121,7 +121,7 @@ def drawn_through(
         x = log(max(1 + off_mm / s.nominal_mm[i], 1e-3))
         try:
             there = with_values(designs[i], {s.key: float(s.nominal_mm[i]) + off_mm})
-            y = log(bench.plain(there, s.part) / bench.plain(designs[i], s.part))
+            y = log(bench.as_in_sum(there, s.part) / bench.as_in_sum(designs[i], s.part))
         except (DesignError, ComputationError):
             continue
         curvature[i] = (y - s.slope[i] * x) / x**2
@@ -134,10 +134,10 @@ def _log_slope(
     """Slope and curvature of ln C over ln d; one-sided where the geometry has no room."""
     step = min(max(tolerance, SMALLEST_STEP * nominal), LARGEST_STEP * nominal)
     points: list[tuple[float, float]] = []
-    here = log(bench.plain(design, part))
+    here = log(bench.as_in_sum(design, part))
     for side in (-step, step):
         try:
-            there = log(bench.plain(with_values(design, {key: nominal + side}), part))
+            there = log(bench.as_in_sum(with_values(design, {key: nominal + side}), part))
         except (DesignError, ComputationError):
             continue
         points.append((log(1 + side / nominal), there - here))

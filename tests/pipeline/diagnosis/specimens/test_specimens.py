@@ -142,6 +142,24 @@ def test_sensitivity_is_fe_s_own(bench, fe) -> None:
         assert s.log_change(-0.15)[i] == pytest.approx(change, abs=0.015)
 
 
+def test_slopes_are_of_the_load_case_in_the_sum(bench) -> None:
+    """A thicker ring hardly matters to an even load, and much to one at the lobes."""
+    key, thickness = "flexspline.ring_thickness_mm", DESIGN.flexspline.ring_thickness_mm
+    change = {}
+    for case in ("uniform", "lobes"):
+        here = DESIGN.changed({"solver.load_case": case})
+        thicker = with_values(here, {key: 1.1 * thickness})
+        change[case] = np.log(
+            bench.as_in_sum(thicker, "flexspline") / bench.as_in_sum(here, "flexspline")
+        )
+        # as the compliance that is compared with rows changes, known to BENCH_LOBE_TOLERANCE at the lobes
+        compared = np.log(
+            bench.compliance(thicker, "flexspline") / bench.compliance(here, "flexspline")
+        )
+        assert change[case] == pytest.approx(compared, abs=0.005)
+    assert change["lobes"] < 10 * change["uniform"] < 0
+
+
 def test_young_s_modulus(bench, fe) -> None:
     outcome, analysis = diagnosed(bench, noisy(fe.flexspline / 0.85, 1))
     assert outcome.causes[0].id == "youngs_modulus"
