@@ -2,7 +2,8 @@
 
 Three engines give the evidence: `sweep/evidence.py` (whitened linear model), `end_points/evidence.py`
 (block covariance) and `specimens/evidence.py` (Laplace's approximation). What follows from evidence is
-decided here. All log quantities are in nats. Which input of a gear explains its curve is not decided here:
+decided here; of a sweep `sweep/diagnose.py` may overrule it, where the data refute what is decided
+(`overruled`). All log quantities are in nats. Which input of a gear explains its curve is not decided here:
 `whole_gear/identification.py` compares chi squares of inputs that have no prior.
 """
 

@@ -118,7 +118,7 @@ def holes_of(
     try:
         fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
-    except ComputationError as fault:
+    except (ComputationError, MemoryError) as fault:
         say(f"K_e stays that of the shaft without holes: {fault}")
         return UnknownEffect(str(fault))
     value = min(1.0, solid.K_Nm_per_rad / fast.K_Nm_per_rad)  # less material is never stiffer

@@ -17,6 +17,7 @@ from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.evaluate import Outcome, Task, fast_K_e, figures_of
 from flexspline.pipeline.study.holes import (
     HolesEffect,
+    UnknownEffect,
     cut_compliance,
     drifts,
     holes_of,
@@ -58,6 +59,18 @@ def test_a_part_without_holes_has_no_factor_and_is_not_solved() -> None:
     plain = without_holes(load_design(EXAMPLES / "xb1-40.toml"))
     assert holes_of(plain, fast_K_e, lines.append) is None
     assert lines == []
+
+
+def test_a_machine_without_memory_costs_the_holes_effect_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def short(_: object) -> None:
+        raise MemoryError("the factors need 9 GB")
+
+    monkeypatch.setattr("flexspline.pipeline.study.holes.part_stiffness", short)
+    found = holes_of(DESIGN, fast_K_e, lambda _: None)
+    assert isinstance(found, UnknownEffect)
+    assert "9 GB" in found.reason
 
 
 STUDY = """
