@@ -31,6 +31,8 @@ FEWEST_RMS_ROWS = 12
 
 SAME_PLACE_DEG = 5.0
 """Positions of the wave generator that are nearer are one: the fourth harmonic turns by 0.35 rad there."""
+FEWEST_LEVELS = 2
+"""Of a channel, that refute: others may be none of their own, or not be held out for their rows' number."""
 REFUTED_RATIO = 2.0
 """Times the error without the causes, at a whole level that was held out, from which they explain nothing:
 half of a true effect would still make it smaller."""
@@ -63,14 +65,20 @@ def refuted(levels: Iterable[Gain]) -> Unexplained | None:
     """The worst of a channel's levels, where at most of them the causes learnt on the others do harm.
 
     At a single level that alone shows a shape (the only warm cycles, the longest holds) a true cause learnt
-    on the rest fails too. None where no channel is so.
+    on the rest fails too, and where one level of a channel is left nothing tells whether it is that one.
+    None where no channel is so.
     """
     of_channel: dict[str, list[Gain]] = {}
     for g in levels:
         of_channel.setdefault(g.channel, []).append(g)
     failed = {c: [g for g in all_ if _does_harm(g)] for c, all_ in of_channel.items()}
     worst = max(
-        (g for c, bad in failed.items() if 2 * len(bad) > len(of_channel[c]) for g in bad),
+        (
+            g
+            for c, bad in failed.items()
+            if 2 * len(bad) > len(of_channel[c]) >= FEWEST_LEVELS
+            for g in bad
+        ),
         key=_times_worse,
         default=None,
     )
