@@ -74,10 +74,10 @@ def evaluate_all(
     next_word = began + WATCH_S
     pending: dict[Future, ClaimedDesign] = {}
     _adopt(source, store)
-    before = len(store.rows())
+    before = len(within(store.rows(), source.size))
 
     def tell() -> list[Row]:
-        rows = store.rows()
+        rows = list(within(store.rows(), source.size))
         watch(StudyProgress(rows, len(rows) - before, time.monotonic() - began, source.size))
         return rows
 

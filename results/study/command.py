@@ -27,6 +27,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         from flexspline.geometry.load import read_raw, tables_from
         from flexspline.pipeline.study.best import best_field
         from flexspline.pipeline.study.cluster import check_scheduler
+        from flexspline.pipeline.study.drive import within
         from flexspline.pipeline.study.load import study_from
         from flexspline.pipeline.study.run import source_of, trial_store_of, whole_study
         from flexspline.results.output_folder import folder_of
@@ -60,7 +61,7 @@ def study(file: StudyPath, out: Out = None, json: Json = False) -> None:
         store = trial_store_of(asked, folder)
         if keys := unfollowed(asked):
             tell(f"warning: the fast model leaves {keys} out; run.verify solves them")
-        if kept := len(store.rows()):
+        if kept := len(within(store.rows(), size)):
             tell(f"{kept} designs are finished already")
         result = whole_study(asked, store, Watch(asked), tell)
         of_best = tuple(best_warnings(result))

@@ -151,3 +151,25 @@ def test_a_study_made_shorter_has_its_own_designs(tmp_path: Path) -> None:
     again = trial_store_of(shorter, tmp_path)
     result = run_study(shorter, again, threads, silent, quick)
     assert [row.slot for row in result.rows] == [0, 1, 2, 3]
+
+
+def test_a_study_made_shorter_waits_for_its_own_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One of them is at work elsewhere, while rows of an earlier, longer study are more than it asks for."""
+    sobol = GRID.replace(", steps = 3", "").replace("grid", "sobol") + "evaluations = "
+    longer = study_of(f"{sobol}8")
+    store, source = trial_store_of(longer, tmp_path), source_of(longer)
+    *done, last = sorted(source.claim(store, 6), key=lambda job: job.slot == 2)
+    source.store(store, [Finished(job, quick(source.task(job.values)), None) for job in done])
+    told: list[int] = []
+
+    def finished_elsewhere(_: float) -> None:
+        source.store(store, [Finished(last, quick(source.task(last.values)), None)])
+
+    monkeypatch.setattr("flexspline.pipeline.study.drive.time.sleep", finished_elsewhere)
+    shorter = study_of(f"{sobol}4")
+    again = trial_store_of(shorter, tmp_path)
+    result = run_study(shorter, again, threads, lambda p: told.append(len(p.rows)), quick)
+    assert [row.slot for row in result.rows] == [0, 1, 2, 3]
+    assert told == [3, 4]
