@@ -22,6 +22,7 @@ class Slope:
     K_Nm_per_rad : of the part, hole-free.
     backlash_arcsec_per_mm : d(wind-up of the part between −T_L and +T_L)/dp, by the K that enters the sum;
         None where that has no slope.
+    why_no_sum : why it has none.
     """
 
     key: str
@@ -33,6 +34,7 @@ class Slope:
     K_Nm_per_rad: float
     backlash_arcsec_per_mm: float | None
     why: Shortfall = MET
+    why_no_sum: Shortfall = MET
 
     @property
     def best(self) -> float:

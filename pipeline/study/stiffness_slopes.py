@@ -86,15 +86,18 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
                 missing[key] = why
                 continue
             best: float | None = held if held is not None else again
-            of_sum = here
+            of_sum, no_sum = here, MET
             if part.name == "flexspline" and design.solver.K_b_in_sum == "K_b_lobes":
-                of_sum = K_lobes({})
-                best = _richardson(K_lobes, key, p, of_sum)[0]
+                try:
+                    of_sum = K_lobes({})
+                    best, _, no_sum = _richardson(K_lobes, key, p, of_sum)
+                except FlexsplineError as fault:
+                    best, no_sum = None, without(fault)
             windup = None
             if best is not None:
                 windup = -2 * design.load.torque_Nm / of_sum**2 * best * ARCSEC_PER_RAD
             why = why or no_room
-            own.append(Slope(key, part.name, p, held, again, error, here, windup, why))
+            own.append(Slope(key, part.name, p, held, again, error, here, windup, why, no_sum))
         found += sorted(own, key=lambda s: -abs(s.elasticity))
     return Slopes(tuple(found), missing)
 

@@ -48,6 +48,8 @@ def _entry(s: Slope) -> dict[str, Any]:
     found["pct_per_pct"] = s.elasticity
     if s.backlash_arcsec_per_mm is not None:
         found["backlash_arcsec_per_mm"] = s.backlash_arcsec_per_mm
+    if s.why_no_sum:
+        found["no_backlash_because"] = s.why_no_sum.words
     return found
 
 
@@ -68,6 +70,8 @@ def lines(design: Design, slopes: Sequence[Slope]) -> list[str]:
         solved = "-" if s.solved is None else f"{s.solved:.1f} ± {s.solved_error:.1f}"
         of_sum = "-" if s.backlash_arcsec_per_mm is None else f"{s.backlash_arcsec_per_mm:.3f}"
         word = {True: "", False: "  DISAGREE", None: f"  one way only: {s.why}"}[s.agree]
+        if s.why_no_sum:
+            word += f"  nothing of the sum: {s.why_no_sum}"
         out.append(
             f"{s.key:42} {s.value_mm:8.4g} {held:>16} {solved:>24} {s.elasticity:7.3f} "
             f"{of_sum:>10}{word}"

@@ -1,5 +1,6 @@
 """dK/dp in two ways, and against what scaling says."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import groupby
 from pathlib import Path
@@ -10,6 +11,7 @@ from example_files import EXAMPLES
 from flexspline.fea.axisymmetric.shape_slope import moved_stiffness
 from flexspline.fea.axisymmetric.surface_layer import HeldSurfaceError, layer_stiffness
 from flexspline.fea.axisymmetric.twist import Twist, twist
+from flexspline.fea.solid.errors import MemoryShortError
 from flexspline.fea.types import Elastic, Shortfall
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import DesignError
@@ -21,6 +23,7 @@ from flexspline.pipeline.study import stiffness_slopes
 from flexspline.pipeline.study.sensitivity import sensitivities
 from flexspline.pipeline.study.slope import Slope, Slopes
 from flexspline.pipeline.study.stiffness_slopes import slope_with_field_held
+from flexspline.results.study.sensitivity import lines, record
 
 
 @cache
@@ -63,6 +66,27 @@ def test_the_sum_follows_its_own_stiffness(load_case: str, monkeypatch: pytest.M
     expected = (term(here + step) - term(here - step)) / (2 * step)
     # its bend over ± 0.05 mm, and K known to 2e-4 of some 30 arcsec over 0.1 mm
     assert found.backlash_arcsec_per_mm == pytest.approx(expected, rel=0.1, abs=0.06)
+
+
+def test_a_sum_without_a_slope_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The lobes fail, for want of memory; K's own slope stays."""
+    design = load_design(EXAMPLES / "xb1-40.toml").changed({"solver.load_case": "lobes"})
+    key = "flexspline.ring_thickness_mm"
+
+    def short(*_: object) -> None:
+        raise MemoryShortError(1000, 9e9, 1e9)
+
+    monkeypatch.setattr(stiffness_slopes, "lobes", short)
+    monkeypatch.setattr(
+        stiffness_slopes, "lengths", lambda part: {key: 0.55} if part.name == "flexspline" else {}
+    )
+    (found,) = stiffness_slopes.slopes(design, lambda _: None).found
+    assert found.agree
+    assert found.backlash_arcsec_per_mm is None
+    assert found.why_no_sum.of_the_machine
+    said = record(design, [found])["sensitivity"][0]
+    assert said["no_backlash_because"] == found.why_no_sum.words
+    assert any(found.why_no_sum.words in line for line in lines(design, [found]))
 
 
 @pytest.fixture(scope="module")
@@ -165,5 +189,8 @@ def test_what_more_memory_would_find_is_not_kept(
     short = Slopes((), {"shaft.fillet_mm": Shortfall("not enough memory", of_the_machine=True)})
     monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: short)
     assert sensitivities(DESIGN, lambda line: None) == ()
+    part = replace(FOUND[0], why_no_sum=next(iter(short.missing.values())))
+    monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: Slopes((part,), {}))
+    assert sensitivities(DESIGN, lambda line: None) == (part,)
     monkeypatch.setattr(stiffness_slopes, "slopes", lambda design, say: Slopes(FOUND, {}))
     assert sensitivities(DESIGN, lambda line: None) == FOUND
