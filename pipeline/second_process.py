@@ -48,11 +48,11 @@ def results_of(tasks: Sequence[Callable[[], T]]) -> list[T]:
     if not theirs or not _ALLOWED.get():
         return [task() for task in tasks]
     copying = get_context("fork")
-    here, there = copying.Pipe(duplex=False)
-    second = copying.Process(target=_send_results, args=(there, theirs), daemon=True)
     try:
+        here, there = copying.Pipe(duplex=False)
+        second = copying.Process(target=_send_results, args=(there, theirs), daemon=True)
         second.start()
-    except OSError:  # no process more is allowed, or no memory
+    except OSError:  # no process or open file more is allowed, or no memory
         return [task() for task in tasks]
     there.close()
     try:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
 from functools import partial
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
@@ -109,7 +111,7 @@ class _Unreadable(ValueError):
         super().__init__(f"{a}{b}")
 
 
-@pytest.mark.parametrize("fails", ["unreadable", "not started"])
+@pytest.mark.parametrize("fails", ["unreadable", "not started", "no pipe", "cut off"])
 def test_whatever_fails_elsewhere_is_done_here(fails: str, monkeypatch: pytest.MonkeyPatch) -> None:
     if fails == "not started":
 
@@ -117,6 +119,19 @@ def test_whatever_fails_elsewhere_is_done_here(fails: str, monkeypatch: pytest.M
             raise BlockingIOError("Resource temporarily unavailable")
 
         monkeypatch.setattr("multiprocessing.context.ForkProcess.start", refused)
+    if fails == "no pipe":
+
+        def too_many(*_: object, **__: object) -> None:
+            raise OSError(24, "Too many open files")
+
+        monkeypatch.setattr("multiprocessing.context.ForkContext.Pipe", too_many)
+    if fails == "cut off":
+
+        def killed(to: Connection, _: object) -> None:
+            os.write(to.fileno(), struct.pack("!i", 1_000_000) + b"x" * 1000)
+            os._exit(9)
+
+        monkeypatch.setattr("flexspline.pipeline.second_process._send_results", killed)
     with second_process():
         first, second = results_of([lambda: 1, lambda: _Unreadable(1, 2)])
     assert first == 1
