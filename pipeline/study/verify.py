@@ -33,7 +33,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
         context = analysis_context(design)
-        found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
+        found = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
         total = backlash_of(design, found)
     except FlexsplineError as fault:
         return Outcome(faults=(str(fault),))
