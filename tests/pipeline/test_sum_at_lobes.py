@@ -12,7 +12,7 @@ from flexspline.geometry.load import load_design
 from flexspline.pipeline.analysis import analysis_context
 from flexspline.pipeline.stiffness_pair import stiffness_pair
 from flexspline.pipeline.study.evaluate import Task
-from flexspline.pipeline.study.verify import solid_outcome
+from flexspline.pipeline.study.verify import solid_answer
 
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
 
@@ -22,7 +22,8 @@ def pair_of(design: Design) -> None:
 
 
 def solid_of(design: Design) -> None:
-    assert solid_outcome(Task(design.tables, {}, ("torsion",)), rim=False).reason == "seen"
+    found = solid_answer(Task(design.tables, {}, ("torsion",)), rim=False)
+    assert found.outcome.reason == "seen"
 
 
 @pytest.mark.parametrize(("load_case", "needed"), [("uniform", False), ("lobes", True)])

@@ -26,7 +26,7 @@ from flexspline.pipeline.study.holes import (
     unfollowed,
 )
 from flexspline.pipeline.study.run import nominal_holes, run_study, source_of, trial_store_of
-from flexspline.pipeline.study.verify import checked, solid_outcome
+from flexspline.pipeline.study.verify import checked, solid_answer
 
 Figures = tuple[dict[str, float], dict[str, float], dict[str, float]]
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
@@ -124,7 +124,7 @@ def nominal(nominal_effect: HolesEffect) -> Figures:
         dict(figures_of(study.design, ("torsion",), h).figures) for h in (None, nominal_effect)
     )
     tables = study.design.tables
-    solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
+    solid = solid_answer(Task(tables, {}, ("torsion",)), rim=False).outcome
     assert not solid.reason
     return plain, corrected, dict(solid.figures)
 
