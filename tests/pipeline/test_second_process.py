@@ -127,11 +127,11 @@ def test_whatever_fails_elsewhere_is_done_here(fails: str, monkeypatch: pytest.M
         monkeypatch.setattr("multiprocessing.context.ForkContext.Pipe", too_many)
     if fails == "cut off":
 
-        def killed(to: Connection, _: object) -> None:
+        def killed(to: Connection, _: object) -> None:  # only the second process sends
             os.write(to.fileno(), struct.pack("!i", 1_000_000) + b"x" * 1000)
             os._exit(9)
 
-        monkeypatch.setattr("flexspline.pipeline.second_process._send_results", killed)
+        monkeypatch.setattr(Connection, "send", killed)
     with second_process():
         first, second = results_of([lambda: 1, lambda: _Unreadable(1, 2)])
     assert first == 1
