@@ -44,18 +44,21 @@ def settled_peak(found: StressPeak) -> StressPeak:
     return found
 
 
-def without(fault: FlexsplineError) -> Shortfall:
+def without(fault: FlexsplineError | MemoryError) -> Shortfall:
     """Of a figure that is missing for this fault."""
-    return Shortfall(str(fault), _is_of_the_machine(fault))
+    return Shortfall(_words(fault), _is_of_the_machine(fault))
 
 
 def next_mesh_failed(fault: Exception) -> Shortfall:
     """The mesh after the last good one could not be made or solved, or not in time."""
-    why = f"not enough memory {fault}".rstrip() if isinstance(fault, MemoryError) else str(fault)
     mended = _is_of_the_machine(fault)
-    return Shortfall(
-        f"the next, finer mesh {'was not finished' if mended else 'failed'}: {why}", mended
-    )
+    said = "was not finished" if mended else "failed"
+    return Shortfall(f"the next, finer mesh {said}: {_words(fault)}", mended)
+
+
+def _words(fault: Exception) -> str:
+    """Python's own MemoryError may have none."""
+    return f"not enough memory {fault}".rstrip() if isinstance(fault, MemoryError) else str(fault)
 
 
 def _is_of_the_machine(fault: Exception) -> bool:

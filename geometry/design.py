@@ -208,7 +208,12 @@ class Solver(DesignTable):
     @property
     def K_b_in_sum(self) -> Literal["K_b", "K_b_lobes"]:
         """Name of the K_b that enters the backlash sum."""
-        return "K_b_lobes" if self.load_case == "lobes" else "K_b"
+        return "K_b_lobes" if self.sum_at_lobes else "K_b"
+
+    @property
+    def sum_at_lobes(self) -> bool:
+        """Whether the backlash sum takes the K_b of a torque that enters at the lobes: it needs the rim."""
+        return self.load_case == "lobes"
 
 
 def _without_examples(schema: dict[str, Any]) -> None:

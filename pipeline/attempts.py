@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeVar
 
+from flexspline.fea.shortfall import without
+from flexspline.fea.types import Shortfall
 from flexspline.geometry.errors import ComputationError
 from flexspline.pipeline.enclosure import NestingError
 
@@ -15,7 +17,7 @@ class Attempts:
     """`missing`: why a figure is not there, by its name ("K_b_lobes")."""
 
     def __init__(self) -> None:
-        self.missing: dict[str, str] = {}
+        self.missing: dict[str, Shortfall] = {}
 
     def get(self, name: str, make: Callable[[], T]) -> T | None:
         """The figure, or None where its computation failed; bugs and wrong designs pass through.
@@ -26,8 +28,6 @@ class Attempts:
             return make()
         except NestingError:
             raise
-        except ComputationError as fault:
-            self.missing[name] = str(fault)
-        except MemoryError as fault:
-            self.missing[name] = f"not enough memory {fault}".rstrip()
+        except (ComputationError, MemoryError) as fault:
+            self.missing[name] = without(fault)
         return None

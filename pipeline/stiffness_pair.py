@@ -51,7 +51,7 @@ def stiffness_pair(
         return given
     from flexspline.pipeline.analysis import stiffnesses
 
-    rim = context.design.solver.K_b_in_sum != "K_b"
+    rim = context.design.solver.sum_at_lobes
     found = stiffnesses(context, flexspline=K_b is None, shaft=K_e is None, rim=rim)
     solved: list[Stiffness] = []
     if K_b is None:

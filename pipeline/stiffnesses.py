@@ -12,7 +12,7 @@ from flexspline.pipeline.rim_case import RIM_CASES, figure_of
 
 if TYPE_CHECKING:
     from flexspline.fea.toothed_ring.equivalent import EquivalentRing
-    from flexspline.fea.types import Stiffness, StressPeak
+    from flexspline.fea.types import Shortfall, Stiffness, StressPeak
     from flexspline.geometry.design import Design
 
 FIGURES = ("K_b", *map(figure_of, RIM_CASES), "K_e")
@@ -40,7 +40,7 @@ class Stiffnesses:
     wave_generator_peak: StressPeak | None = None
     half_seat_peak: StressPeak | None = None
     ring: EquivalentRing | None = None
-    missing: Mapping[str, str] = field(default_factory=dict)
+    missing: Mapping[str, Shortfall] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Stiffness:
         """The figure of that name.
@@ -50,8 +50,13 @@ class Stiffnesses:
         NotFoundError : it failed, or nobody asked for it.
         """
         if name not in self.solved:
-            raise NotFoundError(name, self.missing.get(name, "nobody asked for it"), self)
+            raise NotFoundError(name, str(self.missing.get(name, "nobody asked for it")), self)
         return self.solved[name]
+
+    @property
+    def passing(self) -> bool:
+        """Whether more time or memory would find some figure that is missing."""
+        return any(why.of_the_machine for why in self.missing.values())
 
     @property
     def K_b(self) -> Stiffness:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
+from flexspline.fea.shortfall import without
 from flexspline.fea.types import NMM_PER_NM, Elastic, Stiffness
 from flexspline.geometry.design import Design
 from flexspline.geometry.errors import ComputationError
@@ -29,9 +30,16 @@ DRIFT = 0.5
 
 @dataclass(frozen=True)
 class UnknownEffect:
-    """The solid solve of the nominal design failed, and why: K_e is that without holes and keyway."""
+    """The solid solve of the nominal design failed: K_e is that without holes and keyway.
+
+    Attributes
+    ----------
+    reason : why, in plain words.
+    passing : whether more time or memory would have found the effect.
+    """
 
     reason: str
+    passing: bool = False
 
 
 @dataclass(frozen=True)
@@ -119,8 +127,9 @@ def holes_of(
         fast = K_e(design)
         solid = part_stiffness(analysis_context(design).part("shaft"))
     except (ComputationError, MemoryError) as fault:
-        say(f"K_e stays that of the shaft without holes: {fault}")
-        return UnknownEffect(str(fault))
+        why = without(fault)
+        say(f"K_e stays that of the shaft without holes: {why}")
+        return UnknownEffect(why.words, why.of_the_machine)
     value = min(1.0, solid.K_Nm_per_rad / fast.K_Nm_per_rad)  # less material is never stiffer
     ends = (
         solid.lower_Nm_per_rad / fast.upper_Nm_per_rad,

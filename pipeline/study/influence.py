@@ -66,10 +66,12 @@ def own_influences(result: StudyResult) -> dict[str, tuple[Influence, ...]]:
 
 
 def open_ends(result: StudyResult, best: Row) -> tuple[OpenEnd, ...]:
-    """Ends of spans at which the best design lies, though it would gain beyond them."""
+    """Ends of spans at which the best design lies, though it would gain beyond them.
+
+    A key of one value has no span.
+    """
     found: list[OpenEnd] = []
-    for key, span in result.study.file.vary.items():
-        low, high = span.ends
+    for key, (low, high) in _spans(result).items():
         ends = (OpenEnd(key, low, "lower"), OpenEnd(key, high, "upper"))
         near = (e for e in ends if abs(best.values[key] - e.value) <= AT_END * (high - low))
         found += [e for e in near if _may_help(result, best, key, 1 if e.value == high else -1)]
@@ -84,6 +86,12 @@ def binding(result: StudyResult, best: Row) -> tuple[str, ...]:
     )  # fmt: skip
 
 
+def _spans(result: StudyResult) -> dict[str, tuple[float, float]]:
+    """Both ends of each varied key that has more than one value."""
+    ends = {key: span.ends for key, span in result.study.file.vary.items()}
+    return {key: (low, high) for key, (low, high) in ends.items() if low < high}
+
+
 def _may_help(result: StudyResult, best: Row, key: str, outward: int) -> bool:
     """Whether a wider span may hold a better design: an objective gains that way, or a constraint eases.
 
@@ -91,7 +99,7 @@ def _may_help(result: StudyResult, best: Row, key: str, outward: int) -> bool:
     in its scatter. True where they are too few for a plane.
     """
     rows, file = result.built, result.study.file
-    keys = list(file.vary)
+    keys = list(_spans(result))
     if len(rows) < len(keys) + FEWEST_RANKED_ROWS:
         return True
     x = np.array([[r.values[k] for k in keys] for r in rows])

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import asdict, replace
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 from flexspline.pipeline.study.cluster import WorkerPool, worker_pool
 from flexspline.pipeline.study.database import StorageError, open_trial_store
@@ -51,18 +52,24 @@ def nominal_holes(
 ) -> HolesEffect | UnknownEffect | None:
     """What the shaft's holes and keyway do to K_e of the design that the study begins with.
 
-    Kept with the study's trials: every row has the same share, whoever makes it and when.
+    Kept with the study's trials: every row has the same share, whoever makes it and when. What time or memory
+    was too short for is looked for again, until a design is begun without it.
     """
     stored = store.notes().get(HOLES_NOTE)
-    if stored is None:
+    if _is_sought(stored, store):
         found = holes_of(study.design, fast_K_e, say, DRIFT if drifts(study.keys) else 0.0)
         stored = store.notes().get(HOLES_NOTE)  # another process may have been faster
-        if stored is None:
+        if _is_sought(stored, store):
             stored = asdict(found) if found else {}
             store.note(HOLES_NOTE, stored)
     if not stored:
         return None
     return UnknownEffect(**stored) if "reason" in stored else HolesEffect(**stored)
+
+
+def _is_sought(stored: Mapping[str, Any] | None, store: TrialStore) -> bool:
+    """Whether the holes' effect, as it is stored, is still to be found."""
+    return stored is None or (bool(stored.get("passing")) and not store.is_begun())
 
 
 def trial_store_of(study: Study, folder: Path) -> TrialStore:

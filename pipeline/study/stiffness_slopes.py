@@ -87,7 +87,7 @@ def slopes(design: Design, say: Callable[[str], None]) -> Slopes:
                 continue
             best: float | None = held if held is not None else again
             of_sum, no_sum = here, MET
-            if part.name == "flexspline" and design.solver.K_b_in_sum == "K_b_lobes":
+            if part.name == "flexspline" and design.solver.sum_at_lobes:
                 try:
                     of_sum = K_lobes({})
                     best, _, no_sum = _richardson(K_lobes, key, p, of_sum)

@@ -83,6 +83,11 @@ class TrialStore:
         """Finished designs by slot; should a slot have two, the first."""
         return self.refresh().rows()
 
+    def is_begun(self) -> bool:
+        """Whether a design has its row, or somebody alive is at one."""
+        known, dead = self.refresh(), self.dead()
+        return known.finished > 0 or any(t.claim.owner not in dead for t in known.open())
+
     @storage_faults()
     def claim(
         self,

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import as_completed
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 
-from flexspline.geometry.design import Solver
+from flexspline.fea.shortfall import without
+from flexspline.geometry.design import Design, Solver
 from flexspline.geometry.errors import FlexsplineError
 from flexspline.geometry.keys import with_values
 from flexspline.geometry.load import design_from
 from flexspline.pipeline.analysis import analysis_context, backlash_of, stiffnesses
 from flexspline.pipeline.load_cases import SOLID_CASES
 from flexspline.pipeline.rim_case import figure_of
+from flexspline.pipeline.stiffnesses import NotFoundError, Stiffnesses
 from flexspline.pipeline.study.claims import Row
 from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task, outcome_of
@@ -26,17 +28,40 @@ VERIFIED = "verified"
 RIM = {key for case in SOLID_CASES for key in GIVEN_BY[case]} | {*GIVEN_BY["ellipse"]}
 
 
-def solid_outcome(task: Task, rim: bool) -> Outcome:
-    """A design's figures by the solid model; `rim`: the lobes and the ellipse too."""
+@dataclass(frozen=True)
+class SolidAnswer:
+    """A design's figures by the solid model, or why there are none.
+
+    `passing`: whether more time or memory would find some that are missing.
+    """
+
+    outcome: Outcome
+    passing: bool = False
+
+
+DIED = SolidAnswer(Outcome(faults=(WORKER_DIED,)), passing=True)
+"""Most often for want of memory: the system ended the process."""
+
+
+def solid_answer(task: Task, rim: bool) -> SolidAnswer:
+    """One design by the solid model; `rim`: the lobes and the ellipse too."""
     try:
         tables = dict(task.tables)
         tables["solver"] = {**tables.get("solver", {}), "model": "solid"}
         design = with_values(design_from(tables), task.values)
         context = analysis_context(design)
-        found = stiffnesses(context, rim=rim or design.solver.K_b_in_sum != "K_b")
-        total = backlash_of(design, found)
-    except FlexsplineError as fault:
-        return Outcome(faults=(str(fault),))
+        found = stiffnesses(context, rim=rim or design.solver.sum_at_lobes)
+        return SolidAnswer(Outcome(_figures(design, found)), found.passing)
+    except NotFoundError as fault:
+        return SolidAnswer(Outcome(faults=(str(fault),)), fault.found.passing)
+    except (FlexsplineError, MemoryError) as fault:
+        why = without(fault)
+        return SolidAnswer(Outcome(faults=(why.words,)), why.of_the_machine)
+
+
+def _figures(design: Design, found: Stiffnesses) -> dict[str, float]:
+    """By result.json key; raises NotFoundError without the K of the backlash sum."""
+    total = backlash_of(design, found)
     figures = {
         "backlash_arcsec.shaft": total.shaft_arcsec,
         "backlash_arcsec.flexspline": total.flexspline_arcsec,
@@ -47,7 +72,7 @@ def solid_outcome(task: Task, rim: bool) -> Outcome:
             figures |= stiffness_figures(name, found[name])
     if found.wave_generator_peak is not None:
         figures["wave_generator_peak_mises_MPa"] = found.wave_generator_peak.mises_MPa
-    return Outcome(figures)
+    return figures
 
 
 def verify(
@@ -57,7 +82,10 @@ def verify(
     task: Callable[[Mapping[str, float]], Task],
     say: Callable[[str], None],
 ) -> tuple[Verified, ...]:
-    """The first `run.verify` of the best designs; what is stored is not solved again."""
+    """The first `run.verify` of the best designs; what is stored is not solved again.
+
+    An answer that time or memory was too short for is of this run only: the next one solves it again.
+    """
     file = result.study.file
     chosen = result.best(file.run.verify)
     rim = bool(RIM & {*file.objective, *file.constraint})
@@ -66,14 +94,16 @@ def verify(
     for row in chosen:
         if f"{VERIFIED} {row.slot}" not in stored:
             say(f"design {row.slot} with the solid model")
-            pending[pool().submit(solid_outcome, task(row.values), rim)] = row
+            pending[pool().submit(solid_answer, task(row.values), rim)] = row
     for future in as_completed(pending):
         name = f"{VERIFIED} {pending[future].slot}"
         try:
-            stored[name] = asdict(future.result())
+            answer: SolidAnswer = future.result()
         except pool().lost:
-            stored[name] = asdict(Outcome(faults=(WORKER_DIED,)))
-        store.note(name, stored[name])
+            answer = DIED
+        stored[name] = asdict(answer.outcome)
+        if not answer.passing:
+            store.note(name, stored[name])
     solver = result.study.design.solver
     return tuple(checked(r, outcome_of(stored[f"{VERIFIED} {r.slot}"]), solver) for r in chosen)
 

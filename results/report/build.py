@@ -72,7 +72,7 @@ def report_content(
         linear_limit=result.linear_limit,
         ring=found.ring,
         gear=result.gear,
-        gear_missing=found.missing.get("gear", ""),
+        gear_missing=str(found.missing.get("gear", "")),
         warnings=all_warnings(result),
         stage_seconds=result.stage_seconds,
         versions=library_versions(),

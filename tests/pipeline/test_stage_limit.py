@@ -74,4 +74,4 @@ def test_no_time_at_all_leaves_the_figures_out(tmp_path, monkeypatch) -> None:
         "K_b_lobes_contact",
         "wave_generator_peak",
     } <= set(found.missing)
-    assert all("limit of 0 s" in why for why in found.missing.values())
+    assert all("limit of 0 s" in why.words for why in found.missing.values())

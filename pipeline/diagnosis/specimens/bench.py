@@ -88,7 +88,7 @@ class Bench:
 
 def enters_at_lobes(design: Design, part: PartName) -> bool:
     """Whether the torque enters a part at the lobes, in the load case of the sum."""
-    return part == "flexspline" and design.solver.load_case == "lobes"
+    return part == "flexspline" and design.solver.sum_at_lobes
 
 
 def row_designs(design: Design, specimens: Specimens) -> tuple[Design, ...]:

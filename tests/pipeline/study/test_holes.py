@@ -6,7 +6,9 @@ import pytest
 from example_files import EXAMPLES
 from study_bench import study_of, threads
 
+from flexspline.fea.deadline import OutOfTimeError
 from flexspline.geometry.design import Solver
+from flexspline.geometry.errors import GeometryError
 from flexspline.geometry.keys import with_values, without_holes
 from flexspline.geometry.load import load_design
 from flexspline.pipeline.cache import Cache
@@ -23,8 +25,8 @@ from flexspline.pipeline.study.holes import (
     holes_of,
     unfollowed,
 )
-from flexspline.pipeline.study.run import nominal_holes, run_study, trial_store_of
-from flexspline.pipeline.study.verify import checked, solid_outcome
+from flexspline.pipeline.study.run import nominal_holes, run_study, source_of, trial_store_of
+from flexspline.pipeline.study.verify import checked, solid_answer
 
 Figures = tuple[dict[str, float], dict[str, float], dict[str, float]]
 DESIGN = load_design(EXAMPLES / "xb1-40.toml")
@@ -73,6 +75,27 @@ def test_a_machine_without_memory_costs_the_holes_effect_only(
     assert "9 GB" in found.reason
 
 
+@pytest.mark.parametrize(
+    ("fault", "passing"),
+    [
+        (MemoryError(), True),
+        (OutOfTimeError(0.1), True),
+        (GeometryError("the keyway has no mesh"), False),
+    ],
+)
+def test_the_effect_says_whether_more_time_or_memory_would_find_it(
+    fault: Exception, passing: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(_: object) -> None:
+        raise fault
+
+    monkeypatch.setattr("flexspline.pipeline.study.holes.part_stiffness", failing)
+    found = holes_of(DESIGN, fast_K_e, lambda _: None)
+    assert isinstance(found, UnknownEffect)
+    assert found.reason
+    assert found.passing is passing
+
+
 STUDY = """
 design = "xb1-40.toml"
 [vary]
@@ -101,7 +124,7 @@ def nominal(nominal_effect: HolesEffect) -> Figures:
         dict(figures_of(study.design, ("torsion",), h).figures) for h in (None, nominal_effect)
     )
     tables = study.design.tables
-    solid = solid_outcome(Task(tables, {}, ("torsion",)), rim=False)
+    solid = solid_answer(Task(tables, {}, ("torsion",)), rim=False).outcome
     assert not solid.reason
     return plain, corrected, dict(solid.figures)
 
@@ -168,6 +191,25 @@ def test_the_solid_solve_is_done_once_for_all_who_share_the_study(
         "flexspline.pipeline.study.run.holes_of", lambda *told: pytest.fail("solved again")
     )
     assert nominal_holes(study, trial_store_of(study, tmp_path), print) == HOLES
+
+
+@pytest.mark.parametrize(
+    ("passing", "begun", "again"),
+    [(True, False, True), (True, True, False), (False, False, False)],
+)
+def test_what_the_machine_was_too_small_for_is_solved_again_until_a_design_is_begun(
+    passing: bool, begun: bool, again: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rows with the effect do not stand beside rows without."""
+    study, failed = study_of(STUDY), UnknownEffect("too little", passing)
+    monkeypatch.setattr("flexspline.pipeline.study.run.holes_of", lambda *told: failed)
+    assert nominal_holes(study, trial_store_of(study, tmp_path), print) == failed
+    if begun:
+        source_of(study).claim(trial_store_of(study, tmp_path), 1)
+    monkeypatch.setattr("flexspline.pipeline.study.run.holes_of", lambda *told: HOLES)
+    for _ in range(2):
+        found = nominal_holes(study, trial_store_of(study, tmp_path), print)
+        assert found == (HOLES if again else failed)
 
 
 def test_a_design_without_holes_among_others_keeps_its_K() -> None:

@@ -31,10 +31,13 @@ method = "sobol"
 
 
 def result_of(
-    designs: Iterable[tuple[float, float, float, float]], one: Mapping[str, float] | None = None
+    designs: Iterable[tuple[float, float, float, float]],
+    one: Mapping[str, float] | None = None,
+    failed: tuple[float, ...] = (),
 ) -> StudyResult:
-    """Wall, length, stiffness and stress of each design; `one`: keys with one value each."""
-    only = {key: {"values": [value]} for key, value in (one or {}).items()}
+    """Wall, length, stiffness and stress of each design; `one`: keys with one value each, or one that was
+    built beside those that `failed`."""
+    only = {key: {"values": [value, *failed]} for key, value in (one or {}).items()}
     tables = tomllib.loads(STUDY)
     study = study_from(tables | {"vary": tables["vary"] | only}, EXAMPLES, "test")
     rows = (
@@ -44,19 +47,34 @@ def result_of(
     return StudyResult(study, tuple(rows))
 
 
-@pytest.mark.parametrize("one", [{}, {"flexspline.diaphragm_thickness_mm": 0.6}])
-def test_an_end_is_open_only_where_the_objective_gains_towards_it(one: dict[str, float]) -> None:
+DIAPHRAGM, RING = "flexspline.diaphragm_thickness_mm", "flexspline.ring_thickness_mm"
+
+
+@pytest.mark.parametrize(
+    ("count", "one", "failed"),
+    [
+        (10, {}, ()),
+        (10, {DIAPHRAGM: 0.6}, ()),
+        (10, {DIAPHRAGM: 0.6, RING: 0.55}, ()),
+        (12, {DIAPHRAGM: 0.6}, ()),
+        (12, {DIAPHRAGM: 0.6}, (0.1, 9.0)),
+    ],
+)
+def test_an_end_is_open_only_where_the_objective_gains_towards_it(
+    count: int, one: dict[str, float], failed: tuple[float, ...]
+) -> None:
     """The stiffness gains with the wall and falls with the length, at whose end the best happens to lie.
 
-    A key of one value says nothing, and hides nothing.
+    A key of one value says nothing, hides nothing, and asks for no design more.
     """
-    places = [(i / 11, (5 * i % 12) / 11) for i in range(12)]
+    last = count - 1
+    places = [(i / last, (7 * i % count) / last) for i in range(count)]
     places[-1] = (1.0, 1.0)
     result = result_of(
-        ((0.3 + 0.2 * w, 20 + 10 * x, 3e4 + 100 * w - 8 * x, 300.0) for w, x in places), one
+        ((0.3 + 0.2 * w, 20 + 10 * x, 3e4 + 100 * w - 8 * x, 300.0) for w, x in places), one, failed
     )
     (best,) = result.pareto
-    assert best.slot == 11
+    assert best.slot == last
     assert open_ends(result, best) == (OpenEnd(WALL, 0.5, "upper"),)
 
 

@@ -1,16 +1,23 @@
 """Fast and solid model side by side; a disagreement beyond the bounds is seen."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from example_files import EXAMPLES
-from study_bench import WALL, study_of, threads
+from study_bench import WALL, quick, study_of, threads
 
+from flexspline.fea.deadline import OutOfTimeError
+from flexspline.fea.solid.errors import MemoryShortError
 from flexspline.geometry.design import Solver
+from flexspline.geometry.errors import GeometryError
 from flexspline.geometry.keys import without_holes
 from flexspline.pipeline.study.claims import Row
+from flexspline.pipeline.study.cluster import WorkerPool
 from flexspline.pipeline.study.evaluate import Outcome, Task, evaluate
+from flexspline.pipeline.study.local_workers import WORKER_DIED, WorkerDiedError
 from flexspline.pipeline.study.run import run_study, trial_store_of
 from flexspline.pipeline.study.verify import checked
 
@@ -54,6 +61,54 @@ def test_the_solid_model_of_a_part_without_holes_agrees(tmp_path: Path) -> None:
     }  # fmt: skip
     assert all(c.agrees for c in verified.checks)
     assert all(abs(c.difference_pct) > 0 for c in verified.checks)  # two models, not one twice
+
+
+@contextmanager
+def mortal() -> Iterator[WorkerPool]:
+    """A thread whose deaths are told as those of a local worker."""
+    with threads() as pool:
+        yield replace(pool, lost=(WorkerDiedError,))
+
+
+def failing(fault: Exception) -> Callable[..., None]:
+    def fails(*_: object, **__: object) -> None:
+        raise fault
+
+    return fails
+
+
+def reason_of(folder: Path) -> str:
+    """Of the best design of a study that is begun, or gone on with, in a folder."""
+    study = study_of(TEXT)
+    result = run_study(study, trial_store_of(study, folder), mortal, lambda p: None, quick)
+    (verified,) = result.verified
+    return verified.reason
+
+
+@pytest.mark.parametrize(
+    ("where", "fault", "kept"),
+    [
+        ("pipeline.study.verify.solid_answer", WorkerDiedError(WORKER_DIED), False),
+        ("pipeline.analysis.part_stiffness", OutOfTimeError(1.0), False),
+        ("pipeline.analysis.part_stiffness", MemoryShortError(9, 9e9, 1e9), False),
+        ("pipeline.analysis.part_stiffness", MemoryError("no room"), False),
+        ("pipeline.study.verify.stiffnesses", MemoryError(), False),
+        ("pipeline.analysis.part_stiffness", GeometryError("a hole has no mesh"), True),
+    ],
+)
+def test_what_time_or_memory_was_too_short_for_is_solved_again(
+    where: str, fault: Exception, kept: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A passing failure is said, and ends no study; the next run of it has another answer."""
+    with monkeypatch.context() as once:
+        once.setattr(f"flexspline.{where}", failing(fault))
+        first = reason_of(tmp_path)
+    assert first
+    monkeypatch.setattr(
+        "flexspline.pipeline.analysis.part_stiffness", failing(GeometryError("solved again"))
+    )
+    again = reason_of(tmp_path)
+    assert again == first if kept else "solved again" in again
 
 
 def test_examples_are_studies() -> None:
