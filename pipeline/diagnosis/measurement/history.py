@@ -97,7 +97,12 @@ class History:
         return found
 
     @property
+    def unit_and_cycle(self) -> np.ndarray:
+        """(n,) one number for each cycle of each unit, in the order of units and of their cycles."""
+        return np.asarray(self.unit * (int(self.cycle.max()) + 1) + self.cycle)
+
+    @property
     def cycle_slices(self) -> list[np.ndarray]:
         """Row indices of each cycle of each unit, in order."""
-        key = self.unit * (int(self.cycle.max()) + 1) + self.cycle
+        key = self.unit_and_cycle
         return [np.flatnonzero(key == k) for k in np.unique(key)]

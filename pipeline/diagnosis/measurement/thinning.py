@@ -35,7 +35,7 @@ def thinned(sweep: Sweep) -> Sweep:
     if n <= MOST_FIT_ROWS:
         return sweep
     h = sweep.history
-    keys = h.unit * (int(h.cycle.max()) + 1) + h.cycle
+    keys = h.unit_and_cycle
     labels, counts = np.unique(keys, return_counts=True)
     block = int(np.ceil(n / MOST_FIT_ROWS))
     if np.median(counts) / block < FEWEST_PER_CYCLE:
