@@ -52,9 +52,7 @@ def diagnose_end_points(
     deviations, names = unit_deviations(points, prediction)
     rig = rig_of(points, prediction)
     envelopes = tuple(
-        envelope(
-            design, prediction.compliance, prediction.gap_arcsec, float(t), deviations.readings[0]
-        )
+        envelope(design, prediction, float(t), deviations.readings[0])
         for t in np.unique(points.torque_Nm)
     )
     null = unit_evidence(deviations, ())

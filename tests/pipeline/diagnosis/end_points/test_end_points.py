@@ -82,14 +82,14 @@ def test_article_also_with_stiffness_of_the_example_by_fe() -> None:
 
 def test_no_clearance_of_the_source_explains_unit_3() -> None:
     """j_bn0 = 4 µm gives 43.9″ and play at most 61.48″ (article, tables 3 and 4): 116.8″ < 117″."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     assert of.limit_arcsec() == pytest.approx(SERIES_ARCSEC + 43.90 + 61.48, abs=0.02)
     assert of.limit_arcsec() < 117
 
 
 def test_exact_tail_is_below_the_normal_one() -> None:
     """Play saturates, so large totals are rarer than a normal distribution of the same width says."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     rng = np.random.default_rng(1)
     drawn = rng.choice(of.play_arcsec, 400_000, p=of.play_weight)
     drawn = drawn + of.total_arcsec + of.straight_std_arcsec * rng.standard_normal(400_000)
@@ -100,7 +100,7 @@ def test_exact_tail_is_below_the_normal_one() -> None:
 
 def test_explanation_is_where_it_says() -> None:
     """At the play it names, the flank clearance it names gives the measured total."""
-    of = envelope(DESIGN, PREDICTION.compliance, PREDICTION.gap_arcsec, 0.5, 0.0)
+    of = envelope(DESIGN, PREDICTION, 0.5, 0.0)
     e = of.explanation(117.0)
     gear = DESIGN.gear.model_copy(update={"flank_clearance_um": e.flank_clearance_um})
     bearing = DESIGN.bearing.model_copy(update={"radial_clearance_um": e.radial_clearance_um})
