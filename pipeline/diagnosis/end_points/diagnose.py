@@ -58,8 +58,9 @@ def diagnose_end_points(
     null = unit_evidence(deviations, ())
     units = unit_findings(points, deviations, names, envelopes)
     furthest = sorted(range(len(units)), key=lambda u: units[u].p_value)
-    some = _some(points, deviations, names, furthest)
-    racing, raced = (deviations, names) if some is points else unit_deviations(some, prediction)
+    rows = _raced_rows(points, deviations, names, furthest)
+    some = points.rows(rows)
+    racing, raced = unit_deviations(some, prediction)
     suspects = [raced.index(names[u]) for u in furthest[:SUSPECTS]]
     hypotheses = race(some, rig, racing, suspects)
     best = next(h for h in hypotheses if h.causes)
@@ -83,11 +84,11 @@ def diagnose_end_points(
     analysis = EndPointAnalysis(
         envelopes, units, mid_positions(deviations, prediction), null.common, null.share, kept.reading,
         tuple(hypotheses), plans, several_torques(deviations), calibration_of(kept, prediction),
-        len(some.unit),
+        len(rows),
     )  # fmt: skip
     outcome = DiagnosisOutcome(
         decision.verdict, decision.causes, decision.unexplained,
-        gain_of(racing, best, raced) if named else None,
+        gain_of(racing, best, raced, rows) if named else None,
         next_measurement(decision, plans, worst),
     )  # fmt: skip
     model = None
@@ -98,16 +99,12 @@ def diagnose_end_points(
     return outcome, analysis, model
 
 
-def _some(
+def _raced_rows(
     points: EndPoints, deviations: UnitDeviations, names: Sequence[str], furthest: Sequence[int]
-) -> EndPoints:
-    """All rows, or, of a very large file, those of evenly chosen units and of the suspects."""
+) -> np.ndarray:
+    """All rows, or, of a very large file, those of evenly chosen units and of the suspects; by indices."""
     if len(points.unit) <= MOST_RACE_ROWS:
-        return points
+        return np.arange(len(points.unit))
     step = -(-len(points.unit) // MOST_RACE_ROWS)
     chosen = set(range(0, len(names), step)) | set(furthest[:SUSPECTS])
-    rows = np.sort(np.concatenate([r for u, r in enumerate(deviations.unit_rows) if u in chosen]))
-    return EndPoints(
-        points.path, tuple(points.unit[i] for i in rows), points.torque_Nm[rows],
-        points.angle_plus_arcsec[rows], points.angle_minus_arcsec[rows],
-    )  # fmt: skip
+    return np.sort(np.concatenate([r for u, r in enumerate(deviations.unit_rows) if u in chosen]))

@@ -20,8 +20,8 @@ class History:
         the wave generator was locked.
     readings : (n,) of how many readings each row is the mean; None where it is one of each.
     exact : whether torque is a calculated course, which has no noise.
-    number : (n,) of each row, or the mean number of the rows that it is the mean of, where time was not
-        recorded; None where rows are as they were read.
+    number : (n,) of each row in the file, or the mean number of the rows that it is the mean of, where time
+        was not recorded; None where the rows are those of the file.
     """
 
     torque_Nm: np.ndarray

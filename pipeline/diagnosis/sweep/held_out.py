@@ -134,7 +134,7 @@ def _gain(explained: ExplainedSweep, causes: Collection[str], split: Split) -> G
         rmse_calibrated=rms(left["calibrated"]),
         rmse_after=rms(left["after"]),
         noise_floor=rms(floor),
-        held_out_rows=tuple(int(i) for i in np.flatnonzero(test)),
+        held_out_rows=tuple(map(int, sweep.file_rows(test))),
         left=left,
         stated_std=rms(fit.stated_std()[test]),
         elsewhere=_elsewhere(history, train, test)

@@ -236,6 +236,19 @@ def test_many_units_are_quick_and_one_row_is_enough() -> None:
     assert diagnose_end_points(DESIGN, one, PREDICTION)[0].verdict == "consistent"
 
 
+def test_rows_judged_are_those_of_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a file with more rows than a race takes, as here of 24: those that were taken."""
+    monkeypatch.setattr("flexspline.pipeline.diagnosis.end_points.diagnose.MOST_RACE_ROWS", 8)
+    made = units([1.0, 6.0], 12, np.random.default_rng(6), asymmetry=0.2)
+    gain = diagnose_end_points(DESIGN, made, PREDICTION)[0].gain
+    assert gain is not None
+    rows = np.array(gain.held_out_rows)
+    assert 8 <= len(rows) < 24
+    total = (made.angle_plus_arcsec - made.angle_minus_arcsec)[rows]
+    off = total - 2 * made.torque_Nm[rows] * PREDICTION.compliance - PREDICTION.gap_arcsec
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(gain.rmse_before)
+
+
 def test_small_displacement_model_has_no_end() -> None:
     bearing = DESIGN.bearing.model_copy(update={"bearing_play_model": "small_displacement"})
     design = DESIGN.model_copy(update={"bearing": bearing})

@@ -11,7 +11,7 @@ from histories import PREDICTION, joined, sweep
 
 from flexspline.pipeline.diagnosis.left_out import LeftOut
 from flexspline.pipeline.diagnosis.measurement.history import History
-from flexspline.pipeline.diagnosis.measurement.record import Sweep
+from flexspline.pipeline.diagnosis.measurement.record import Sweep, read_measurement
 from flexspline.pipeline.diagnosis.outcome import Gain
 from flexspline.pipeline.diagnosis.structure import MissedLevel
 from flexspline.pipeline.diagnosis.sweep.diagnose import diagnose_sweep
@@ -45,6 +45,43 @@ def test_rows_in_the_gap_s_crossing_are_left_out() -> None:
     assert np.abs(torque[rows]).min() > behind.explained.prepared.band_Nm
     # 370 rows: ± 4 %, thrice that
     assert outcome.gain.rmse_after == pytest.approx(NOISE_ARCSEC, rel=0.12)
+
+
+def softened(path: Path, rows: int, cycles: int, wrong: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles to ± 2 N·m with a soft wind-up, as a file: torque and cycle of its rows.
+
+    The first cycle has `wrong` single torques of 1e6 N·m.
+    """
+    turn = np.arange(rows) * cycles / rows
+    torque = 2.0 * np.interp(turn % 1, [0, 0.25, 0.75, 1], [0, 1, -1, 0])
+    soft = 12.0 * np.sign(torque) * (1 - np.exp(-np.abs(torque) / 0.4))
+    noise = np.random.default_rng(4).normal(0, NOISE_ARCSEC, rows)
+    angle = 10.0 * torque + 30.0 * np.sign(torque) + soft + noise
+    read = torque.copy()
+    read[rows // cycles // 4 + 3 * np.arange(wrong)] = 1e6
+    columns = zip(np.floor(turn) + 1, 0.5 * np.arange(rows), read, angle, strict=True)
+    lines = [f"{c:.0f},{t:.1f},{a:.6f},{b:.3f}" for c, t, a, b in columns]
+    head = ["# a rig", "cycle,time_s,torque_Nm,angle_arcsec"]
+    path.write_text("\n".join([*head, *lines]) + "\n", encoding="utf-8")
+    return torque, np.floor(turn) + 1
+
+
+@pytest.mark.parametrize(("rows", "wrong"), [(12_000, 0), (12_000, 30), (800, 30)])
+def test_rows_judged_are_those_of_the_file(rows: int, wrong: int, tmp_path: Path) -> None:
+    """Where a long record is judged by means, and behind rows that were left out as wrong readings."""
+    torque, cycle = softened(tmp_path / "rig.csv", rows, 4, wrong)
+    read = read_measurement(tmp_path / "rig.csv")
+    assert isinstance(read, Sweep)
+    outcome, behind = diagnose_sweep(read, PREDICTION)
+    assert [c.id for c in outcome.causes] == ["stiffness_hardening"]
+    assert outcome.gain is not None
+    assert behind is not None
+    judged = np.array(outcome.gain.held_out_rows)
+    assert outcome.gain.held_out == LeftOut("cycle", (2.0,))
+    assert set(cycle[judged]) == {2.0}
+    # all of the cycle, but for two rows, or means, at each turn, and the crossing, 3.5 % of the torque
+    assert len(judged) > 0.94 * rows / 4
+    assert np.abs(torque[judged]).min() > behind.explained.prepared.band_Nm - 8 * 4 / rows
 
 
 def test_many_cycles_held_out_are_counted_and_not_all_listed() -> None:
