@@ -66,6 +66,12 @@ class Sweep:
     def __len__(self) -> int:
         return len(self.angle_arcsec)
 
+    @property
+    def own_cycle(self) -> np.ndarray:
+        """(n,) cycle as the file numbers it."""
+        first = np.array([numbers[0] for numbers in self.cycles])
+        return np.asarray(self.history.cycle + first[self.history.unit])
+
     def file_rows(self, chosen: np.ndarray) -> np.ndarray:
         """Data rows of the file, from 0, that are the chosen rows (mask) or went into them."""
         if self.went_to is None:

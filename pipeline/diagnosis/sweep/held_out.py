@@ -21,7 +21,11 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, with_tuned_
 from flexspline.pipeline.diagnosis.sweep.regressors import Regressor
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
-from flexspline.pipeline.diagnosis.sweep.splits import Split, between_others, whole_levels
+from flexspline.pipeline.diagnosis.sweep.splits import (
+    Split,
+    between_others,
+    whole_levels,
+)
 from flexspline.pipeline.second_process import results_of
 
 MOST_HELD_OUT_ROWS = 24_000
@@ -48,13 +52,14 @@ def gains_of(
     causes are named, on each whole amplitude, rate and temperature, learnt on the others."""
     prepared = explained.prepared
     history = prepared.rig.history
-    between = between_others(history, prepared.sweep.cycles, ~settling(history))
+    sweep = prepared.sweep
+    between = between_others(history, sweep.own_cycle, sweep.units, ~settling(history))
     levels: list[Split] = []
     if causes:
-        timed = prepared.sweep.history.time_s is not None
-        levels = whole_levels(true_history(prepared.sweep, prepared.offset_Nm), timed)
-        most = MOST_HELD_OUT_ROWS // len(prepared.kept)
-        levels = levels[-most:] if most else []
+        timed = sweep.history.time_s is not None
+        every = whole_levels(true_history(sweep, prepared.offset_Nm), timed)
+        most = MOST_HELD_OUT_ROWS // len(sweep)
+        levels = every[-most:] if most else []
     splits = [*levels, *([between] if between else [])]
     gains = results_of([partial(_gain, explained, causes, split) for split in splits])
     first = gains.pop() if between else None
