@@ -23,6 +23,7 @@ from flexspline.pipeline.diagnosis.sweep.row_selection import settling, turning
 from flexspline.pipeline.diagnosis.sweep.search import Search
 from flexspline.pipeline.diagnosis.sweep.splits import (
     Split,
+    affordable,
     between_others,
     whole_levels,
 )
@@ -58,8 +59,7 @@ def gains_of(
     if causes:
         timed = sweep.history.time_s is not None
         every = whole_levels(true_history(sweep, prepared.offset_Nm), timed)
-        most = MOST_HELD_OUT_ROWS // len(sweep)
-        levels = every[-most:] if most else []
+        levels = affordable(every, MOST_HELD_OUT_ROWS // len(sweep))
     splits = [*levels, *([between] if between else [])]
     gains = results_of([partial(_gain, explained, causes, split) for split in splits])
     first = gains.pop() if between else None

@@ -90,6 +90,26 @@ def _cycles(
     return LeftOut("cycle", of_units=tuple(of_units))
 
 
+def affordable(levels: list[Split], most: int) -> list[Split]:
+    """So many of the levels at most: of each channel the two ends, the last channel before the others.
+
+    Then what lies between the ends, where there is room. Of a channel whose ends have none nothing is taken,
+    and one of a single level comes last: what is judged alone says nothing of a cause (`held_out.refuted`).
+    """
+    of_channel: dict[str, list[int]] = {}
+    for i, split in enumerate(levels):
+        of_channel.setdefault(split.what.channel, []).append(i)
+    chosen: list[int] = []
+    between: list[int] = []
+    for c in sorted(reversed(of_channel.values()), key=lambda c: len(c) == 1):
+        ends = sorted({c[0], c[-1]})
+        if len(chosen) + len(ends) <= most:
+            chosen += ends
+            between += c[1:-1]
+    chosen += between[: most - len(chosen)]
+    return [levels[i] for i in sorted(chosen)]
+
+
 def whole_levels(history: History, timed: bool) -> list[Split]:
     """Whole amplitudes, rates and temperatures, where a record has several of them.
 

@@ -22,6 +22,7 @@ from flexspline.pipeline.diagnosis.sweep.race import ExplainedSweep, run_race
 from flexspline.pipeline.diagnosis.sweep.row_selection import settling
 from flexspline.pipeline.diagnosis.sweep.splits import (
     Split,
+    affordable,
     between_others,
     whole_levels,
 )
@@ -204,6 +205,30 @@ def test_each_amplitude_rate_and_temperature_is_held_out_as_a_whole() -> None:
 def test_a_record_of_one_amplitude_rate_and_temperature_has_no_levels() -> None:
     history = replace(sweep(cycles=4, hold=0, rows=200), temperature_C=None)
     assert whole_levels(history, True) == []
+
+
+def test_a_long_record_spares_the_ends_of_a_channel_or_none_of_it() -> None:
+    """One end that is judged alone says nothing (`refuted`), and takes a search's time."""
+    history = levels((1.0, 0.5, 0.25, 1.0, 0.5, 0.25), (1.0, 1.0, 1.0, 16.0, 4.0, 4.0))
+    every = whole_levels(history, True)
+    channels = [s.what.channel for s in every]
+    assert channels == ["torque_amplitude"] * 3 + ["torque_rate"] * 3 + ["temperature_C"] * 2
+    ends = {"torque_amplitude": [0, 2], "torque_rate": [3, 5], "temperature_C": [6, 7]}
+    for most, chosen in (
+        (0, []),
+        (1, []),
+        (2, ends["temperature_C"]),
+        (3, ends["temperature_C"]),
+        (4, ends["torque_rate"] + ends["temperature_C"]),
+        (5, [3, 4, 5, 6, 7]),
+        (6, [0, 2, 3, 5, 6, 7]),
+        (8, list(range(8))),
+        (99, list(range(8))),
+    ):
+        assert [s.what for s in affordable(every, most)] == [every[i].what for i in chosen]
+    single = every[:7]
+    assert [s.what for s in affordable(single, 4)] == [every[i].what for i in (0, 2, 3, 5)]
+    assert [s.what for s in affordable(single, 5)] == [every[i].what for i in (0, 2, 3, 5, 6)]
 
 
 def test_a_unit_keeps_the_level_that_is_all_it_has() -> None:
