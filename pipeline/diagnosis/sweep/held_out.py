@@ -35,7 +35,8 @@ FEWEST_RMS_ROWS = 12
 """An rms of so many rows of noise is good to 1/√(2·12) = 20 %."""
 
 SAME_PLACE_DEG = 5.0
-"""Positions of the wave generator that are nearer are one: the fourth harmonic turns by 0.35 rad there."""
+"""A position of the wave generator that lies nearer to one fitted is no other: the fourth harmonic turns by
+0.35 rad there."""
 FEWEST_LEVELS = 2
 """Of a channel, that refute: others may be none of their own, or not be held out for their rows' number."""
 REFUTED_RATIO = 2.0
@@ -151,8 +152,12 @@ def _elsewhere(history: History, train: np.ndarray, test: np.ndarray) -> bool:
     """Whether most rows of a test are at positions that no training row is near."""
     if history.input_angle_deg is None:
         return False
-    place = np.round(history.input_angle_deg / SAME_PLACE_DEG) % round(360 / SAME_PLACE_DEG)
-    return bool((~np.isin(place[test], place[train])).mean() > 1 / 2)
+    place = history.input_angle_deg % 360.0
+    known = np.unique(place[train])
+    around = np.concatenate([known[-1:] - 360.0, known, known[:1] + 360.0])
+    after = np.searchsorted(around, place[test])
+    off = np.minimum(around[after] - place[test], place[test] - around[after - 1])
+    return bool((off >= SAME_PLACE_DEG).mean() > 1 / 2)
 
 
 def _learnt(learnt: GaussianEvidence, causes: Collection[str]) -> SweepFit:

@@ -319,16 +319,32 @@ def test_causes_that_double_the_error_of_a_level_explain_nothing() -> None:
     assert found.limit
 
 
-@pytest.mark.parametrize("positions", [9, 1])
-def test_a_level_with_positions_of_its_own_says_where_it_is(positions: int) -> None:
+APART_DEG = 360.0 / 9
+
+
+@pytest.mark.parametrize(
+    ("places", "elsewhere"),
+    [
+        (APART_DEG * np.arange(9), True),
+        (np.zeros(9), False),
+        # those held out lie 0.2° and 2° from others, across 2.5° and 360°; then 6° from the nearest
+        (np.repeat([0.0, 120.0, 240.0], 3) + np.tile([2.4, 2.4, 2.6], 3), False),
+        (np.repeat([0.0, 120.0, 240.0], 3) + np.tile([359.0, 359.0, 361.0], 3), False),
+        (np.repeat([0.0, 120.0, 240.0], 3) + np.tile([0.0, 12.0, 6.0], 3), True),
+    ],
+)
+def test_a_level_with_positions_of_its_own_says_where_it_is(
+    places: np.ndarray, elsewhere: bool
+) -> None:
     """Nine cycles, every third to half the torque; a wave generator locked anew for each, or never."""
     history = replace(levels((1.0, 1.0, 0.5) * 3, (1.0,) * 9), temperature_C=None)
-    place = 360.0 / 9 * history.cycle if positions > 1 else np.zeros(len(history))
+    place = places[history.cycle]
     history = replace(history, input_angle_deg=place)
     rng = np.random.default_rng(6)
     angle = 10.0 * history.torque_Nm + 30.0 * history.sign + 3.0 * np.sin(np.radians(place))
     raced = explained(history, angle + rng.normal(0, 0.5, len(angle)))
     gains = gains_of(raced, ("kinematic_error",))[1]
     assert len(gains) == 2
-    assert all(g.elsewhere == (positions > 1) for g in gains)
+    # the other level has two cycles of three: of these the nearest other is at the third's position
+    assert [g.elsewhere for g in gains] == [elsewhere, elsewhere]
     assert not any(g.elsewhere for g in gains_of(raced, ("friction_hysteresis",))[1])
