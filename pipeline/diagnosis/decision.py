@@ -70,6 +70,15 @@ def probability(cause: str, explanations: Iterable[Scored]) -> float:
     return min(1.0, float(weight[having].sum() / weight.sum()))
 
 
+def beside_unweighed(probability: float, rivals: Collection[str]) -> float:
+    """Of a cause beside rivals that no explanation of the race stands for: even odds at most.
+
+    Where a programme has one rate or no time, friction and a lag may make one loop; the race has weighed only
+    such forms of either as it has elements for.
+    """
+    return min(probability, EVEN_ODDS) if rivals else probability
+
+
 def probability_of_gain(nats: float) -> float:
     """Of a cause outside of the race, by its gain in evidence: RIVAL_EVIDENCE nats count as even odds.
 
