@@ -1,10 +1,10 @@
 """End points and a prediction in, a verdict out.
 
 Rules, with their numbers:
-- No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis NAMING_NATS better than the
-  simulation within its uncertainty: `consistent`.
+- No unit beyond the envelope (`finding.CORRECTED_P_VALUE`), and no hypothesis OVER_SIMULATION_NATS better
+  than the simulation within its uncertainty: `consistent`.
 - Otherwise the likeliest cause is listed with every rival within the limits of docs/contract.md: 4 nats of
-  evidence or 6 of penalised likelihood. Any rival left, or evidence below NAMING_NATS: `ambiguous`;
+  evidence or 6 of penalised likelihood. Any rival left, or evidence below OVER_SIMULATION_NATS: `ambiguous`;
   none: `named`.
 - A curve of no cause that is the likeliest: `unknown`, in channel `torque_Nm`.
 """
@@ -17,7 +17,7 @@ import numpy as np
 
 from flexspline.geometry.design import Design
 from flexspline.pipeline.diagnosis.decision import CONSISTENT
-from flexspline.pipeline.diagnosis.end_points.decide import NAMING_NATS, decide
+from flexspline.pipeline.diagnosis.end_points.decide import OVER_SIMULATION_NATS, decide
 from flexspline.pipeline.diagnosis.end_points.envelope import envelope
 from flexspline.pipeline.diagnosis.end_points.evidence import UnitDeviations, unit_evidence
 from flexspline.pipeline.diagnosis.end_points.finding import EndPointAnalysis
@@ -66,9 +66,9 @@ def diagnose_end_points(
     best = next(h for h in hypotheses if h.causes)
     decision = CONSISTENT
     plans: tuple[PlanSeparation, ...] = ()
-    if best.score > NAMING_NATS or not all(u.within for u in units):
+    if best.score > OVER_SIMULATION_NATS or not all(u.within for u in units):
         beyond = [u for u in units if not u.within]
-        if best.score <= NAMING_NATS and len(beyond) == 1 and len(names) > 1:
+        if best.score <= OVER_SIMULATION_NATS and len(beyond) == 1 and len(names) > 1:
             # one unit is what is to be explained, even where another cause fits all units a little better
             alone = raced.index(beyond[0].unit)
             hypotheses = [h for h in hypotheses if not h.causes or h.own == alone]
