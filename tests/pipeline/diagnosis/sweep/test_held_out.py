@@ -345,6 +345,6 @@ def test_a_level_with_positions_of_its_own_says_where_it_is(
     raced = explained(history, angle + rng.normal(0, 0.5, len(angle)))
     gains = gains_of(raced, ("kinematic_error",))[1]
     assert len(gains) == 2
-    # the other level has two cycles of three: of these the nearest other is at the third's position
+    # the level of the other six cycles is held out too: what is near for one is near for both
     assert [g.elsewhere for g in gains] == [elsewhere, elsewhere]
     assert not any(g.elsewhere for g in gains_of(raced, ("friction_hysteresis",))[1])
